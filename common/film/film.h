@@ -1,0 +1,48 @@
+// The film: sums of samples in double precision, from which mean and variance follow at any time.
+#pragma once
+
+#include "common/image/image.h"
+
+#include <array>
+#include <cstdint>
+
+namespace duet {
+
+/// Each pixel keeps its samples' sums by replicate (see Sampler): the two are scrambled independently, so
+/// half the difference of their means, squared, estimates the variance of the pixel's mean without bias, whatever the sampler.
+/// 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
+class Film {
+public:
+    static constexpr std::size_t kReplicates = 2;
+
+    Film(int width, int height);
+
+    /// Adds a sample. One that is NaN, infinite or negative is dropped and counted instead: false.
+    bool add(int x, int y, std::size_t replicate, Rgb sample);
+
+    int width() const { return pixels_.width(); }
+    int height() const { return pixels_.height(); }
+    /// Mean of all samples of a pixel; black where there is none.
+    Rgbd mean(int x, int y) const;
+    /// Estimated variance of that mean, by channel; infinity where a replicate has no sample.
+    Rgbd variance(int x, int y) const;
+    std::uint32_t samples(int x, int y) const;
+    std::uint32_t invalid(int x, int y) const { return pixels_(x, y).invalid; }
+
+    ImageRgb image() const;
+    ImageRgb variance_image() const;
+    Image<std::uint32_t> samples_image() const;
+    std::int64_t invalid_samples() const;
+    /// Mean over pixels and channels of variance / (mean² + 0.01); −1 where a pixel's variance is unknown.
+    double estimated_relmse() const;
+
+private:
+    struct Pixel {
+        std::array<Rgbd, kReplicates> sum{};
+        std::array<std::uint32_t, kReplicates> count{};
+        std::uint32_t invalid = 0;
+    };
+    Image<Pixel> pixels_;
+};
+
+} // namespace duet

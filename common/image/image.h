@@ -1,0 +1,44 @@
+// A picture in memory: rows from the top, pixels from the left.
+#pragma once
+
+#include "common/image/rgb.h"
+#include "common/system/error.h"
+
+#include <vector>
+
+namespace duet {
+
+/// width × height pixels of any type; (0, 0) is the upper left one.
+template <typename Pixel> class Image {
+public:
+    Image() = default;
+    Image(int width, int height, const Pixel& fill = Pixel{})
+        : width_(width), height_(height),
+          pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    bool empty() const { return pixels_.empty(); }
+    std::size_t size() const { return pixels_.size(); }
+
+    const Pixel& operator()(int x, int y) const { return pixels_[index(x, y)]; }
+    Pixel& operator()(int x, int y) { return pixels_[index(x, y)]; }
+    const Pixel& operator[](std::size_t i) const { return pixels_[i]; }
+    Pixel& operator[](std::size_t i) { return pixels_[i]; }
+    const std::vector<Pixel>& pixels() const { return pixels_; }
+    std::vector<Pixel>& pixels() { return pixels_; }
+    auto begin() const { return pixels_.begin(); }
+    auto end() const { return pixels_.end(); }
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    int width_ = 0, height_ = 0;
+    std::vector<Pixel> pixels_;
+};
+
+using ImageRgb = Image<Rgb>;
+using ImageFloat = Image<float>;
+
+} // namespace duet

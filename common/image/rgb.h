@@ -1,0 +1,45 @@
+// Colours: linear RGB with Rec. 709 primaries.
+#pragma once
+
+#include "common/vec/vec.h"
+
+namespace duet {
+
+/// A spectrum of three channels: radiance, irradiance, reflectance … whatever the name of the variable says.
+template <typename T> struct RgbT {
+    T r{}, g{}, b{};
+
+    constexpr RgbT() = default;
+    constexpr explicit RgbT(T grey) : r(grey), g(grey), b(grey) {}
+    constexpr RgbT(T r_, T g_, T b_) : r(r_), g(g_), b(b_) {}
+    template <typename U>
+    constexpr explicit RgbT(const RgbT<U>& c)
+        : r(static_cast<T>(c.r)), g(static_cast<T>(c.g)), b(static_cast<T>(c.b)) {}
+    constexpr T operator[](std::size_t channel) const { return channel == 0 ? r : channel == 1 ? g : b; }
+    constexpr T& operator[](std::size_t channel) { return channel == 0 ? r : channel == 1 ? g : b; }
+    friend constexpr bool operator==(const RgbT&, const RgbT&) = default;
+};
+using Rgb = RgbT<float>;
+using Rgbd = RgbT<double>;
+
+template <typename T> constexpr RgbT<T> operator+(RgbT<T> a, RgbT<T> b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
+template <typename T> constexpr RgbT<T> operator-(RgbT<T> a, RgbT<T> b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
+template <typename T> constexpr RgbT<T> operator*(RgbT<T> a, RgbT<T> b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+template <typename T> constexpr RgbT<T> operator*(RgbT<T> a, T s) { return {a.r * s, a.g * s, a.b * s}; }
+template <typename T> constexpr RgbT<T> operator*(T s, RgbT<T> a) { return a * s; }
+template <typename T> constexpr RgbT<T> operator/(RgbT<T> a, T s) { return {a.r / s, a.g / s, a.b / s}; }
+template <typename T> constexpr RgbT<T>& operator+=(RgbT<T>& a, RgbT<T> b) { return a = a + b; }
+template <typename T> constexpr RgbT<T>& operator*=(RgbT<T>& a, RgbT<T> b) { return a = a * b; }
+template <typename T> constexpr RgbT<T>& operator*=(RgbT<T>& a, T s) { return a = a * s; }
+template <typename T> constexpr RgbT<T> lerp(RgbT<T> a, RgbT<T> b, T t) { return a * (T(1) - t) + b * t; }
+
+template <typename T> constexpr T max_component(RgbT<T> c) { return max(max(c.r, c.g), c.b); }
+template <typename T> constexpr T average(RgbT<T> c) { return (c.r + c.g + c.b) * T(1.0 / 3.0); }
+/// Relative luminance Y of Rec. 709 primaries (ITU-R BT.709-6, §3.2).
+template <typename T> constexpr T luminance(RgbT<T> c) { return T(0.2126) * c.r + T(0.7152) * c.g + T(0.0722) * c.b; }
+template <typename T> constexpr bool is_black(RgbT<T> c) { return c.r == T(0) && c.g == T(0) && c.b == T(0); }
+template <Arithmetic T> bool is_finite(RgbT<T> c) {
+    return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
+}
+
+} // namespace duet

@@ -1,0 +1,27 @@
+// Glass, water: a smooth boundary between two dielectrics, which reflects and refracts.
+#pragma once
+
+#include "common/material/bsdf.h"
+#include "common/texture/texture.h"
+
+namespace duet {
+
+/// Specular reflection and refraction by Fresnel's equations and Snell's law. +z is the outside.
+struct DielectricBsdf {
+    float eta; ///< index of refraction inside over outside
+    Rgb tint;  ///< transmitted light is multiplied by it at each crossing
+
+    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    /// Chooses reflection (lobe < F) or refraction; at total reflection there is only the one.
+    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+};
+
+struct Dielectric {
+    float ior = 1.5f; ///< inside over outside, in [1, 4]
+    RgbSlot tint{Rgb(1.0f)};
+
+    DielectricBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+};
+
+} // namespace duet

@@ -1,0 +1,34 @@
+// The closed set of materials. A material is a description with texture slots; at a point it becomes a Bsdf.
+#pragma once
+
+#include "common/material/dielectric.h"
+#include "common/material/diffuse.h"
+#include "common/material/emissive.h"
+#include "common/material/metal.h"
+
+#include <variant>
+
+namespace duet {
+
+using Material = std::variant<Diffuse, Metal, Dielectric, Emissive>;
+using Bsdf = std::variant<DiffuseBsdf, MetalBsdf, DielectricBsdf>;
+
+Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
+
+inline Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
+    return std::visit([&](const auto& b) { return b.eval(wo, wi, mode); }, bsdf);
+}
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, Vec2 u, TransportMode mode = TransportMode::kRadiance) {
+    return std::visit([&](const auto& b) { return b.sample(wo, lobe, u, mode); }, bsdf);
+}
+inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
+    return std::visit([&](const auto& b) { return b.pdf(wo, wi, mode); }, bsdf);
+}
+/// Whether the Bsdf has only delta lobes, which light sampling cannot find.
+bool is_specular(const Bsdf& bsdf);
+/// Radiance that the material emits at a point towards w; black but for Emissive.
+Rgb emitted(const Material& material, const SurfacePoint& point, Vec3 w);
+/// The colour one would paint it with: albedo, reflectance or tint at the point. For the albedo AOV.
+Rgb base_color(const Material& material, const TextureSet& textures, const SurfacePoint& point);
+
+} // namespace duet

@@ -1,0 +1,51 @@
+// Sample points: each number is a function of (seed, pixel, sample, dimension) and of nothing else, so pictures do not
+// depend on threads, tiles or passes.
+#pragma once
+
+#include "common/vec/vec.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace duet {
+
+enum class SamplerKind {
+    kSobol,       ///< Owen-scrambled Sobol points, padded by pairs of dimensions (Burley 2020)
+    kStratified,  ///< jittered strata, shuffled by dimension; needs the number of samples
+    kIndependent, ///< independent uniform numbers
+    kCenter,      ///< pixel and lens centre, shutter open; all other dimensions as kSobol: for parity of the pipelines
+};
+/// "sobol", "stratified", "independent", "center"; throws Error for another name.
+SamplerKind sampler_kind(std::string_view name);
+std::string_view sampler_name(SamplerKind kind);
+
+/// The numbers of one sample of one pixel, drawn in order of dimension. Samples of one pixel fall into two
+/// replicates, scrambled independently of each other: sample i is point i/2 of replicate i mod 2. Their spread is what the film
+/// estimates its variance from.
+class Sampler {
+public:
+    /// samples_per_pixel: how many samples the pixel will get (stratified needs it; others ignore it).
+    Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel);
+
+    /// To dimension 0 of sample `index` of a pixel.
+    void start(int pixel_x, int pixel_y, std::uint32_t index);
+    /// To a given dimension of the current sample: gives each bounce dimensions of its own.
+    void set_dimension(std::uint32_t dimension) { dimension_ = dimension; }
+    std::uint32_t dimension() const { return dimension_; }
+
+    /// The next one or two dimensions: numbers in [0, 1).
+    float get_1d();
+    Vec2 get_2d();
+    /// As get_2d, and as get_1d, but (½, ½) and 0 for kCenter: for the pixel and the lens, and for the time.
+    Vec2 get_centered_2d();
+    float get_time();
+
+private:
+    SamplerKind kind_;
+    std::uint64_t seed_;
+    std::uint32_t samples_per_pixel_;
+    std::uint64_t pixel_hash_ = 0;
+    std::uint32_t index_ = 0, replicate_ = 0, dimension_ = 0;
+};
+
+} // namespace duet

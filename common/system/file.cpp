@@ -1,0 +1,53 @@
+#include "common/system/file.h"
+
+#include "common/system/error.h"
+
+#include <fstream>
+#include <system_error>
+#include <unistd.h>
+
+namespace duet {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& path, std::size_t limit) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
+    if (!fs::is_regular_file(status)) throw Error(message(path.string(), ": not a regular file"));
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) throw Error(message(path.string(), ": ", error.message()));
+    if (size > limit) throw Error(message(path.string(), ": ", size, " bytes, expected at most ", limit));
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (!in) throw Error(message(path.string(), ": cannot be read"));
+    return bytes;
+}
+
+void write_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    // The ending stays: some writers choose their format by it.
+    fs::path temporary = path;
+    temporary.replace_filename(message(".", path.stem().string(), ".", ::getpid(), path.extension().string()));
+    std::error_code ignored;
+    try {
+        write(temporary);
+        std::error_code error;
+        fs::rename(temporary, path, error);
+        if (error) throw Error(message(path.string(), ": cannot be written: ", error.message()), 1);
+    } catch (...) {
+        fs::remove(temporary, ignored);
+        throw;
+    }
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+    write_whole(path, [&](const fs::path& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        out.close();
+        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+    });
+}
+
+} // namespace duet

@@ -1,0 +1,67 @@
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <thread>
+
+// ThreadSanitizer does not see the synchronisation inside an uninstrumented oneTBB and reports dozens of false races;
+// suppressing them would hide real ones. So the thread-sanitizer build runs the same loops on plain threads.
+#if defined(DUET_PLAIN_THREADS)
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <vector>
+#else
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace duet {
+
+#if defined(DUET_PLAIN_THREADS)
+
+int available_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr first_error;
+    std::mutex error_mutex;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < count; i = next++) {
+            try {
+                body(i);
+            } catch (...) {
+                const std::lock_guard lock(error_mutex);
+                if (!first_error) first_error = std::current_exception();
+                next = count;
+            }
+        }
+    };
+    const int workers = threads > 0 ? threads : available_threads();
+    std::vector<std::thread> others;
+    for (int i = 1; i < workers; ++i) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    if (first_error) std::rethrow_exception(first_error);
+}
+
+#else
+
+int available_threads() { return std::max(1, tbb::info::default_concurrency()); }
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+    const int workers = threads > 0 ? threads : available_threads();
+    if (workers == 1 || count <= 1) {
+        for (std::size_t i = 0; i < count; ++i) body(i);
+        return;
+    }
+    // More threads than cores may be asked for (a test of determinism does): oneTBB's own limit must allow them.
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    tbb::task_arena arena(workers);
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+}
+
+#endif
+
+} // namespace duet

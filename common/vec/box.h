@@ -1,0 +1,41 @@
+// Axis-aligned bounding boxes.
+#pragma once
+
+#include "common/vec/vec.h"
+
+namespace duet {
+
+/// Empty as constructed: low = +infinity, high = −infinity.
+template <Arithmetic T> struct Box3T {
+    Vec3T<T> low{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(),
+                 std::numeric_limits<T>::infinity()};
+    Vec3T<T> high{-low.x, -low.y, -low.z};
+
+    constexpr bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
+    constexpr Vec3T<T> diagonal() const { return high - low; }
+    constexpr Vec3T<T> center() const { return low * T(0.5) + high * T(0.5); }
+    /// Half the surface area; 0 for an empty box.
+    constexpr T half_area() const {
+        const Vec3T<T> d = diagonal();
+        return empty() ? T(0) : d.x * d.y + d.y * d.z + d.z * d.x;
+    }
+    constexpr void extend(Vec3T<T> p) {
+        low = min(low, p);
+        high = max(high, p);
+    }
+    constexpr void extend(const Box3T& b) {
+        low = min(low, b.low);
+        high = max(high, b.high);
+    }
+    constexpr bool contains(Vec3T<T> p) const {
+        return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
+    }
+};
+using Box3 = Box3T<float>;
+using Box3d = Box3T<double>;
+
+template <Arithmetic T> constexpr std::size_t longest_axis(Vec3T<T> d) {
+    return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+}
+
+} // namespace duet

@@ -1,0 +1,39 @@
+// Robust floating-point arithmetic: products without cancellation, error bounds, neighbours.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace duet {
+
+/// a·b − c·d with an error below 1.5 ulp of the result, however close the products are (Kahan's algorithm; proof:
+/// Jeannerod, Louvet and Muller 2013). Not antisymmetric in the exchange of the two products.
+inline float difference_of_products(float a, float b, float c, float d) {
+    const float cd = c * d;
+    const float difference = std::fma(a, b, -cd);
+    const float error = std::fma(-c, d, cd);
+    return difference + error;
+}
+inline double difference_of_products(double a, double b, double c, double d) {
+    const double cd = c * d;
+    const double difference = std::fma(a, b, -cd);
+    const double error = std::fma(-c, d, cd);
+    return difference + error;
+}
+
+/// Half the distance from 1 to the next float: the bound on the relative error of one rounded operation.
+template <typename T> inline constexpr T kRoundoff = std::numeric_limits<T>::epsilon() / 2;
+
+/// γₙ = n·u / (1 − n·u): bounds the relative error of n rounded operations in sequence (Higham 2002, §3.1).
+template <typename T = float> constexpr T gamma_bound(int n) {
+    return (static_cast<T>(n) * kRoundoff<T>) / (T(1) - static_cast<T>(n) * kRoundoff<T>);
+}
+
+/// The next float above x; infinity stays. NaN stays NaN.
+inline float next_up(float x) { return std::nextafter(x, std::numeric_limits<float>::infinity()); }
+/// The next float below x; −infinity stays. NaN stays NaN.
+inline float next_down(float x) { return std::nextafter(x, -std::numeric_limits<float>::infinity()); }
+
+} // namespace duet

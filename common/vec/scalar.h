@@ -1,0 +1,38 @@
+// Scalar helpers. `select`, `min`, `max` and `sqrt` are found by name lookup from the templates of the project, so the
+// same source evaluates a float, a double or a SIMD batch (whose overloads come with its own type).
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace duet {
+
+inline constexpr double kPiDouble = 3.14159265358979323846;
+inline constexpr float kPi = static_cast<float>(kPiDouble);
+inline constexpr float kInvPi = static_cast<float>(1.0 / kPiDouble);
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// The largest float below 1: what a sample in [0, 1) may reach.
+inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
+
+template <typename T>
+concept Arithmetic = std::is_arithmetic_v<T>;
+
+/// a where the condition holds, else b. For batches both sides are evaluated.
+template <Arithmetic T> constexpr T select(bool condition, T a, T b) { return condition ? a : b; }
+template <Arithmetic T> constexpr T min(T a, T b) { return b < a ? b : a; }
+template <Arithmetic T> constexpr T max(T a, T b) { return a < b ? b : a; }
+template <Arithmetic T> inline T sqrt(T x) { return std::sqrt(x); }
+template <Arithmetic T> inline T abs(T x) { return std::abs(x); }
+
+template <typename T> constexpr T sqr(T x) { return x * x; }
+template <typename T> constexpr T clamp(T x, T low, T high) { return min(max(x, low), high); }
+/// Linear interpolation, exact at both ends.
+template <typename T> constexpr T lerp(T a, T b, T t) { return (T(1) - t) * a + t * b; }
+/// The square root of max(x, 0): for values that rounding may have pushed below zero.
+template <typename T> T safe_sqrt(T x) { return sqrt(max(x, T(0))); }
+
+constexpr double radians(double degrees) { return degrees * (kPiDouble / 180.0); }
+constexpr double degrees(double radians) { return radians * (180.0 / kPiDouble); }
+
+} // namespace duet

@@ -1,0 +1,105 @@
+// Vectors of two, three and four components over any number type: float, double, or a SIMD batch.
+#pragma once
+
+#include "common/vec/scalar.h"
+
+#include <cstddef>
+
+namespace duet {
+
+template <typename T> struct Vec2T {
+    T x{}, y{};
+
+    constexpr Vec2T() = default;
+    constexpr Vec2T(T x_, T y_) : x(x_), y(y_) {}
+    template <typename U> constexpr explicit Vec2T(const Vec2T<U>& v) : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)) {}
+    friend constexpr bool operator==(const Vec2T&, const Vec2T&) = default;
+};
+
+/// A point, vector or normal; the name of a variable says which.
+template <typename T> struct Vec3T {
+    T x{}, y{}, z{};
+
+    constexpr Vec3T() = default;
+    constexpr Vec3T(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
+    template <typename U>
+    constexpr explicit Vec3T(const Vec3T<U>& v)
+        : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)), z(static_cast<T>(v.z)) {}
+    constexpr T operator[](std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+    constexpr T& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+    friend constexpr bool operator==(const Vec3T&, const Vec3T&) = default;
+};
+
+template <typename T> struct Vec4T {
+    T x{}, y{}, z{}, w{};
+
+    constexpr Vec4T() = default;
+    constexpr Vec4T(T x_, T y_, T z_, T w_) : x(x_), y(y_), z(z_), w(w_) {}
+    constexpr Vec4T(const Vec3T<T>& v, T w_) : x(v.x), y(v.y), z(v.z), w(w_) {}
+    friend constexpr bool operator==(const Vec4T&, const Vec4T&) = default;
+};
+
+using Vec2 = Vec2T<float>;
+using Vec2d = Vec2T<double>;
+using Vec3 = Vec3T<float>;
+using Vec3d = Vec3T<double>;
+using Vec4 = Vec4T<float>;
+using Vec4d = Vec4T<double>;
+
+// Component-wise arithmetic ------------------------------------------------------------------------------------------
+
+template <typename T> constexpr Vec2T<T> operator+(Vec2T<T> a, Vec2T<T> b) { return {a.x + b.x, a.y + b.y}; }
+template <typename T> constexpr Vec2T<T> operator-(Vec2T<T> a, Vec2T<T> b) { return {a.x - b.x, a.y - b.y}; }
+template <typename T> constexpr Vec2T<T> operator*(Vec2T<T> a, T s) { return {a.x * s, a.y * s}; }
+template <typename T> constexpr Vec2T<T> operator*(T s, Vec2T<T> a) { return a * s; }
+
+template <typename T> constexpr Vec3T<T> operator+(Vec3T<T> a, Vec3T<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+template <typename T> constexpr Vec3T<T> operator-(Vec3T<T> a, Vec3T<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+template <typename T> constexpr Vec3T<T> operator-(Vec3T<T> a) { return {-a.x, -a.y, -a.z}; }
+template <typename T> constexpr Vec3T<T> operator*(Vec3T<T> a, Vec3T<T> b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+template <typename T> constexpr Vec3T<T> operator*(Vec3T<T> a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+template <typename T> constexpr Vec3T<T> operator*(T s, Vec3T<T> a) { return a * s; }
+template <typename T> constexpr Vec3T<T> operator/(Vec3T<T> a, T s) { return {a.x / s, a.y / s, a.z / s}; }
+template <typename T> constexpr Vec3T<T>& operator+=(Vec3T<T>& a, Vec3T<T> b) { return a = a + b; }
+template <typename T> constexpr Vec3T<T>& operator-=(Vec3T<T>& a, Vec3T<T> b) { return a = a - b; }
+template <typename T> constexpr Vec3T<T>& operator*=(Vec3T<T>& a, T s) { return a = a * s; }
+
+template <typename T> constexpr Vec4T<T> operator+(Vec4T<T> a, Vec4T<T> b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
+template <typename T> constexpr Vec4T<T> operator*(Vec4T<T> a, T s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
+
+template <typename T> constexpr Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
+    return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+template <typename T> constexpr Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+template <typename T> Vec3T<T> abs(Vec3T<T> a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
+template <typename T, typename Mask> Vec3T<T> select(Mask condition, Vec3T<T> a, Vec3T<T> b) {
+    return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
+}
+template <typename T> constexpr T max_component(Vec3T<T> a) { return max(max(a.x, a.y), a.z); }
+/// Linear interpolation, exact at both ends.
+template <typename T> constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) { return a * (T(1) - t) + b * t; }
+
+// Products and lengths -----------------------------------------------------------------------------------------------
+
+template <typename T> constexpr T dot(Vec2T<T> a, Vec2T<T> b) { return a.x * b.x + a.y * b.y; }
+template <typename T> constexpr T dot(Vec3T<T> a, Vec3T<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <typename T> constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <typename T> constexpr T length_squared(Vec3T<T> a) { return dot(a, a); }
+/// Euclidean length; overflows where the squared length does (beyond 1.8e19 in float).
+template <typename T> T length(Vec3T<T> a) { return sqrt(length_squared(a)); }
+/// a / |a|. A zero vector gives NaN: callers test first where one can occur.
+template <typename T> Vec3T<T> normalize(Vec3T<T> a) { return a / length(a); }
+/// The mirror image of w about n (unit length), both pointing away from the surface.
+template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
+
+template <Arithmetic T> bool is_finite(Vec3T<T> a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+} // namespace duet

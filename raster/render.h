@@ -1,0 +1,45 @@
+// The rasterizer: prepare once a scene, render once a view.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "common/film/rendering.h"
+#include "common/scene/scene.h"
+#include "common/system/control.h"
+
+#include <memory>
+#include <string_view>
+
+namespace duet::raster {
+
+enum class Shading {
+    kLit,    ///< materials and lights: direct light in closed form where there is one, environment irradiance
+    kNormal, ///< the shading normal as a colour: (n + 1)/2
+    kAlbedo, ///< base colours
+    kDepth,  ///< near / depth
+};
+/// "lit", "normal", "albedo", "depth"; throws Error for another name.
+Shading shading(std::string_view name);
+
+struct Settings : RenderSettings {
+    Shading shading = Shading::kLit;
+    bool environment = true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
+    bool cull = true;        ///< leave out back faces of closed meshes and what is outside the frustum
+};
+
+struct PreparedData; // raster/prepare.h
+
+/// What one scene needs for any number of views. Refers to the scene, which must outlive it.
+class Prepared {
+public:
+    explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}
+    const PreparedData& data() const { return *data_; }
+
+private:
+    std::shared_ptr<const PreparedData> data_;
+};
+
+Prepared prepare(const Scene& scene, const Settings& settings);
+/// One picture. Stopped by `control`, it returns what is finished, the rest black.
+Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
+
+} // namespace duet::raster

@@ -1,0 +1,56 @@
+// The path tracer: prepare once a scene, render once a view.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "common/film/rendering.h"
+#include "common/sampling/sampler.h"
+#include "common/scene/scene.h"
+#include "common/system/control.h"
+
+#include <memory>
+#include <string_view>
+
+namespace duet::raytrace {
+
+enum class Integrator {
+    kPath,             ///< light and BSDF sampling, combined by multiple importance sampling
+    kNaive,            ///< BSDF sampling only, as book 1 of Ray Tracing in One Weekend
+    kDirect,           ///< emission and direct light: path of at most one scattering event
+    kUnshadowed,       ///< direct light by light sampling without visibility: the rasterizer's quantity
+    kNormal,           ///< the shading normal as a colour: (n + 1)/2
+    kAlbedo,           ///< base colours
+};
+/// "path", "naive", "direct", "unshadowed", "normal", "albedo"; throws Error for another name.
+Integrator integrator(std::string_view name);
+
+struct Settings : RenderSettings {
+    Settings() { samples_per_pixel = 64; }
+    Integrator integrator = Integrator::kPath;
+    SamplerKind sampler = SamplerKind::kSobol;
+    int max_depth = 64;          ///< scattering events at most: 0 = emission only, 1 = direct light
+    bool russian_roulette = true;
+    bool environment = true;     ///< as raster::Settings::environment
+    double time_limit = 0;       ///< seconds; stops between passes; 0: none
+    double error_limit = 0;      ///< estimated relMSE; stops between passes; 0: none
+};
+
+struct PreparedData; // raytrace/prepare.h
+
+/// What one scene needs for any number of views. Refers to the scene, which must outlive it.
+class Prepared {
+public:
+    explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}
+    const PreparedData& data() const { return *data_; }
+
+private:
+    std::shared_ptr<const PreparedData> data_;
+};
+
+Prepared prepare(const Scene& scene, const Settings& settings);
+/// One picture. Stopped by `control`, it returns the mean of the samples taken so far.
+Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
+
+/// The first hit of one ray: what the oracles and tests of hits ask for. Bit-equal to what render's camera rays get.
+Hit trace(const Prepared& prepared, const Ray& ray);
+
+} // namespace duet::raytrace

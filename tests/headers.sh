@@ -1,0 +1,9 @@
+#!/bin/sh
+# Every header compiles alone: none relies on what another file included first.
+# usage: headers.sh COMPILER SOURCE_DIR
+set -eu
+compiler=$1
+cd "$2"
+find common raster raytrace compare tests -name '*.h' -not -path '*/fuzz/*' | sort |
+    xargs -P 2 -I{} sh -c '"$1" -std=c++20 -fsyntax-only -I. -isystem /usr/include/stb -x c++ -include "$2" /dev/null ||
+        { echo "$2 does not compile alone"; exit 255; }' sh "$compiler" {}

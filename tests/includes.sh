@@ -1,0 +1,28 @@
+#!/bin/sh
+# Includes go down the house, never up: a room includes what design and README allow, a floor of common/ only itself and
+# those below.
+# usage: includes.sh SOURCE_DIR
+set -eu
+cd "$1"
+floors='vec image sampling geometry camera texture material light scene film program'
+grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |
+    awk -F: -v floors="$floors" '
+    BEGIN { n = split(floors, names, " "); for (i = 1; i <= n; ++i) floor[names[i]] = i }
+    function fault(why) { print $1 ":" $2 ": " target ": " why; ++faults }
+    {
+        target = $3; sub(/^#include "/, "", target); sub(/"$/, "", target)
+        split($1, from, "/"); split(target, to, "/")
+        if (!(to[1] ~ /^(common|raster|raytrace|compare|tests|models)$/)) { fault("name the file from the top of the repository"); next }
+        if (from[1] == "tests") next
+        if (from[1] == "models" && to[1] != "common" && to[1] != "models") fault("models/ includes only common/")
+        if (from[1] == "common" && to[1] != "common") fault("common/ includes nothing of the other rooms")
+        if ((from[1] == "raster" || from[1] == "raytrace") && to[1] != "common" && to[1] != from[1])
+            fault(from[1] "/ includes only common/ and itself")
+        if (from[1] == "common" && to[1] == "common" && from[2] != to[2] && to[2] != "system") {
+            if (from[2] == "system") fault("system/ includes no floor")
+            else if (!(from[2] in floor)) fault("common/" from[2] " is no floor: add it to tests/includes.sh")
+            else if (!(to[2] in floor)) fault("common/" to[2] " is no floor: add it to tests/includes.sh")
+            else if (floor[to[2]] > floor[from[2]]) fault("goes up from " from[2] "/ to " to[2] "/: move the definition")
+        }
+    }
+    END { exit faults > 0 }'
