@@ -8,7 +8,8 @@ namespace duet {
 
 namespace {
 
-// The nearest point with float coordinates. Both pipelines then see the scene, whose vertices are floats, from the very same point.
+// The nearest point with float coordinates. Both pipelines then see the scene, whose vertices are floats, from the very
+// same point.
 Vec3d rounded(Vec3d p) { return Vec3d(Vec3(p)); }
 
 // A vector not parallel to `forward` to stand for an `up` that is.
@@ -88,27 +89,35 @@ CameraModel::CameraModel(const View& view)
     center_.world_to_pixel = pixel_matrix(center_, right_, up_, orthographic);
 }
 
+// The lens point's offset from the centre, ending on float coordinates.
+Vec3d CameraModel::lens_offset(Vec2d lens_sample) const {
+    const Vec2d lens = concentric_disk(lens_sample) * aperture_radius_;
+    return rounded(center_.origin + right_ * lens.x + up_ * lens.y) - center_.origin;
+}
+
+// Seen from another point of the lens, the plane in focus stays where it is: a pixel's ray goes to the point
+// focus_distance · direction from the centre. (The offset has a tiny depth of its own, from rounding.)
 Pinhole CameraModel::through(Vec2d lens_sample) const {
     if (!has_lens()) return center_;
+    const Vec3d offset = lens_offset(lens_sample);
+    const double depth = focus_distance_ - dot(offset, center_.forward);
     Pinhole view = center_;
-    const Vec2d lens = concentric_disk(lens_sample) * aperture_radius_;
-    view.origin = rounded(center_.origin + right_ * lens.x + up_ * lens.y);
-    // Seen from there, the plane in focus stays where it is.
-    view.direction = center_.direction - (view.origin - center_.origin) / focus_distance_;
+    view.origin = center_.origin + offset;
+    view.direction = (center_.direction * focus_distance_ - offset) / depth;
+    view.direction_dx = center_.direction_dx * (focus_distance_ / depth);
+    view.direction_dy = center_.direction_dy * (focus_distance_ / depth);
     view.world_to_pixel = pixel_matrix(view, right_, up_, false);
     return view;
 }
 
 Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
     Rayd exact = center_.ray(pixel);
-    if (has_lens()) {
-        const Vec2d lens = concentric_disk(lens_sample) * aperture_radius_;
-        const Vec3d origin = rounded(center_.origin + right_ * lens.x + up_ * lens.y);
-        const Vec3d d = exact.direction * (exact.t_min / center_.near) - (origin - center_.origin) / focus_distance_;
+    if (has_lens()) { // as through(), without the matrix
+        const Vec3d offset = lens_offset(lens_sample);
+        const Vec3d centered = exact.direction * (exact.t_min / center_.near);
+        const Vec3d d = (centered * focus_distance_ - offset) / (focus_distance_ - dot(offset, center_.forward));
         const double per_depth = length(d);
-        exact.origin = origin;
-        exact.direction = d / per_depth;
-        exact.t_min = center_.near * per_depth;
+        exact = {center_.origin + offset, d / per_depth, center_.near * per_depth};
     }
     Ray ray;
     ray.origin = Vec3(exact.origin);

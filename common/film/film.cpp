@@ -21,8 +21,8 @@ Rgbd Film::mean(int x, int y) const {
     return n > 0 ? (pixel.sum[0] + pixel.sum[1]) / n : Rgbd();
 }
 
-// With n₀ and n₁ samples of variance s in the replicates, E (m₀ − m₁)² = s (1/n₀ + 1/n₁), and the mean of all has the variance
-// s / (n₀ + n₁): the factor between them is n₀ n₁ / (n₀ + n₁)², one quarter for equal halves.
+// With n₀ and n₁ samples of variance s in the replicates, E (m₀ − m₁)² = s (1/n₀ + 1/n₁), and the mean of all has the
+// variance s / (n₀ + n₁): the factor between them is n₀ n₁ / (n₀ + n₁)², one quarter for equal halves.
 Rgbd Film::variance(int x, int y) const {
     const Pixel& pixel = pixels_(x, y);
     if (pixel.count[0] == 0 || pixel.count[1] == 0) return Rgbd(std::numeric_limits<double>::infinity());

@@ -16,7 +16,8 @@ std::uint32_t primitive_count(const Shape& shape) {
 
 namespace {
 
-// An ellipsoid's extent along an axis is r times the length of the matrix's row (Sigg et al. 2006, eq. 4, in affine form).
+// An ellipsoid's extent along an axis is r times the length of the matrix's row (Sigg et al. 2006, eq. 4, in affine
+// form).
 Box3d sphere_bounds(const Sphere& sphere, const Mat4d& m) {
     const Vec3d center = transform_point(m, Vec3d(sphere.center));
     Vec3d extent;
@@ -55,12 +56,12 @@ Box3 bounds(const Shape& shape, const Mat4& transform) {
 QuadList box_quads(Vec3 low, Vec3 high) {
     const Vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
     return {{
-        {low, z, y},                           // −x
-        {{high.x, low.y, low.z}, y, z},        // +x
-        {low, x, z},                           // −y
-        {{low.x, high.y, low.z}, z, x},        // +y
-        {low, y, x},                           // −z
-        {{low.x, low.y, high.z}, x, y},        // +z
+        {low, z, y},                    // −x
+        {{high.x, low.y, low.z}, y, z}, // +x
+        {low, x, z},                    // −y
+        {{low.x, high.y, low.z}, z, x}, // +y
+        {low, y, x},                    // −z
+        {{low.x, low.y, high.z}, x, y}, // +z
     }};
 }
 
@@ -69,7 +70,9 @@ bool is_closed_outwards(const Mesh& mesh) {
     // Vertices at the same position are one: seams of texture or normals do not open a mesh.
     std::vector<std::uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::uint32_t i) { return std::array{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z}; };
+    const auto key = [&](std::uint32_t i) {
+        return std::array{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z};
+    };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i)
         merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];

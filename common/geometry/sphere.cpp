@@ -6,9 +6,10 @@
 namespace duet {
 
 // With f = origin − centre, the roots of a·t² − 2b·t + c = 0 for a = d·d, b = −f·d, c = f·f − r². The textbook's
-// b² − a·c loses all digits where the sphere is far or small: the discriminant is taken from the distance of the centre to the ray instead, and
-// of the two roots the one without cancellation is computed first (Haines et al. 2019, eqs. 5 to 8). In double, in which
-// the differences of float inputs are exact to 1 part in 10^16: an origin 1e-7 above a sphere of radius 1000 is still outside.
+// b² − a·c loses all digits where the sphere is far or small: the discriminant is taken from the distance of the centre
+// to the ray instead, and of the two roots the one without cancellation is computed first (Haines et al. 2019, eqs. 5
+// to 8). In double, in which the differences of float inputs are exact to 1 part in 10^16: an origin 1e-7 above a
+// sphere of radius 1000 is still outside.
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
     const Vec3d f = Vec3d(ray.origin) - Vec3d(sphere.center);
     const Vec3d d(ray.direction);
@@ -30,7 +31,9 @@ std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
 Vec2 sphere_uv(Vec3 n) {
     const double u = 0.5 + std::atan2(static_cast<double>(n.x), -static_cast<double>(n.z)) / (2 * kPiDouble);
     // atan2 of both components is accurate at the poles, where acos(y) is not.
-    const double v = 0.5 + std::atan2(static_cast<double>(n.y), std::hypot(static_cast<double>(n.x), static_cast<double>(n.z))) / kPiDouble;
+    const double v =
+        0.5 + std::atan2(static_cast<double>(n.y), std::hypot(static_cast<double>(n.x), static_cast<double>(n.z))) /
+                  kPiDouble;
     return {min(static_cast<float>(u), kOneMinusEpsilon), static_cast<float>(v)};
 }
 

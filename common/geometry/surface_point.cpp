@@ -9,8 +9,8 @@ namespace duet {
 
 namespace {
 
-// The point of a shape in the space of its object. Positions are evaluated in double from the float vertices, so the one rounding to
-// float is all their error.
+// The point of a shape in the space of its object. Positions are evaluated in double from the float vertices, so the
+// one rounding to float is all their error.
 struct LocalPoint {
     Vec3d p;
     Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
@@ -58,7 +58,8 @@ LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, doub
     local.magnitude = abs(local.p);
     local.ng = local.ns = cross(ab, ac);
     if (!mesh.normals.empty())
-        local.ns = Vec3d(mesh.normals[index[0]]) * w + Vec3d(mesh.normals[index[1]]) * u + Vec3d(mesh.normals[index[2]]) * v;
+        local.ns =
+            Vec3d(mesh.normals[index[0]]) * w + Vec3d(mesh.normals[index[1]]) * u + Vec3d(mesh.normals[index[2]]) * v;
     if (mesh.uvs.empty()) {
         local.uv = {static_cast<float>(u), static_cast<float>(v)};
         local.dpdu = ab;
@@ -95,13 +96,16 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
     if (dot(w, point.ng) < 0) offset = -offset;
     Vec3 origin = point.p + offset;
     for (std::size_t axis = 0; axis < 3; ++axis) { // the sum's own rounding, away from the surface
-        if (offset[axis] > 0) origin[axis] = next_up(origin[axis]);
-        else if (offset[axis] < 0) origin[axis] = next_down(origin[axis]);
+        if (offset[axis] > 0)
+            origin[axis] = next_up(origin[axis]);
+        else if (offset[axis] < 0)
+            origin[axis] = next_down(origin[axis]);
     }
     return origin;
 }
 
-SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world, const Mat4& to_object, bool identity) {
+SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,
+                           const Mat4& to_object, bool identity) {
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
     LocalPoint local;
     if (const auto* mesh = std::get_if<Mesh>(&shape)) {
@@ -134,9 +138,10 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         const Mat4d m(to_world), inverse(to_object);
         const Vec3d p = transform_point(m, local.p);
         point.p = Vec3(p);
-        // A ray that leaves here is taken back into the object's space in float: its origin is off there by γ₄ |M⁻¹| |p|,
-        // and here by |M| times that. The stored inverse is itself rounded.
-        const Vec3d in_object = local.magnitude * kRounding + absolute_transform(to_object, abs(p), 1) * static_cast<double>(gamma_bound(5));
+        // A ray that leaves here is taken back into the object's space in float: its origin is off there by γ₄ |M⁻¹|
+        // |p|, and here by |M| times that. The stored inverse is itself rounded.
+        const Vec3d in_object = local.magnitude * kRounding +
+                                absolute_transform(to_object, abs(p), 1) * static_cast<double>(gamma_bound(5));
         point.p_error = Vec3(abs(p) * kRounding + absolute_transform(to_world, in_object, 0) +
                              absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
         point.ng = unit(transform_normal(inverse, local.ng));

@@ -20,8 +20,8 @@ ShearedRay::ShearedRay(const Ray& ray) : origin(ray.origin), t_min(ray.t_min), t
 
 namespace {
 
-// The bound on the error of the distance t = T / det, after Pharr, Jakob and Humphreys 2023, §6.8.7. A hit nearer than this could be the very
-// triangle the ray starts from.
+// The bound on the error of the distance t = T / det, after Pharr, Jakob and Humphreys 2023, §6.8.7. A hit nearer than
+// this could be the very triangle the ray starts from.
 float distance_error(const Vec3& at, const Vec3& bt, const Vec3& ct, float e0, float e1, float e2, float inv_det) {
     const float max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
     const float delta_z = gamma_bound(3) * max_z;

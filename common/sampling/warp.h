@@ -7,7 +7,8 @@
 
 namespace duet {
 
-/// The unit square to the unit disk, area-preserving and of low distortion; (½, ½) to the centre (Shirley and Chiu 1997).
+/// The unit square to the unit disk, area-preserving and of low distortion; (½, ½) to the centre (Shirley and Chiu
+/// 1997).
 template <Arithmetic T> Vec2T<T> concentric_disk(Vec2T<T> u) {
     const T a = T(2) * u.x - T(1), b = T(2) * u.y - T(1);
     if (a == T(0) && b == T(0)) return {};
