@@ -9,13 +9,14 @@ namespace duet {
 
 /// The unit disk, uniformly (density 1/π): squares around (½, ½) become circles, so strata stay compact. The centre
 /// maps to the centre (Shirley and Chiu 1997, «A Low Distortion Map Between Disk and Square»).
-inline Vec2 concentric_disk(Vec2 u) {
-    const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-    if (a == 0 && b == 0) return {};
+template <Arithmetic T> Vec2T<T> concentric_disk(Vec2T<T> u) {
+    const T a = T(2) * u.x - T(1), b = T(2) * u.y - T(1);
+    if (a == T(0) && b == T(0)) return {};
     const bool wide = std::abs(a) > std::abs(b);
-    const float r = wide ? a : b;
-    const float phi = wide ? (kPi / 4) * (b / a) : (kPi / 2) - (kPi / 4) * (a / b);
-    return {r * std::cos(phi), r * std::sin(phi)};
+    const T quarter = static_cast<T>(kPiDouble / 4);
+    const T r = wide ? a : b;
+    const T angle = wide ? quarter * (b / a) : 2 * quarter - quarter * (a / b);
+    return {r * std::cos(angle), r * std::sin(angle)};
 }
 
 /// Unit directions about +z with density cos θ / π (Malley's method). z > 0 always: the rim of the disk is moved
