@@ -1,1 +1,34 @@
-int main() { return 1; }
+// raster SCENE -o OUT: renders a scene by projecting its primitives onto the pixels.
+#include "common/program/render_program.h"
+#include "raster/render.h"
+
+#include <CLI/CLI.hpp>
+
+int main(int argc, char** argv) {
+    using namespace duet;
+    std::string shading_name = "lit";
+    bool no_environment = false, no_culling = false;
+    RenderProgram program;
+    program.name = "raster";
+    program.description = "Renders a scene with the software rasterizer.";
+    program.example = "raster models/demo.json -o demo.png --size 1280x720 --spp 4";
+    program.spp_help = "Coverage samples a pixel (default 1: its centre)";
+    program.add_options = [&](CLI::App& app) {
+        app.add_option("--shading", shading_name, "lit (default: materials and lights), normal, albedo or depth");
+        app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
+        app.add_flag("--no-culling", no_culling,
+                     "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
+    };
+    program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
+        raster::Settings settings;
+        static_cast<RenderSettings&>(settings) = common;
+        settings.samples_per_pixel = spp.value_or(1);
+        settings.shading = raster::shading(shading_name);
+        settings.environment = !no_environment;
+        settings.cull = !no_culling;
+        return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
+            return raster::render(prepared, view, settings, control);
+        };
+    };
+    return run_render_program(program, argc, argv);
+}

@@ -4,7 +4,7 @@
 # usage: includes.sh SOURCE_DIR
 set -eu
 cd "$1"
-floors='vec image sampling geometry camera texture material light scene film program'
+floors="vec image sampling geometry camera texture material light scene film program"
 grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |
     awk -F: -v floors="$floors" '
     BEGIN { n = split(floors, names, " "); for (i = 1; i <= n; ++i) floor[names[i]] = i }

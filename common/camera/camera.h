@@ -12,11 +12,11 @@ struct Camera {
 
     Projection projection = Projection::kPerspective;
     Vec3d eye{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
-    double fov_degrees = 40;      ///< vertical field of view (perspective), in (0, 180)
-    double height = 2;            ///< vertical extent of the picture in metres (orthographic)
-    double near = 0;              ///< distance of the near plane; 0: 1e-6 × |look_at − eye|
-    double aperture_radius = 0;   ///< of the thin lens, metres; 0: a pinhole. Perspective only
-    double focus_distance = 0;    ///< of the plane in focus, along −z; 0: |look_at − eye|
+    double fov_degrees = 40;                    ///< vertical field of view (perspective), in (0, 180)
+    double height = 2;                          ///< vertical extent of the picture in metres (orthographic)
+    double near = 0;                            ///< distance of the near plane; 0: 1e-6 × |look_at − eye|
+    double aperture_radius = 0;                 ///< of the thin lens, metres; 0: a pinhole. Perspective only
+    double focus_distance = 0;                  ///< of the plane in focus, along −z; 0: |look_at − eye|
     double shutter_open = 0, shutter_close = 1; ///< as fractions of the objects' motion
 
     double near_distance() const { return near > 0 ? near : 1e-6 * length(look_at - eye); }
@@ -31,7 +31,8 @@ struct View {
 /// A view through one point of the lens: rays are affine in the pixel, points project by a 4 × 4 matrix. Pixel (x, y)
 /// is measured from the upper left corner; the centre of the first pixel is (0.5, 0.5).
 struct Pinhole {
-    Vec3d origin, origin_dx, origin_dy;          ///< origin(x, y) = origin + x·origin_dx + y·origin_dy (orthographic; dx = dy = 0 else)
+    Vec3d origin, origin_dx,
+        origin_dy; ///< origin(x, y) = origin + x·origin_dx + y·origin_dy (orthographic; dx = dy = 0 else)
     Vec3d direction, direction_dx, direction_dy; ///< likewise; its camera-space −z is 1, so depth = t of this direction
     Vec3d forward;                               ///< unit vector of the camera's −z
     Mat4d world_to_pixel; ///< (x·w, y·w, depth, w) of a world point; w = depth (perspective) or 1 (orthographic)
@@ -57,6 +58,8 @@ public:
     bool has_lens() const { return aperture_radius_ > 0; }
 
 private:
+    Vec3d lens_offset(Vec2d lens_sample) const;
+
     Pinhole center_;
     Vec3d right_, up_;
     double aperture_radius_, focus_distance_;

@@ -9,8 +9,8 @@
 namespace duet {
 
 /// Each pixel keeps its samples' sums by replicate (see Sampler): the two are scrambled independently, so
-/// half the difference of their means, squared, estimates the variance of the pixel's mean without bias, whatever the sampler.
-/// 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
+/// half the difference of their means, squared, estimates the variance of the pixel's mean without bias, whatever the
+/// sampler. 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
 class Film {
 public:
     static constexpr std::size_t kReplicates = 2;

@@ -34,13 +34,13 @@ struct Skipped {
 /// What a rendering cost and what it did.
 struct RenderStatistics {
     std::vector<std::pair<std::string, double>> seconds; ///< by stage, in order ("transform", "cover", "shade" …)
-    int samples_per_pixel = 0; ///< as rendered; where interrupted, of the finished passes
+    int samples_per_pixel = 0;                           ///< as rendered; where interrupted, of the finished passes
     int passes = 0;
     std::int64_t camera_rays = 0, indirect_rays = 0, shadow_rays = 0;
-    std::int64_t triangles = 0; ///< triangles, quads and spheres of the flattened scene
-    std::int64_t memory_bytes = 0; ///< of what `prepare` built and the render kept
+    std::int64_t triangles = 0;       ///< triangles, quads and spheres of the flattened scene
+    std::int64_t memory_bytes = 0;    ///< of what `prepare` built and the render kept
     std::int64_t invalid_samples = 0; ///< NaN, infinite or negative: dropped from the film, and reported
-    double estimated_relmse = -1; ///< mean over pixels of variance / (mean² + 0.01); −1: not estimated
+    double estimated_relmse = -1;     ///< mean over pixels of variance / (mean² + 0.01); −1: not estimated
     std::vector<Skipped> skipped;
     std::vector<std::string> approximations; ///< what is not the path tracer's truth, each named in a sentence
     bool interrupted = false;
@@ -48,10 +48,11 @@ struct RenderStatistics {
 
 struct Rendering {
     ImageRgb radiance; ///< linear
-    // Auxiliary pictures, empty unless asked for. Depth, normal and albedo are means over the samples that hit; hit is of sample 0.
-    ImageFloat depth;             ///< camera-space −z in metres; infinity where nothing is seen
-    Image<Vec3> normal;           ///< shading normal in the world, facing the camera; (0, 0, 0) where nothing is seen
-    ImageRgb albedo;              ///< base colour; black where nothing is seen
+    // Auxiliary pictures, empty unless asked for. Depth, normal and albedo are means over the samples that hit; hit is
+    // of sample 0.
+    ImageFloat depth;   ///< camera-space −z in metres; infinity where nothing is seen
+    Image<Vec3> normal; ///< shading normal in the world, facing the camera; (0, 0, 0) where nothing is seen
+    ImageRgb albedo;    ///< base colour; black where nothing is seen
     Image<Hit> hit;
     ImageRgb variance;            ///< of the pixel's mean; of replicates (see Film)
     Image<std::uint32_t> samples; ///< number of samples taken

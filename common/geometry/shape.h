@@ -22,6 +22,11 @@ struct Quad {
     Vec3 corner, u, v;
 };
 
+/// corner, corner + u, corner + u + v, corner + v: the floats that both pipelines draw and intersect.
+inline std::array<Vec3, 4> corners(const Quad& q) {
+    return {q.corner, q.corner + q.u, (q.corner + q.u) + q.v, q.corner + q.v};
+}
+
 struct QuadList {
     std::vector<Quad> quads;
 };

@@ -8,13 +8,13 @@
 namespace duet {
 
 struct SurfacePoint {
-    Vec3 p;            ///< in the world
-    Vec3 p_error;      ///< bound on the absolute error of p, per axis
-    Vec3 ng;           ///< geometric normal, unit: the front side (counter-clockwise, outwards), whichever side is seen
-    Vec3 ns;           ///< shading normal, unit, in the hemisphere of ng
-    Vec2 uv;           ///< texture coordinates
-    Vec3 dpdu, dpdv;   ///< change of p with uv; (0,0,0) where uv are degenerate
-    Vec3 p_object;     ///< p in the object's space: where solid textures are looked up
+    Vec3 p;          ///< in the world
+    Vec3 p_error;    ///< bound on the absolute error of p, per axis
+    Vec3 ng;         ///< geometric normal, unit: the front side (counter-clockwise, outwards), whichever side is seen
+    Vec3 ns;         ///< shading normal, unit, in the hemisphere of ng
+    Vec2 uv;         ///< texture coordinates
+    Vec3 dpdu, dpdv; ///< change of p with uv; (0,0,0) where uv are degenerate
+    Vec3 p_object;   ///< p in the object's space: where solid textures are looked up
     std::uint32_t object = kNoObject, primitive = 0;
     std::uint32_t material = 0; ///< index into Scene::materials
     float time = 0;
@@ -26,6 +26,7 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w);
 
 /// The surface point of a hit of `ray` on a shape under to_world (to_object its inverse; ray in the world). Fills all
 /// fields but object and material; `identity` promises that to_world is the identity, and saves the arithmetic.
-SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world, const Mat4& to_object, bool identity);
+SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,
+                           const Mat4& to_object, bool identity);
 
 } // namespace duet

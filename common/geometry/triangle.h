@@ -24,8 +24,8 @@ struct ShearedRay {
     explicit ShearedRay(const Ray& ray);
 };
 
-/// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides are
-/// hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.
+/// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides
+/// are hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.
 std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c);
 
 } // namespace duet

@@ -12,8 +12,8 @@
 
 namespace duet {
 
-/// What flows along the path that is built from wo: radiance to the camera, or importance to a light. Refraction scales radiance
-/// by η² and leaves importance alone (Veach 1997, §5.2).
+/// What flows along the path that is built from wo: radiance to the camera, or importance to a light. Refraction scales
+/// radiance by η² and leaves importance alone (Veach 1997, §5.2).
 enum class TransportMode { kRadiance, kImportance };
 
 struct BsdfSample {

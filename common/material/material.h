@@ -18,7 +18,8 @@ Bsdf bsdf_at(const Material& material, const TextureSet& textures, const Surface
 inline Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.eval(wo, wi, mode); }, bsdf);
 }
-inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, Vec2 u, TransportMode mode = TransportMode::kRadiance) {
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, Vec2 u,
+                                        TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.sample(wo, lobe, u, mode); }, bsdf);
 }
 inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {

@@ -6,8 +6,9 @@
 
 namespace duet {
 
-/// GGX microfacets with Smith's height-correlated masking, visible normals sampled (Walter et al. 2007; Heitz 2014, 2018), and
-/// Schlick's Fresnel term from the reflectance at normal incidence. At roughness below kSmooth: a perfect mirror.
+/// GGX microfacets with Smith's height-correlated masking, visible normals sampled (Walter et al. 2007; Heitz 2014,
+/// 2018), and Schlick's Fresnel term from the reflectance at normal incidence. At roughness below kSmooth: a perfect
+/// mirror.
 struct MetalBsdf {
     static constexpr float kSmoothAlpha = 1e-4f;
 

@@ -20,8 +20,8 @@ SamplerKind sampler_kind(std::string_view name);
 std::string_view sampler_name(SamplerKind kind);
 
 /// The numbers of one sample of one pixel, drawn in order of dimension. Samples of one pixel fall into two
-/// replicates, scrambled independently of each other: sample i is point i/2 of replicate i mod 2. Their spread is what the film
-/// estimates its variance from.
+/// replicates, scrambled independently of each other: sample i is point i/2 of replicate i mod 2. Their spread is what
+/// the film estimates its variance from.
 class Sampler {
 public:
     /// samples_per_pixel: how many samples the pixel will get (stratified needs it; others ignore it).

@@ -9,10 +9,8 @@ namespace duet {
 
 /// Row-major storage: m[row][column]. Points are columns: p' = M p.
 template <typename T> struct Mat4T {
-    std::array<std::array<T, 4>, 4> m{{{T(1), T(0), T(0), T(0)},
-                                       {T(0), T(1), T(0), T(0)},
-                                       {T(0), T(0), T(1), T(0)},
-                                       {T(0), T(0), T(0), T(1)}}};
+    std::array<std::array<T, 4>, 4> m{
+        {{T(1), T(0), T(0), T(0)}, {T(0), T(1), T(0), T(0)}, {T(0), T(0), T(1), T(0)}, {T(0), T(0), T(0), T(1)}}};
 
     constexpr Mat4T() = default;
     template <typename U> constexpr explicit Mat4T(const Mat4T<U>& other) {

@@ -12,7 +12,8 @@ template <typename T> struct Vec2T {
 
     constexpr Vec2T() = default;
     constexpr Vec2T(T x_, T y_) : x(x_), y(y_) {}
-    template <typename U> constexpr explicit Vec2T(const Vec2T<U>& v) : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)) {}
+    template <typename U>
+    constexpr explicit Vec2T(const Vec2T<U>& v) : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)) {}
     friend constexpr bool operator==(const Vec2T&, const Vec2T&) = default;
 };
 

@@ -1,0 +1,74 @@
+#include "common/film/film.h"
+
+namespace duet {
+
+Film::Film(int width, int height) : pixels_(width, height) {}
+
+bool Film::add(int x, int y, std::size_t replicate, Rgb sample) {
+    Pixel& pixel = pixels_(x, y);
+    if (!is_finite(sample) || sample.r < 0 || sample.g < 0 || sample.b < 0) {
+        ++pixel.invalid;
+        return false;
+    }
+    pixel.sum[replicate] += Rgbd(sample);
+    ++pixel.count[replicate];
+    return true;
+}
+
+Rgbd Film::mean(int x, int y) const {
+    const Pixel& pixel = pixels_(x, y);
+    const double n = static_cast<double>(pixel.count[0]) + static_cast<double>(pixel.count[1]);
+    return n > 0 ? (pixel.sum[0] + pixel.sum[1]) / n : Rgbd();
+}
+
+// With n₀ and n₁ samples of variance s in the replicates, E (m₀ − m₁)² = s (1/n₀ + 1/n₁), and the mean of all has the
+// variance s / (n₀ + n₁): the factor between them is n₀ n₁ / (n₀ + n₁)², one quarter for equal halves.
+Rgbd Film::variance(int x, int y) const {
+    const Pixel& pixel = pixels_(x, y);
+    if (pixel.count[0] == 0 || pixel.count[1] == 0) return Rgbd(std::numeric_limits<double>::infinity());
+    const double n0 = pixel.count[0], n1 = pixel.count[1];
+    const Rgbd difference = pixel.sum[0] / n0 - pixel.sum[1] / n1;
+    return difference * difference * (n0 * n1 / sqr(n0 + n1));
+}
+
+std::uint32_t Film::samples(int x, int y) const { return pixels_(x, y).count[0] + pixels_(x, y).count[1]; }
+
+ImageRgb Film::image() const {
+    ImageRgb image(width(), height());
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) image(x, y) = Rgb(mean(x, y));
+    return image;
+}
+
+ImageRgb Film::variance_image() const {
+    ImageRgb image(width(), height());
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) image(x, y) = Rgb(variance(x, y));
+    return image;
+}
+
+Image<std::uint32_t> Film::samples_image() const {
+    Image<std::uint32_t> image(width(), height());
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) image(x, y) = samples(x, y);
+    return image;
+}
+
+std::int64_t Film::invalid_samples() const {
+    std::int64_t count = 0;
+    for (const Pixel& pixel : pixels_) count += pixel.invalid;
+    return count;
+}
+
+double Film::estimated_relmse() const {
+    double sum = 0;
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) {
+            const Rgbd m = mean(x, y), v = variance(x, y);
+            if (!is_finite(v)) return -1;
+            for (std::size_t channel = 0; channel < 3; ++channel) sum += v[channel] / (sqr(m[channel]) + 0.01);
+        }
+    return sum / (3.0 * static_cast<double>(pixels_.size()));
+}
+
+} // namespace duet

@@ -1,0 +1,101 @@
+#include "common/geometry/shape.h"
+
+#include "common/vec/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace duet {
+
+std::uint32_t primitive_count(const Shape& shape) {
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) return static_cast<std::uint32_t>(mesh->triangles.size());
+    if (const auto* list = std::get_if<QuadList>(&shape)) return static_cast<std::uint32_t>(list->quads.size());
+    return 1;
+}
+
+namespace {
+
+// An ellipsoid's extent along an axis is r times the length of the matrix's row (Sigg et al. 2006, eq. 4, in affine
+// form).
+Box3d sphere_bounds(const Sphere& sphere, const Mat4d& m) {
+    const Vec3d center = transform_point(m, Vec3d(sphere.center));
+    Vec3d extent;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        extent[axis] = static_cast<double>(sphere.radius) * length(Vec3d(m[axis][0], m[axis][1], m[axis][2]));
+    return {center - extent, center + extent};
+}
+
+// Rounded outwards to float, with room for the rounding of a point that was transformed in float.
+Box3 rounded_outwards(const Box3d& box) {
+    Box3 result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double magnitude = std::max(std::abs(box.low[axis]), std::abs(box.high[axis]));
+        const double room = magnitude * static_cast<double>(gamma_bound(4));
+        result.low[axis] = next_down(static_cast<float>(box.low[axis] - room));
+        result.high[axis] = next_up(static_cast<float>(box.high[axis] + room));
+    }
+    return result;
+}
+
+} // namespace
+
+Box3 bounds(const Shape& shape, const Mat4& transform) {
+    const Mat4d m(transform);
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return rounded_outwards(sphere_bounds(*sphere, m));
+    Box3d box;
+    const auto extend = [&](Vec3 p) { box.extend(transform_point(m, Vec3d(p))); };
+    if (const auto* mesh = std::get_if<Mesh>(&shape))
+        std::for_each(mesh->positions.begin(), mesh->positions.end(), extend);
+    else
+        for (const Quad& quad : std::get<QuadList>(shape).quads)
+            for (const Vec3& p : corners(quad)) extend(p);
+    return rounded_outwards(box);
+}
+
+QuadList box_quads(Vec3 low, Vec3 high) {
+    const Vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
+    return {{
+        {low, z, y},                    // −x
+        {{high.x, low.y, low.z}, y, z}, // +x
+        {low, x, z},                    // −y
+        {{low.x, high.y, low.z}, z, x}, // +y
+        {low, y, x},                    // −z
+        {{low.x, low.y, high.z}, x, y}, // +z
+    }};
+}
+
+bool is_closed_outwards(const Mesh& mesh) {
+    if (mesh.triangles.empty()) return false;
+    // Vertices at the same position are one: seams of texture or normals do not open a mesh.
+    std::vector<std::uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto key = [&](std::uint32_t i) {
+        return std::array{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z};
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];
+
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges, reversed;
+    edges.reserve(mesh.triangles.size() * 3);
+    double volume = 0; // six times the enclosed volume, by the divergence theorem, about a vertex of the mesh
+    const Vec3d origin(mesh.positions[mesh.triangles[0][0]]);
+    for (const auto& t : mesh.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t from = merged[t[i]], to = merged[t[(i + 1) % 3]];
+            if (from != to) edges.emplace_back(from, to);
+        }
+        const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
+        volume += dot(corner(0), cross(corner(1), corner(2)));
+    }
+    if (!(volume > 0)) return false;
+    std::sort(edges.begin(), edges.end());
+    if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+    reversed.reserve(edges.size());
+    for (const auto& [from, to] : edges) reversed.emplace_back(to, from);
+    std::sort(reversed.begin(), reversed.end());
+    return edges == reversed;
+}
+
+} // namespace duet

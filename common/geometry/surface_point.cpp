@@ -1,0 +1,157 @@
+#include "common/geometry/surface_point.h"
+
+#include "common/geometry/sphere.h"
+#include "common/vec/robust.h"
+
+#include <cmath>
+
+namespace duet {
+
+namespace {
+
+// The point of a shape in the space of its object. Positions are evaluated in double from the float vertices, so the
+// one rounding to float is all their error.
+struct LocalPoint {
+    Vec3d p;
+    Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
+    Vec3d ng;        // any length
+    Vec3d ns;        // any length, or (0, 0, 0): ng
+    Vec2 uv;
+    Vec3d dpdu, dpdv;
+};
+
+LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t) {
+    const Vec3d center(sphere.center);
+    const Vec3d n = normalize(ray.at(t) - center); // back onto the sphere: the error of t drops out along n
+    LocalPoint local;
+    local.p = center + n * static_cast<double>(sphere.radius);
+    local.magnitude = abs(local.p);
+    local.ng = local.ns = n;
+    local.uv = sphere_uv(Vec3(n));
+    const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
+    if (ring > 0) { // at the poles u has no direction
+        local.dpdu = Vec3d(-n.z, 0, n.x) * (2 * kPiDouble * r);
+        local.dpdv = Vec3d(-n.y * n.x / ring, ring, -n.y * n.z / ring) * (kPiDouble * r);
+    }
+    return local;
+}
+
+LocalPoint on_quad(const Quad& quad, double u, double v) {
+    const Vec3d corner(quad.corner), du(quad.u), dv(quad.v);
+    LocalPoint local;
+    local.p = corner + du * u + dv * v;
+    local.magnitude = abs(corner) + abs(du) + abs(dv); // its far corners are rounded sums of these
+    local.ng = local.ns = cross(du, dv);
+    local.uv = {static_cast<float>(u), static_cast<float>(v)};
+    local.dpdu = du;
+    local.dpdv = dv;
+    return local;
+}
+
+LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v) {
+    const auto& index = mesh.triangles[primitive];
+    const double w = 1 - u - v;
+    const Vec3d a(mesh.positions[index[0]]), b(mesh.positions[index[1]]), c(mesh.positions[index[2]]);
+    const Vec3d ab = b - a, ac = c - a;
+    LocalPoint local;
+    local.p = a + ab * u + ac * v;
+    local.magnitude = abs(local.p);
+    local.ng = local.ns = cross(ab, ac);
+    if (!mesh.normals.empty())
+        local.ns =
+            Vec3d(mesh.normals[index[0]]) * w + Vec3d(mesh.normals[index[1]]) * u + Vec3d(mesh.normals[index[2]]) * v;
+    if (mesh.uvs.empty()) {
+        local.uv = {static_cast<float>(u), static_cast<float>(v)};
+        local.dpdu = ab;
+        local.dpdv = ac;
+        return local;
+    }
+    const Vec2d ta(mesh.uvs[index[0]]), tb(mesh.uvs[index[1]]), tc(mesh.uvs[index[2]]);
+    local.uv = Vec2(ta * w + tb * u + tc * v);
+    const Vec2d tab = tb - ta, tac = tc - ta;
+    const double det = difference_of_products(tab.x, tac.y, tab.y, tac.x);
+    if (det != 0) {
+        local.dpdu = (ab * tac.y - ac * tab.y) / det;
+        local.dpdv = (ac * tab.x - ab * tac.x) / det;
+    }
+    return local;
+}
+
+Vec3 unit(Vec3d v) { return Vec3(normalize(v)); }
+
+// |M| |v|: bounds the magnitude of the terms of M v (with the translation for a point).
+Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
+    const auto row = [&](std::size_t r) {
+        const auto entry = [&](std::size_t c) { return std::abs(static_cast<double>(m[r][c])); };
+        return entry(0) * v.x + entry(1) * v.y + entry(2) * v.z + entry(3) * w;
+    };
+    return {row(0), row(1), row(2)};
+}
+
+} // namespace
+
+Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
+    const float distance = dot(abs(point.ng), point.p_error);
+    Vec3 offset = point.ng * distance;
+    if (dot(w, point.ng) < 0) offset = -offset;
+    Vec3 origin = point.p + offset;
+    for (std::size_t axis = 0; axis < 3; ++axis) { // the sum's own rounding, away from the surface
+        if (offset[axis] > 0)
+            origin[axis] = next_up(origin[axis]);
+        else if (offset[axis] < 0)
+            origin[axis] = next_down(origin[axis]);
+    }
+    return origin;
+}
+
+SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,
+                           const Mat4& to_object, bool identity) {
+    const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+    LocalPoint local;
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+        local = on_triangle(*mesh, hit.primitive, u, v);
+    } else if (const auto* list = std::get_if<QuadList>(&shape)) {
+        local = on_quad(list->quads[hit.primitive], u, v);
+    } else {
+        Rayd exact{Vec3d(ray.origin), Vec3d(ray.direction)};
+        if (!identity) {
+            const Mat4d m(to_object);
+            exact = {transform_point(m, exact.origin), transform_vector(m, exact.direction)};
+        }
+        local = on_sphere(std::get<Sphere>(shape), exact, static_cast<double>(hit.t));
+    }
+
+    SurfacePoint point;
+    point.primitive = hit.primitive;
+    point.time = ray.time;
+    point.uv = local.uv;
+    point.p_object = Vec3(local.p);
+    constexpr double kRounding = 2 * static_cast<double>(kRoundoff<float>); // twice the bound of one rounding
+    if (identity) {
+        point.p = point.p_object;
+        point.p_error = Vec3(local.magnitude * kRounding);
+        point.ng = unit(local.ng);
+        point.ns = unit(local.ns);
+        point.dpdu = Vec3(local.dpdu);
+        point.dpdv = Vec3(local.dpdv);
+    } else {
+        const Mat4d m(to_world), inverse(to_object);
+        const Vec3d p = transform_point(m, local.p);
+        point.p = Vec3(p);
+        // A ray that leaves here is taken back into the object's space in float: its origin is off there by γ₄ |M⁻¹|
+        // |p|, and here by |M| times that. The stored inverse is itself rounded.
+        const Vec3d in_object = local.magnitude * kRounding +
+                                absolute_transform(to_object, abs(p), 1) * static_cast<double>(gamma_bound(5));
+        point.p_error = Vec3(abs(p) * kRounding + absolute_transform(to_world, in_object, 0) +
+                             absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
+        point.ng = unit(transform_normal(inverse, local.ng));
+        point.ns = unit(transform_normal(inverse, local.ns));
+        point.dpdu = Vec3(transform_vector(m, local.dpdu));
+        point.dpdv = Vec3(transform_vector(m, local.dpdv));
+    }
+    if (!is_finite(point.ns)) point.ns = point.ng;
+    if (dot(point.ns, point.ng) < 0) point.ns = -point.ns;
+    return point;
+}
+
+} // namespace duet

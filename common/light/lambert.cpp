@@ -1,0 +1,166 @@
+#include "common/light/lambert.h"
+
+#include "common/system/error.h"
+#include "common/vec/robust.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace duet {
+
+namespace {
+
+constexpr std::size_t kMaxVertices = 8;
+/// Extent over distance below which a polygon is taken as a point: there Lambert's sum, whose terms of this size cancel
+/// down to its square, and the far field are both right to about ten digits.
+constexpr double kFar = 1e-5;
+
+Vec3d precise_cross(Vec3d a, Vec3d b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+/// A polygon seen from p: its vertices relative to p. Clipping by one plane adds at most one vertex to a convex
+/// polygon.
+struct Polygon {
+    std::array<Vec3d, kMaxVertices + 1> v;
+    std::size_t count = 0;
+
+    void add(Vec3d vertex) {
+        if (count < v.size()) v[count++] = vertex;
+    }
+    Vec3d next(std::size_t i) const { return v[i + 1 < count ? i + 1 : 0]; }
+};
+
+/// The part above the horizon n·v = 0 (Sutherland and Hodgman 1974, one plane).
+Polygon above_horizon(const Polygon& polygon, Vec3d n) {
+    Polygon clipped;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Vec3d a = polygon.v[i], b = polygon.next(i);
+        const double za = dot(n, a), zb = dot(n, b);
+        if (za >= 0) clipped.add(a);
+        if ((za > 0 && zb < 0) || (za < 0 && zb > 0)) {
+            // From the end above to the end below, so that two polygons that share the edge cut it at the same point.
+            const Vec3d top = za > 0 ? a : b, bottom = za > 0 ? b : a;
+            const double t = max(za, zb) / std::abs(za - zb);
+            const Vec3d cut = top + (bottom - top) * t;
+            clipped.add(cut - n * dot(n, cut));
+        }
+    }
+    return clipped;
+}
+
+/// The angle a subtended edge spans, times the cosine between n and the edge's normal: Lambert's term.
+double edge_term(Vec3d a, Vec3d b, Vec3d n) {
+    const Vec3d c = precise_cross(a, b);
+    const double sine = length(c);
+    if (!(sine > 0)) return 0; // an edge of no extent, or one that passes through p
+    return std::atan2(sine, dot(a, b)) * dot(c, n) / sine;
+}
+
+/// Vector area of a polygon and its centroid, weighted by area (relative to p).
+struct FarField {
+    Vec3d area, centroid;
+};
+FarField far_field(const Polygon& polygon) {
+    const Vec3d origin = polygon.v[0];
+    Vec3d area, moment;
+    for (std::size_t i = 1; i + 1 < polygon.count; ++i) {
+        const Vec3d a = polygon.v[i] - origin, b = polygon.v[i + 1] - origin;
+        const Vec3d part = cross(a, b) * 0.5;
+        area += part;
+        moment += (a + b) * (length(part) / 3);
+    }
+    const double total = length(area);
+    return {area, total > 0 ? origin + moment / total : origin};
+}
+
+double extent_over_distance(const Polygon& polygon) {
+    double extent2 = 0, nearest2 = length_squared(polygon.v[0]);
+    for (std::size_t i = 1; i < polygon.count; ++i) {
+        extent2 = max(extent2, length_squared(polygon.v[i] - polygon.v[0]));
+        nearest2 = min(nearest2, length_squared(polygon.v[i]));
+    }
+    return nearest2 > 0 ? std::sqrt(extent2 / nearest2) : std::numeric_limits<double>::infinity();
+}
+
+double unit(double x) { return std::clamp(x, -1.0, 1.0); }
+
+/// A sphere that dips below the horizon, seen under the half angle whose sine and cosine are given, its centre at
+/// cosine `c` to the normal, |c| < sine.
+double clipped_sphere(double sine, double cosine, double c) {
+    const double s = std::sqrt((1 - c) * (1 + c));
+    if (sine <
+        1e-4) { // the sum below would cancel: a disk in the tangent plane, k its centre's height in its own radii
+        const double k = unit(c / sine), root = std::sqrt((1 - k) * (1 + k));
+        return sine * sine * sine * (k * (std::acos(-k) + k * root) + 2.0 / 3.0 * root * root * root);
+    }
+    const double cot = cosine / sine, y = unit(-cot * c / s);
+    const double half_chord = s * std::sqrt((1 - y) * (1 + y));
+    return max((c * std::acos(y) - cot * half_chord) * sine * sine + std::atan2(half_chord, cot), 0.0);
+}
+
+double polygon_factor(const Polygon& polygon, Vec3d n) {
+    if (polygon.count < 3) return 0;
+    const Vec3d area = far_field(polygon).area;
+    // In the polygon's own plane its solid angle is zero, or jumps from none to the hemisphere: none is right for both.
+    if (std::abs(dot(area, polygon.v[0])) <= 1e-14 * length(area) * length(polygon.v[0])) return 0;
+
+    const Polygon seen = above_horizon(polygon, n);
+    if (seen.count < 3) return 0;
+    if (extent_over_distance(seen) < kFar) {
+        const FarField far = far_field(seen);
+        const double d2 = length_squared(far.centroid);
+        return std::abs(dot(far.area, far.centroid)) * max(dot(n, far.centroid), 0.0) / (d2 * d2);
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < seen.count; ++i) sum += edge_term(seen.v[i], seen.next(i), n);
+    return min(std::abs(sum) / 2, kPiDouble);
+}
+
+double sphere_factor(Vec3d to_center, double radius, Vec3d n) {
+    const double d2 = length_squared(to_center), r2 = radius * radius;
+    if (!(r2 > 0)) return 0;
+    if (d2 <= r2) return kPiDouble;
+    const double d = std::sqrt(d2), sine = radius / d, cosine = std::sqrt((d2 - r2) / d2);
+    const double c = unit(dot(n, to_center) / d);
+    if (c >= sine) return kPiDouble * sine * sine * c;
+    return c > -sine ? clipped_sphere(sine, cosine, c) : 0.0;
+}
+
+// Irradiance per unit of radiance from each shape at p.
+double factor(const SurfaceLight::Triangle& t, Vec3d p, Vec3d n) {
+    Polygon polygon;
+    for (const Vec3 vertex : {t.a, t.b, t.c}) polygon.add(Vec3d(vertex) - p);
+    return polygon_factor(polygon, n);
+}
+double factor(const Quad& q, Vec3d p, Vec3d n) {
+    const Vec3d corner = Vec3d(q.corner) - p, u(q.u), v(q.v);
+    Polygon polygon;
+    for (const Vec3d vertex : {corner, corner + u, corner + u + v, corner + v}) polygon.add(vertex);
+    return polygon_factor(polygon, n);
+}
+double factor(const Sphere& s, Vec3d p, Vec3d n) {
+    return sphere_factor(Vec3d(s.center) - p, static_cast<double>(s.radius), n);
+}
+
+} // namespace
+
+double polygon_form_factor_times_pi(Vec3 p, Vec3 n, std::span<const Vec3> polygon) {
+    DUET_CHECK_LE(polygon.size(), kMaxVertices);
+    Polygon relative;
+    for (const Vec3 vertex : polygon) relative.add(Vec3d(vertex) - Vec3d(p));
+    return polygon_factor(relative, Vec3d(n));
+}
+
+double sphere_form_factor_times_pi(Vec3 p, Vec3 n, const Sphere& sphere) { return factor(sphere, Vec3d(p), Vec3d(n)); }
+
+Rgb surface_light_irradiance(const SurfaceLight& light, Vec3 p, Vec3 n) {
+    if (!emits_towards(light, p)) return {};
+    const double f = std::visit([&](const auto& shape) { return factor(shape, Vec3d(p), Vec3d(n)); }, light.shape);
+    return light.radiance * static_cast<float>(f);
+}
+
+} // namespace duet

@@ -1,0 +1,121 @@
+#include "common/light/light.h"
+
+#include "common/light/solid_angle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet {
+
+namespace {
+
+using Triangle = SurfaceLight::Triangle;
+
+/// Light from a single position: intensity over squared distance, in double so that neither scale overflows.
+std::optional<LightSample> from_position(Vec3 position, Rgb intensity, Vec3 p) {
+    const Vec3d to_light = Vec3d(position) - Vec3d(p);
+    const double d2 = length_squared(to_light);
+    if (!(d2 > 0)) return std::nullopt;
+    const double d = std::sqrt(d2);
+    const Rgb arriving(Rgbd(intensity) / d2);
+    if (!is_finite(arriving)) return std::nullopt;
+    return LightSample{Vec3(to_light / d), static_cast<float>(d), arriving, 1, true};
+}
+
+/// Part of the axis's intensity at an angle of this cosine to it.
+float spot_falloff(const SpotLight& light, float cosine) {
+    if (cosine >= light.cos_inner) return 1;
+    if (cosine <= light.cos_outer) return 0;
+    const float s = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    return s * s * (3 - 2 * s);
+}
+
+std::optional<LightSample> draw(const PointLight& light, Vec3 p, Vec2) {
+    return from_position(light.position, light.intensity, p);
+}
+
+std::optional<LightSample> draw(const SpotLight& light, Vec3 p, Vec2) {
+    std::optional<LightSample> s = from_position(light.position, light.intensity, p);
+    if (!s) return std::nullopt;
+    const float falloff = spot_falloff(light, -dot(s->wi, light.direction));
+    if (!(falloff > 0)) return std::nullopt;
+    s->radiance *= falloff;
+    return s;
+}
+
+std::optional<LightSample> draw(const SunLight& light, Vec3, Vec2) {
+    return LightSample{-light.direction, kInfinity, light.irradiance, 1, true};
+}
+
+/// The density as a float where it can be used: finite and positive; else 0.
+float usable(double pdf) {
+    const float value = static_cast<float>(std::min(pdf, 1e38));
+    return pdf > 0 && pdf < 1e38 ? value : 0.0f;
+}
+
+std::optional<LightSample> draw(const SurfaceLight& light, Vec3 p, Vec2 u) {
+    if (!emits_towards(light, p)) return std::nullopt;
+    const auto s =
+        std::visit([&](const auto& shape) { return sample_solid_angle(shape, Vec3d(p), Vec2d(u)); }, light.shape);
+    if (!s || usable(s->pdf) == 0) return std::nullopt;
+    return LightSample{Vec3(s->wi), static_cast<float>(s->distance), light.radiance, usable(s->pdf), false};
+}
+
+double area(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a))); }
+double area(const Quad& q) { return length(cross(Vec3d(q.u), Vec3d(q.v))); }
+double area(const Sphere& s) { return 4 * kPiDouble * sqr(static_cast<double>(s.radius)); }
+
+/// Flux per unit of radiance, intensity or irradiance, and that unit.
+struct Flux {
+    double factor;
+    Rgb quantity;
+};
+Flux flux(const PointLight& light, double) { return {4 * kPiDouble, light.intensity}; }
+Flux flux(const SpotLight& light, double) {
+    // The falloff is antisymmetric about the middle of its range of cosines, so its mean there is ½.
+    const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
+    return {2 * kPiDouble * ((1 - inner) + (inner - outer) / 2), light.intensity};
+}
+Flux flux(const SunLight& light, double scene_radius) { return {kPiDouble * sqr(scene_radius), light.irradiance}; }
+Flux flux(const SurfaceLight& light, double) {
+    const double a = std::visit([](const auto& shape) { return area(shape); }, light.shape);
+    return {kPiDouble * a * (light.two_sided ? 2 : 1), light.radiance};
+}
+
+} // namespace
+
+bool emits_towards(const SurfaceLight& light, Vec3 p) {
+    struct {
+        Vec3d p;
+        /// Positive on the front side, negative on the back, 0 in the plane.
+        double operator()(const Triangle& t) const {
+            const Vec3d a(t.a);
+            return dot(cross(Vec3d(t.b) - a, Vec3d(t.c) - a), p - a);
+        }
+        double operator()(const Quad& q) const { return dot(cross(Vec3d(q.u), Vec3d(q.v)), p - Vec3d(q.corner)); }
+        double operator()(const Sphere& s) const {
+            return length_squared(p - Vec3d(s.center)) - sqr(static_cast<double>(s.radius));
+        }
+    } const side{Vec3d(p)};
+    const double front = std::visit(side, light.shape);
+    return front != 0 && (light.two_sided || (front > 0) != light.flipped);
+}
+
+std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u) {
+    return std::visit([&](const auto& l) { return draw(l, p, u); }, light);
+}
+
+float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q, Vec3) {
+    if (!emits_towards(light, p)) return 0;
+    return usable(
+        std::visit([&](const auto& shape) { return solid_angle_pdf(shape, Vec3d(p), Vec3d(q)); }, light.shape));
+}
+
+float light_power(const Light& light, float scene_radius) {
+    const Flux f = std::visit([&](const auto& l) { return flux(l, static_cast<double>(scene_radius)); }, light);
+    return static_cast<float>(f.factor * static_cast<double>(average(f.quantity)));
+}
+
+bool is_delta(const Light& light) { return !std::holds_alternative<SurfaceLight>(light); }
+
+} // namespace duet

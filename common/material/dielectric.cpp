@@ -1,0 +1,31 @@
+#include "common/material/dielectric.h"
+
+#include "common/material/fresnel.h"
+#include "common/material/reflectance.h"
+
+namespace duet {
+
+Rgb DielectricBsdf::eval(Vec3, Vec3, TransportMode) const { return Rgb(); }
+float DielectricBsdf::pdf(Vec3, Vec3, TransportMode) const { return 0; }
+
+std::optional<BsdfSample> DielectricBsdf::sample(Vec3 wo, float lobe, Vec2, TransportMode mode) const {
+    if (wo.z == 0) return std::nullopt;
+    const float cos_o = abs_cos_theta(wo);
+    const float relative = wo.z > 0 ? eta : 1 / eta; // index beyond the boundary over that on wo's side
+    const float reflected = fresnel_dielectric(cos_o, relative);
+    if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1.0f), reflected, true};
+
+    // Snell's law: the tangential part shrinks by η. Not at total reflection, where `reflected` is 1.
+    const float cos_t = safe_sqrt(cos2_refracted(cos_o, relative));
+    if (cos_t == 0) return std::nullopt;
+    const Vec3 wi = normalize(Vec3(-wo.x / relative, -wo.y / relative, wo.z > 0 ? -cos_t : cos_t));
+    // Radiance that crosses into the thinner medium spreads over more solid angle: L / n² is what stays constant.
+    const float spread = mode == TransportMode::kRadiance ? 1 / (relative * relative) : 1.0f;
+    return BsdfSample{wi, tint * spread, 1 - reflected, true, true};
+}
+
+DielectricBsdf Dielectric::at(const TextureSet& textures, const SurfacePoint& point) const {
+    return {ior, evaluate_reflectance(textures, tint, point)};
+}
+
+} // namespace duet

@@ -1,0 +1,35 @@
+// Fresnel's equations and Schlick's approximation: how much light a smooth boundary reflects.
+#pragma once
+
+#include "common/image/rgb.h"
+
+namespace duet {
+
+/// Squared cosine of the refracted direction, from the cosine of the incident one and eta, the index beyond the
+/// boundary over that before it. Negative: total reflection. As ((η − 1)(η + 1) + cos²θ)/η² it is exact for η = 1 and
+/// keeps its precision near the critical angle, where 1 − sin²θ/η² cancels.
+template <typename T> T cos2_refracted(T cos_i, T eta) {
+    return ((eta - T(1)) * (eta + T(1)) + cos_i * cos_i) / (eta * eta);
+}
+
+/// Reflectance of unpolarised light at a boundary between dielectrics, in [0, 1]; cos_i ≥ 0 on the incident side. 1 at
+/// total reflection and at grazing incidence, 0 for eta = 1 (Born and Wolf 1999, §1.5.2).
+template <typename T> T fresnel_dielectric(T cos_i, T eta) {
+    const T cos2_t = cos2_refracted(cos_i, eta);
+    const T cos_t = safe_sqrt(cos2_t);
+    const T tiny = T(1e-30f); // both sums vanish only for eta = 1 at grazing incidence, where nothing is reflected
+    const T parallel = (eta * cos_i - cos_t) / max(eta * cos_i + cos_t, tiny);
+    const T perpendicular = (cos_i - eta * cos_t) / max(cos_i + eta * cos_t, tiny);
+    const T reflectance = T(0.5f) * (parallel * parallel + perpendicular * perpendicular);
+    return select(cos2_t <= T(0), select(eta == T(1), T(0), T(1)), min(reflectance, T(1)));
+}
+
+/// Schlick's approximation for metals, from the reflectance at normal incidence (Schlick 1994, eq. 24). 1 at grazing
+/// incidence; never below `normal`.
+template <typename T> RgbT<T> fresnel_schlick(RgbT<T> normal, T cos_i) {
+    const T x = T(1) - clamp(cos_i, T(0), T(1));
+    const T x2 = x * x;
+    return normal + (RgbT<T>(T(1)) - normal) * (x2 * x2 * x);
+}
+
+} // namespace duet

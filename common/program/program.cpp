@@ -1,0 +1,104 @@
+#include "common/program/program.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <new>
+#include <unistd.h>
+
+namespace duet {
+
+int run_program(const std::string& name, const std::function<int()>& body) {
+    try {
+        const int code = body();
+        std::cout.flush();
+        if (!std::cout) throw Error("standard output cannot be written", kExitFailed);
+        return code;
+    } catch (const Error& error) {
+        std::cerr << name << ": " << error.what() << '\n';
+        return error.exit_code();
+    } catch (const std::bad_alloc&) {
+        std::cerr << name << ": not enough memory for this picture and scene\n";
+        return kExitFailed;
+    } catch (const std::exception& error) {
+        std::cerr << name << ": " << error.what() << '\n';
+        return kExitFailed;
+    }
+}
+
+namespace {
+
+// A signal handler can reach nothing but a static, lock-free atomic.
+std::atomic<bool>& interrupted() {
+    static std::atomic<bool> flag{false};
+    static_assert(std::atomic<bool>::is_always_lock_free);
+    return flag;
+}
+extern "C" void raise_interrupt_flag(int) { interrupted().store(true); }
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+} // namespace
+
+InterruptFlag::InterruptFlag() {
+    interrupted().store(false);
+    struct sigaction action {};
+    action.sa_handler = raise_interrupt_flag;
+    action.sa_flags = static_cast<int>(SA_RESETHAND); // the second signal acts as if there were no handler
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+InterruptFlag::~InterruptFlag() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
+const std::atomic<bool>& InterruptFlag::flag() const { return interrupted(); }
+
+ProgressBar::ProgressBar(std::string label, bool quiet)
+    : label_(std::move(label)), visible_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(now()) {}
+
+ProgressBar::~ProgressBar() { finish(); }
+
+void ProgressBar::update(double fraction) {
+    const double time = now();
+    if (!visible_ || time - last_drawn_ < 0.1) return;
+    last_drawn_ = time;
+    constexpr int kWidth = 30;
+    const double done = std::clamp(fraction, 0.0, 1.0), elapsed = time - start_;
+    const int filled = static_cast<int>(done * kWidth);
+    std::string bar(static_cast<std::size_t>(filled), '#');
+    bar.resize(kWidth, '.');
+    const std::string left = done > 0.01 ? readable_seconds(elapsed * (1 - done) / done) + " left" : "";
+    std::fprintf(stderr, "\r%s [%s] %3.0f %%  %s, %s\033[K", label_.c_str(), bar.c_str(), 100 * done,
+                 readable_seconds(elapsed).c_str(), left.c_str());
+    std::fflush(stderr);
+}
+
+void ProgressBar::finish() {
+    if (visible_ && last_drawn_ >= 0) std::fputs("\r\033[K", stderr);
+    last_drawn_ = -1;
+}
+
+std::string readable_seconds(double seconds) {
+    char text[64];
+    const long whole = std::lround(seconds);
+    if (seconds < 0.9995)
+        std::snprintf(text, sizeof text, "%.0f ms", seconds * 1000);
+    else if (seconds < 59.95)
+        std::snprintf(text, sizeof text, "%.1f s", seconds);
+    else if (whole < 3600)
+        std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
+    else
+        std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+    return text;
+}
+
+} // namespace duet

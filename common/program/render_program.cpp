@@ -1,0 +1,193 @@
+#include "common/program/render_program.h"
+
+#include "common/image/image_file.h"
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/parallel.h"
+#include "common/system/stopwatch.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <iostream>
+
+namespace duet {
+
+namespace {
+
+struct Options {
+    std::string scene, output, size, aovs, stats;
+    int spp = 0, threads = 0, orbit = 0;
+    std::uint64_t seed = 0;
+    bool ascii = false, quiet = false;
+};
+
+void add_common_options(CLI::App& app, Options& options, const std::string& spp_help) {
+    app.add_option("SCENE", options.scene,
+                   "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
+        ->required();
+    app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
+        ->required();
+    app.add_option("--size", options.size, "Picture size WIDTHxHEIGHT (default: the scene's)");
+    app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
+    app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
+    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)");
+    app.add_option("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
+    app.add_option("--aov", options.aovs,
+                   "Auxiliary pictures, a list of depth,normal,albedo,hit,variance,samples: channels of an "
+                   ".exr, or EXR files beside the picture");
+    app.add_option("--orbit", options.orbit,
+                   "Render this many frames around the camera's target; the output's name holds %04d")
+        ->check(CLI::Range(1, 9999));
+    app.add_flag("--ascii", options.ascii, "Write .ppm as text (P3)");
+    app.add_flag("--quiet", options.quiet, "No progress bar");
+}
+
+// The frame's number in place of the one %04d.
+std::string frame_path(const std::string& pattern, int frame) {
+    const std::size_t at = pattern.find("%04d");
+    std::string number = std::to_string(frame);
+    number.insert(0, 4 - std::min<std::size_t>(4, number.size()), '0');
+    return pattern.substr(0, at) + number + pattern.substr(at + 4);
+}
+
+Camera orbited(Camera camera, int frame, int frames) {
+    const Mat4d turn = rotation(normalize(camera.up), 2 * kPiDouble * frame / frames);
+    camera.eye = camera.look_at + transform_vector(turn, camera.eye - camera.look_at);
+    return camera;
+}
+
+void check_output(const Options& options) {
+    if (options.orbit > 0 && options.output.find("%04d") == std::string::npos)
+        throw Error(
+            message("--orbit: the output's name must hold %04d for the frame's number, found ", options.output));
+    check_writable_image(options.output);
+    if (!options.stats.empty() && options.stats != "-") {
+        const std::filesystem::path folder = std::filesystem::absolute(options.stats).parent_path();
+        if (!std::filesystem::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
+    }
+}
+
+void print_summary(const RenderContext& context, const Rendering& rendering, const std::string& output) {
+    const RenderStatistics& s = rendering.statistics;
+    std::cerr << output << ": " << context.width << " x " << context.height << ", " << s.samples_per_pixel
+              << (s.samples_per_pixel == 1 ? " sample" : " samples") << " a pixel in "
+              << readable_seconds(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
+    if (s.invalid_samples > 0)
+        std::cerr << "warning: " << s.invalid_samples << " samples were NaN, infinite or negative, and left out\n";
+}
+
+int render_all(const RenderProgram& program, const Options& options) {
+    check_output(options);
+    RenderSettings settings;
+    settings.threads = options.threads;
+    settings.seed = options.seed;
+    settings.aovs = parse_aovs(options.aovs);
+    PictureSize size{0, 0};
+    if (!options.size.empty()) size = parse_picture_size(options.size);
+
+    RenderContext context;
+    context.program = program.name;
+    context.scene = options.scene;
+    context.threads = options.threads > 0 ? options.threads : available_threads();
+    context.seed = options.seed;
+    Stopwatch watch;
+    const Scene scene = load_scene(options.scene);
+    context.load_seconds = watch.lap();
+    context.width = size.width > 0 ? size.width : scene.width;
+    context.height = size.height > 0 ? size.height : scene.height;
+    const RenderFunction render =
+        program.prepare(scene, settings, options.spp > 0 ? std::optional(options.spp) : std::nullopt);
+    context.prepare_seconds = watch.lap();
+
+    const InterruptFlag interrupt;
+    const int frames = options.orbit > 0 ? options.orbit : 1;
+    nlohmann::json all_statistics = nlohmann::json::array();
+    for (int frame = 0; frame < frames && !interrupt.raised(); ++frame) {
+        const View view{options.orbit > 0 ? orbited(scene.camera, frame, frames) : scene.camera, context.width,
+                        context.height};
+        const std::string output = options.orbit > 0 ? frame_path(options.output, frame) : options.output;
+        ProgressBar bar(program.name, options.quiet);
+        Control control{&interrupt.flag(), [&](double fraction) { bar.update((frame + fraction) / frames); }};
+        watch.restart();
+        const Rendering rendering = render(view, control);
+        context.render_seconds = watch.lap();
+        bar.finish();
+        write_rendering(output, rendering, options.ascii);
+        context.write_seconds = watch.lap();
+        all_statistics.push_back(statistics_json(context, rendering.statistics));
+        if (!options.quiet) print_summary(context, rendering, output);
+    }
+    if (!options.stats.empty() && !all_statistics.empty())
+        write_json(options.stats, options.orbit > 0 ? all_statistics : all_statistics[0]);
+    return interrupt.raised() ? kExitInterrupted : kExitOk;
+}
+
+} // namespace
+
+int run_render_program(const RenderProgram& program, int argc, char** argv) {
+    return run_program(program.name, [&] {
+        CLI::App app(program.description, program.name);
+        app.footer("Example:\n  " + program.example +
+                   "\n\nExit codes: 0 done, 1 failed, 2 unusable arguments or input, 130 interrupted (what is done is "
+                   "written).");
+        Options options;
+        add_common_options(app, options, program.spp_help);
+        program.add_options(app);
+        const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
+        return parsed.proceed ? render_all(program, options) : parsed.exit_code;
+    });
+}
+
+ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv) {
+    app.set_version_flag("--version", std::string(DUET_VERSION));
+    try {
+        app.parse(argc, argv);
+        return {true, kExitOk};
+    } catch (const CLI::Success& help) { // --help and --version arrive as exceptions
+        return {false, app.exit(help)};
+    } catch (const CLI::ParseError& error) {
+        throw Error(message(error.what(), " (", app.get_name(), " --help explains)"));
+    }
+}
+
+PictureSize parse_picture_size(std::string_view text) {
+    PictureSize size{};
+    const char* const end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, size.width);
+    const auto good = [&] {
+        if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
+        const auto height = std::from_chars(width.ptr + 1, end, size.height);
+        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= 16384 &&
+               size.height >= 1 && size.height <= 16384;
+    };
+    if (!good())
+        throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to 16384"));
+    return size;
+}
+
+AovSet parse_aovs(std::string_view list) {
+    AovSet set;
+    while (!list.empty()) {
+        const std::string_view name = list.substr(0, list.find(','));
+        list.remove_prefix(std::min(list.size(), name.size() + 1));
+        if (name == "depth")
+            set.depth = true;
+        else if (name == "normal")
+            set.normal = true;
+        else if (name == "albedo")
+            set.albedo = true;
+        else if (name == "hit")
+            set.hit = true;
+        else if (name == "variance")
+            set.variance = true;
+        else if (name == "samples")
+            set.samples = true;
+        else
+            throw Error(message("--aov: found ", name, ", expected depth, normal, albedo, hit, variance or samples"));
+    }
+    return set;
+}
+
+} // namespace duet

@@ -1,0 +1,64 @@
+#include "common/program/statistics.h"
+
+#include "common/system/file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace duet {
+
+nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics) {
+    nlohmann::json skipped = nlohmann::json::object();
+    for (const Skipped& s : statistics.skipped) {
+        if (s.count >= 0)
+            skipped[s.what] = s.count;
+        else
+            skipped[s.what] = s.why;
+    }
+    nlohmann::json stages = nlohmann::json::object();
+    for (const auto& [stage, seconds] : statistics.seconds) stages[stage] = seconds;
+    const double total =
+        context.load_seconds + context.prepare_seconds + context.render_seconds + context.write_seconds;
+    nlohmann::json relmse; // null where unknown
+    if (statistics.estimated_relmse >= 0) relmse = statistics.estimated_relmse;
+    return {
+        {"program", context.program},
+        {"version", DUET_VERSION},
+        {"scene", context.scene},
+        {"width", context.width},
+        {"height", context.height},
+        {"threads", context.threads},
+        {"samples_per_pixel", statistics.samples_per_pixel},
+        {"passes", statistics.passes},
+        {"seed", context.seed},
+        {"seconds",
+         {{"load", context.load_seconds},
+          {"prepare", context.prepare_seconds},
+          {"render", context.render_seconds},
+          {"write", context.write_seconds},
+          {"total", total}}},
+        {"stages", stages},
+        {"rays",
+         {{"camera", statistics.camera_rays},
+          {"indirect", statistics.indirect_rays},
+          {"shadow", statistics.shadow_rays}}},
+        {"triangles", statistics.triangles},
+        {"memory_bytes", statistics.memory_bytes},
+        {"estimated_relmse", relmse},
+        {"invalid_samples", statistics.invalid_samples},
+        {"approximations", statistics.approximations},
+        {"skipped", skipped},
+        {"interrupted", statistics.interrupted},
+    };
+}
+
+void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
+    const std::string text = json.dump(2) + "\n";
+    if (path == "-")
+        std::cout << text;
+    else
+        write_file(path, text);
+}
+
+} // namespace duet

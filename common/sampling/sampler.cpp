@@ -1,0 +1,134 @@
+#include "common/sampling/sampler.h"
+
+#include "common/sampling/hash.h"
+#include "common/sampling/sobol.h"
+#include "common/system/error.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace duet {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, SamplerKind>, 4> kNames{{{"sobol", SamplerKind::kSobol},
+                                                                          {"stratified", SamplerKind::kStratified},
+                                                                          {"independent", SamplerKind::kIndependent},
+                                                                          {"center", SamplerKind::kCenter}}};
+
+/// (numerator + fraction)/denominator, kept below 1 where rounding would reach it.
+float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominator) {
+    return std::min(static_cast<float>((numerator + fraction) / denominator), kOneMinusEpsilon);
+}
+
+// Padding (Kollig and Keller 2002): the points of each pair of dimensions are those of the plane's Sobol sequence,
+// scrambled anew and visited in an order of their own. Shuffling the index by an Owen scrambling keeps every aligned
+// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5).
+
+float sobol_1d(std::uint32_t index, std::uint64_t key) {
+    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
+    return unit_float(reverse_bits(owen_scramble(point, low_bits(key))));
+}
+
+Vec2 sobol_2d(std::uint32_t index, std::uint64_t key) {
+    const std::uint64_t scrambles = mix_bits(key);
+    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
+    return {unit_float(reverse_bits(owen_scramble(point, high_bits(scrambles)))),
+            unit_float(reverse_bits(owen_scramble(sobol_second(point), low_bits(scrambles))))};
+}
+
+float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
+    const std::uint32_t round = index / count;
+    key = hash_combine(key, round);
+    const std::uint32_t s = permute(index % count, count, key);
+    return stratum(s, unit_float(high_bits(hash_combine(key, s))), count);
+}
+
+/// Correlated multi-jittered points for any count: one in each of `count` rows, one in each of columns × rows_of_cells
+/// cells of the coarse grid (the last row of cells may be incomplete), and no two in one fine column (Kensler 2013,
+/// §5).
+Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
+    const std::uint32_t round = index / count; // beyond the promised number of samples: a fresh set
+    key = hash_combine(key, round);
+    const auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
+    const std::uint32_t rows_of_cells = (count + columns - 1) / columns;
+    const std::uint32_t s = permute(index % count, count, key);
+    const std::uint32_t column = permute(s % columns, columns, mix_bits(key + 1));
+    const std::uint32_t row = permute(s / columns, rows_of_cells, mix_bits(key + 2));
+    const std::uint64_t jitter = hash_combine(key, s);
+    const double fine = (row + static_cast<double>(unit_float(high_bits(jitter)))) / rows_of_cells;
+    return {stratum(column, fine, columns), stratum(s, unit_float(low_bits(jitter)), count)};
+}
+
+} // namespace
+
+SamplerKind sampler_kind(std::string_view name) {
+    for (const auto& [known, kind] : kNames)
+        if (known == name) return kind;
+    throw Error(message("unknown sampler '", name, "': expected sobol, stratified, independent or center"));
+}
+
+std::string_view sampler_name(SamplerKind kind) {
+    for (const auto& [name, known] : kNames)
+        if (known == kind) return name;
+    return {};
+}
+
+Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
+    : kind_(kind), seed_(mix_bits(seed + 0x9e3779b97f4a7c15u)),
+      samples_per_pixel_(static_cast<std::uint32_t>(std::max(samples_per_pixel, 1))) {}
+
+void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
+    replicate_ = index & 1u;
+    index_ = index >> 1;
+    dimension_ = 0;
+    const std::uint64_t pixel =
+        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
+    pixel_hash_ = hash_combine(hash_combine(seed_, pixel), replicate_);
+}
+
+float Sampler::get_1d() {
+    const std::uint64_t key = hash_combine(pixel_hash_, dimension_++);
+    switch (kind_) {
+    case SamplerKind::kStratified:
+        return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
+    case SamplerKind::kIndependent:
+        return unit_float(high_bits(hash_combine(key, index_)));
+    case SamplerKind::kSobol:
+    case SamplerKind::kCenter:
+        break;
+    }
+    return sobol_1d(index_, key);
+}
+
+Vec2 Sampler::get_2d() {
+    const std::uint64_t key = hash_combine(pixel_hash_, dimension_);
+    dimension_ += 2;
+    switch (kind_) {
+    case SamplerKind::kStratified:
+        return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
+    case SamplerKind::kIndependent: {
+        const std::uint64_t bits = hash_combine(key, index_);
+        return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
+    }
+    case SamplerKind::kSobol:
+    case SamplerKind::kCenter:
+        break;
+    }
+    return sobol_2d(index_, key);
+}
+
+Vec2 Sampler::get_centered_2d() {
+    if (kind_ != SamplerKind::kCenter) return get_2d();
+    dimension_ += 2;
+    return {0.5f, 0.5f};
+}
+
+float Sampler::get_time() {
+    if (kind_ != SamplerKind::kCenter) return get_1d();
+    ++dimension_;
+    return 0;
+}
+
+} // namespace duet

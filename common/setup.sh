@@ -1,0 +1,35 @@
+#!/bin/sh
+# Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then builds a preset.
+# Sourced or called by compare/demo.sh and tests/run.sh.
+# usage: common/setup.sh [PRESET]        (default: release)
+set -eu
+cd "$(dirname "$0")/.."
+preset=${1:-release}
+
+packages='g++ cmake ninja-build pkg-config libtbb-dev libopenexr-dev libtinyobjloader-dev libstb-dev doctest-dev nlohmann-json3-dev libcli11-dev'
+
+missing=''
+for package in $packages; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+done
+if [ -n "$missing" ]; then
+    if ! command -v apt-get >/dev/null; then
+        echo "setup: no apt-get here. Install by your system's means:$missing" >&2
+        exit 1
+    fi
+    as_root=''
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            echo "setup: run this as root, or install sudo: missing packages:$missing" >&2
+            exit 1
+        fi
+        as_root=sudo
+    fi
+    echo "setup: installing$missing"
+    export DEBIAN_FRONTEND=noninteractive
+    $as_root apt-get update -qq
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+fi
+
+[ -f "build/$preset/build.ninja" ] || cmake --preset "$preset"
+cmake --build --preset "$preset"

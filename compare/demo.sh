@@ -1,0 +1,13 @@
+#!/bin/sh
+# Installs what is missing, builds, renders a mesh scene with both pipelines and says where the report is.
+# usage: sh compare/demo.sh [SCENE [ARGUMENTS OF compare run…]]
+set -eu
+cd "$(dirname "$0")/.."
+scene=${1:-models/demo.json}
+[ $# -gt 0 ] && shift
+sh common/setup.sh release
+out="out/$(basename "${scene%.*}")"
+mkdir -p "$out"
+build/release/bin/compare run "$scene" -o "$out" "$@"
+echo
+echo "The report: $PWD/$out/index.html (open it in a browser)"

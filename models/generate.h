@@ -1,0 +1,33 @@
+// The models made by code: each one file of this folder, all of them listed in generate.cpp.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace duet::models {
+
+/// A model that the generator can make: its files, relative to the output folder, and the function that writes them.
+struct Model {
+    enum class Kind {
+        kCommitted, ///< small: kept in the repository, where a test holds it equal to what its function writes
+        kBuilt,     ///< over 1 MB: made by the build into generated/
+        kOnRequest, ///< larger still: made when asked for by name
+    };
+
+    std::string name;
+    Kind kind = Kind::kCommitted;
+    std::vector<std::string> files;
+    /// Writes the files below the folder. The bytes depend on nothing but the code.
+    std::function<void(const std::filesystem::path& folder)> write;
+};
+
+/// All models, in the order in which they are made.
+std::span<const Model> all_models();
+
+// One function a model, each in the file of its name.
+void write_spheres(const std::filesystem::path& folder);
+
+} // namespace duet::models

@@ -1,0 +1,56 @@
+#include "raster/setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
+int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
+
+} // namespace
+
+PixelRect intersect(const PixelRect& a, const PixelRect& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
+    const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+    a = -dy;
+    b = dx;
+    c = dy * from.x - dx * from.y;
+    // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
+    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
+    if (!left_or_top) c -= 1;
+}
+
+Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
+    : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
+    const auto local = [&](const PixelVertex& v) {
+        return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w);
+    };
+    const Vec3d va = local(a), vb = local(b), vc = local(c);
+    e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
+    if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
+}
+
+Interpolated Interpolation::at(Vec2d pixel) const {
+    const double x = pixel.x - origin_x, y = pixel.y - origin_y;
+    // A sample that only the snapped outline covers, or that rounding put outside, belongs to the triangle's border.
+    const auto inside = [&](std::size_t i) { return std::max(0.0, e[i].x * x + e[i].y * y + e[i].z); };
+    Interpolated result{inside(0), inside(1), inside(2), 0, 0};
+    result.sum = result.b0 + result.b1 + result.b2;
+    if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // seen exactly edge-on: any of its points will do
+    result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
+    return result;
+}
+
+PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
+            floor_pixel(y1 - offset.y) + 1};
+}
+
+} // namespace duet::raster

@@ -1,0 +1,70 @@
+// Stage 1: vertices from their object's space to the picture.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "common/scene/scene.h"
+#include "raster/samples.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace duet::raster {
+
+/// A vertex in homogeneous pixel coordinates: it is seen at (xw/w, yw/w) where depth and w are positive.
+struct PixelVertex {
+    double xw = 0, yw = 0, w = 1;
+    double depth = 0; ///< camera-space −z, metres; equals w under perspective
+};
+
+/// A point on the sub-pixel grid, in 1/256 pixel.
+struct FixedPoint {
+    std::int32_t x = 0, y = 0;
+    friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
+};
+
+/// What the stages need to know of the picture's frame.
+struct Viewport {
+    int width = 0, height = 0;
+    double near = 0; ///< smallest depth seen
+};
+
+/// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of up
+/// to 2^16 pixels a side fixed-point coordinates stay below 2^25.6 and edge functions below 2^54: exact in 64 bits.
+inline constexpr double kGuardBand = 65536;
+inline constexpr int kMaxPictureSide = 65536;
+
+/// On which outer sides of what a vertex lies; a primitive whose vertices share a frustum bit can't be seen.
+enum Outcode : std::uint8_t {
+    kLeft = 1, ///< more than a pixel beyond the picture's edge: snapping can't bring it back
+    kRight = 2,
+    kTop = 4,
+    kBottom = 8,
+    kNear = 16,  ///< before the near plane, or behind the eye
+    kGuard = 32, ///< beyond the guard band on any side
+    kFrustum = kLeft | kRight | kTop | kBottom | kNear,
+    kMustClip = kNear | kGuard,
+};
+std::uint8_t outcode(const PixelVertex& vertex, const Viewport& viewport);
+
+/// Rounded to the nearest grid point. The vertex needs w > 0 and a place within the guard band.
+FixedPoint snap(const PixelVertex& vertex);
+
+/// An object's vertices in the picture. Quads have four a primitive (corner, +u, +u+v, +v); a mesh has its own.
+struct TransformedObject {
+    std::uint32_t object = 0; ///< index into Scene::objects
+    bool mirrored = false;    ///< its transform has a negative determinant: windings are flipped
+    std::vector<PixelVertex> vertices;
+    std::vector<FixedPoint> snapped; ///< meaningless where the outcode has a bit of kMustClip
+    std::vector<std::uint8_t> outcodes;
+    std::uint8_t any_outside = 0; ///< all outcodes or-ed
+};
+
+/// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is rounded: a
+/// vertex is as exact as the object's floats.
+Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
+
+/// Transforms the meshes and quads of the listed objects, in parallel; the result has one entry an object, in order.
+std::vector<TransformedObject> transform(const Scene& scene, const std::vector<std::uint32_t>& objects,
+                                         const Pinhole& pinhole, float time, const Viewport& viewport, int threads);
+
+} // namespace duet::raster

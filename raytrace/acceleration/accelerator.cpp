@@ -1,0 +1,144 @@
+#include "raytrace/acceleration/accelerator.h"
+
+#include "common/vec/robust.h"
+#include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_traverse.h"
+
+#include <algorithm>
+
+namespace duet::raytrace {
+
+namespace {
+
+// Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
+class Gatherer {
+public:
+    void add_shape(const Shape& shape, std::uint32_t object) {
+        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
+                const auto& [a, b, c] = mesh->triangles[i];
+                add_triangle({mesh->positions[a], mesh->positions[b], mesh->positions[c], object, i});
+            }
+        } else if (const auto* list = std::get_if<QuadList>(&shape)) {
+            for (std::uint32_t i = 0; i < list->quads.size(); ++i) add_quad({list->quads[i], object, i});
+        } else {
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, BvhSphere{std::get<Sphere>(shape), object, 0});
+        }
+    }
+
+    void add_instance(const Object& object, std::uint32_t index, const Shape& shape) {
+        Box3 box = bounds(shape, object.to_world);
+        // Matrix entries are interpolated, so each point moves on a straight line between its ends.
+        if (object.moving) box.extend(bounds(shape, object.to_world_end));
+        // The hit is found in the object's space, where the ray arrives with the rounding of its own transform.
+        const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
+        box.extend(box.low - room);
+        box.extend(box.high + room);
+        add(PrimitiveKind::kInstance, box, instances_, BvhInstance{index, object.shape});
+    }
+
+    Bvh build(int threads) {
+        const BinaryTree tree = build_binary_tree(std::move(items_), threads);
+        Bvh bvh = collapse(tree);
+        for (const BuildItem& item : tree.items) switch (item.kind) {
+            case PrimitiveKind::kTriangle:
+                bvh.triangles.push_back(triangles_[item.index]);
+                break;
+            case PrimitiveKind::kQuad:
+                bvh.quads.push_back(quads_[item.index]);
+                break;
+            case PrimitiveKind::kSphere:
+                bvh.spheres.push_back(spheres_[item.index]);
+                break;
+            case PrimitiveKind::kInstance:
+                bvh.instances.push_back(instances_[item.index]);
+                break;
+            }
+        return bvh;
+    }
+
+private:
+    void add_triangle(const BvhTriangle& triangle) {
+        Box3 box;
+        for (const Vec3& p : {triangle.a, triangle.b, triangle.c}) box.extend(p);
+        add(PrimitiveKind::kTriangle, box, triangles_, triangle);
+    }
+    void add_quad(const BvhQuad& quad) {
+        Box3 box;
+        for (const Vec3& p : corners(quad.quad)) box.extend(p);
+        add(PrimitiveKind::kQuad, box, quads_, quad);
+    }
+    template <typename Primitive>
+    void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
+        items_.push_back({box, static_cast<std::uint32_t>(list.size()), kind});
+        list.push_back(primitive);
+    }
+
+    std::vector<BuildItem> items_;
+    std::vector<BvhTriangle> triangles_;
+    std::vector<BvhQuad> quads_;
+    std::vector<BvhSphere> spheres_;
+    std::vector<BvhInstance> instances_;
+};
+
+bool stands_in_world(const Object& object) { return object.identity && !object.moving; }
+
+} // namespace
+
+Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
+    Gatherer world;
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+        const Object& object = scene.objects[i];
+        const Shape& shape = scene.shapes[object.shape];
+        primitives_ += primitive_count(shape);
+        if (stands_in_world(object)) {
+            world.add_shape(shape, i);
+            continue;
+        }
+        world.add_instance(object, i, shape);
+        if (!shapes_[object.shape].empty()) continue;
+        Gatherer own;
+        own.add_shape(shape, kNoObject);
+        shapes_[object.shape] = own.build(threads);
+    }
+    world_ = world.build(threads);
+}
+
+template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
+    if (!traceable(ray)) return false;
+    const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
+    return traverse<kAny>(world_, ray, kNoObject, best, [&](const BvhInstance& instance, Hit& so_far) {
+        const Object& object = scene_.objects[instance.object];
+        // The direction keeps its length through the transform, so t means the same on both sides.
+        Ray inside = ray;
+        const auto enter = [&](const Mat4& to_object) {
+            inside.origin = transform_point(to_object, ray.origin);
+            inside.direction = transform_vector(to_object, ray.direction);
+        };
+        if (object.moving)
+            enter(object_transform(object, ray.time).to_object);
+        else
+            enter(object.to_object);
+        if (!traceable(inside)) return false;
+        return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
+    });
+}
+
+Hit Accelerator::closest(const Ray& ray) const {
+    Hit best;
+    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+    return traverse_scene<false>(ray, best) ? best : Hit{};
+}
+
+bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
+    Hit best = end;
+    return traverse_scene<true>(ray, best);
+}
+
+std::int64_t Accelerator::memory_bytes() const {
+    std::int64_t sum = world_.memory_bytes();
+    for (const Bvh& shape : shapes_) sum += shape.memory_bytes();
+    return sum;
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,36 @@
+// The whole scene behind two questions: what does a ray hit first, and is anything in its way?
+#pragma once
+
+#include "common/scene/scene.h"
+#include "raytrace/acceleration/bvh.h"
+
+namespace duet::raytrace {
+
+/// Two levels: one hierarchy over everything that stands in the world as it is, and over the bounds of instances;
+/// and one of its own, in its own space, for each shape that instances show. Refers to the scene.
+class Accelerator {
+public:
+    /// threads: for building, 0 = all. The result does not depend on it.
+    Accelerator(const Scene& scene, int threads);
+
+    /// The first hit with t in (t_min, t_max]; invalid where there is none, or where the ray is not finite or has no
+    /// direction. At equal t the lower (object, primitive).
+    Hit closest(const Ray& ray) const;
+    /// Whether anything is hit before `end`, other than end's own primitive: where a light is the end of a shadow
+    /// ray, it does not shade itself. An end without object is a mere distance.
+    bool occluded(const Ray& ray, const Hit& end) const;
+
+    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene
+    std::int64_t memory_bytes() const;
+    const Bvh& world() const { return world_; }
+
+private:
+    template <bool kAny> bool traverse_scene(const Ray& ray, Hit& best) const;
+
+    const Scene& scene_;
+    Bvh world_;
+    std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
+    std::int64_t primitives_ = 0;
+};
+
+} // namespace duet::raytrace

@@ -1,0 +1,43 @@
+// Building a hierarchy: boxes → binary tree by the surface area heuristic → wide nodes.
+#pragma once
+
+#include "raytrace/acceleration/bvh.h"
+
+#include <span>
+
+namespace duet::raytrace {
+
+/// A primitive as the builder sees it.
+struct BuildItem {
+    Box3 box; ///< finite
+    std::uint32_t index;
+    PrimitiveKind kind;
+};
+
+/// A node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most Bvh::kMaxLeaf; an
+/// inner node has two children.
+struct BinaryNode {
+    Box3 box;
+    std::uint32_t first = 0, count = 0; ///< count 0: an inner node
+    std::uint32_t left = 0, right = 0;
+
+    bool leaf() const { return count > 0; }
+};
+
+/// Node 0 is the root; no nodes where there are no items. No deeper than Bvh::kMaxDepth.
+struct BinaryTree {
+    std::vector<BinaryNode> nodes;
+    std::vector<BuildItem> items; ///< in the order of the leaves
+};
+
+/// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
+/// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
+/// threads (0: all).
+BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads);
+
+/// Packs the tree into nodes of BvhNode::kWidth children (Wald, Benthin and Boulos 2008, «Getting Rid of Packets»,
+/// §2.2): fills `nodes`, `root` and `bounds` of a hierarchy. The leaves' primitives are consecutive in tree.items, by
+/// kind: the i-th item of a kind is to become the i-th element of that kind's list.
+Bvh collapse(const BinaryTree& tree);
+
+} // namespace duet::raytrace

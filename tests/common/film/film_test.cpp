@@ -1,0 +1,54 @@
+#include "common/film/film.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace duet;
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("2^25 equal samples add up without stalling") {
+        Film film(1, 1);
+        for (int i = 0; i < (1 << 25); ++i) film.add(0, 0, static_cast<std::size_t>(i & 1), Rgb(0.1f));
+        CHECK(film.mean(0, 0).r == doctest::Approx(static_cast<double>(0.1f)).epsilon(1e-9));
+        CHECK(film.samples(0, 0) == 1u << 25);
+        CHECK(film.variance(0, 0).r < 1e-12);
+    }
+
+    TEST_CASE("bad samples are dropped and counted") {
+        Film film(2, 1);
+        CHECK(film.add(0, 0, 0, Rgb(2)));
+        CHECK_FALSE(film.add(0, 0, 0, Rgb(NAN, 0, 0)));
+        CHECK_FALSE(film.add(0, 0, 1, Rgb(0, INFINITY, 0)));
+        CHECK_FALSE(film.add(0, 0, 1, Rgb(0, 0, -1)));
+        CHECK(film.invalid_samples() == 3);
+        CHECK(film.mean(0, 0) == Rgbd(2));
+        CHECK(std::isinf(film.variance(0, 0).r)); // one replicate is empty: unknown
+        CHECK(film.estimated_relmse() == -1);
+        CHECK(is_black(film.mean(1, 0)));
+    }
+
+} // TEST_SUITE
+
+TEST_SUITE("statistical") {
+
+    // The estimate's mean over 4,000 pixels has a relative standard error of about sqrt(2/4000) = 2.2 %; a tolerance of
+    // 11 % is five of them: a false alarm in 2 million.
+    TEST_CASE("the variance estimate is unbiased, for unequal replicates too") {
+        std::mt19937 engine(3);
+        std::uniform_real_distribution<float> u(0, 1);
+        Film film(4000, 1);
+        const int n0 = 6, n1 = 3;
+        for (int x = 0; x < 4000; ++x) {
+            for (int i = 0; i < n0; ++i) film.add(x, 0, 0, Rgb(u(engine)));
+            for (int i = 0; i < n1; ++i) film.add(x, 0, 1, Rgb(u(engine)));
+        }
+        double sum = 0;
+        for (int x = 0; x < 4000; ++x) sum += film.variance(x, 0).r;
+        const double expected = (1.0 / 12) / (n0 + n1);
+        CHECK(sum / 4000 == doctest::Approx(expected).epsilon(0.11));
+    }
+
+} // TEST_SUITE

@@ -1,0 +1,226 @@
+// Rays against triangles, quads and spheres: watertight, symmetric, accurate from tiny to huge.
+#include "common/geometry/quad.h"
+#include "common/geometry/shape.h"
+#include "common/geometry/sphere.h"
+#include "common/geometry/surface_point.h"
+#include "common/geometry/triangle.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace duet;
+
+namespace {
+
+struct Random {
+    std::mt19937 engine{12345};
+    float uniform(float low = -1, float high = 1) { return std::uniform_real_distribution<float>(low, high)(engine); }
+    Vec3 vector() { return {uniform(), uniform(), uniform()}; }
+};
+
+Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize(target - origin)}; }
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a fan of triangles around a vertex lets no ray aimed at the vertex or a spoke through") {
+        Random random;
+        int leaks = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const float scale = std::exp(random.uniform(-12, 12));
+            const Vec3 hub = random.vector() * scale + random.vector() * (trial % 2 ? 100 * scale : 0.0f);
+            const Vec3 eye = hub + Vec3(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(1, 9)) * scale;
+            constexpr int kSpokes = 7;
+            std::array<Vec3, kSpokes> rim;
+            for (int i = 0; i < kSpokes; ++i) {
+                const float angle = 2 * kPi * (static_cast<float>(i) + random.uniform(0, 0.9f)) / kSpokes;
+                rim[static_cast<std::size_t>(i)] =
+                    hub + Vec3(std::cos(angle), std::sin(angle), random.uniform(-0.3f, 0.3f)) * scale;
+            }
+            const Vec3 on_spoke = lerp(hub, rim[static_cast<std::size_t>(trial % kSpokes)], random.uniform(0, 0.5f));
+            const ShearedRay ray(towards(eye, trial % 3 ? on_spoke : hub));
+            bool hit = false;
+            for (std::size_t i = 0; i < kSpokes; ++i)
+                hit = hit || intersect_triangle(ray, hub, rim[i], rim[(i + 1) % kSpokes]).has_value();
+            leaks += hit ? 0 : 1;
+        }
+        CHECK(leaks == 0);
+    }
+
+    TEST_CASE("triangle hits agree with a double-precision plane, at all scales") {
+        Random random;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const float scale = std::pow(10.0f, random.uniform(-6, 6));
+            const Vec3 a = random.vector() * scale, b = random.vector() * scale, c = random.vector() * scale;
+            const float u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+            const Vec3 target = a * (1 - u - v) + b * u + c * v;
+            const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+            const Ray ray = towards(random.vector() * (3 * scale), target);
+            const Vec3d d(ray.direction);
+            const double cosine = dot(n, d) / length(n);
+            if (std::abs(cosine) < 1e-3 || length(n) < 1e-3 * static_cast<double>(scale) * static_cast<double>(scale))
+                continue;
+            const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
+            if (!hit) continue; // the target may have been rounded out of the triangle: the fan test covers leaks
+            const double exact = dot(n, Vec3d(a) - Vec3d(ray.origin)) / dot(n, d);
+            CHECK(std::abs(static_cast<double>(hit->t) - exact) * std::abs(cosine) <= 2e-6 * std::abs(exact));
+            CHECK(std::abs(hit->u - u) < 1e-3f);
+            CHECK(std::abs(hit->v - v) < 1e-3f);
+        }
+    }
+
+    TEST_CASE("degenerate triangles and rays are missed, not hit at NaN") {
+        const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+        const Ray down{{0.2f, 0.2f, 1}, {0, 0, -1}};
+        CHECK(intersect_triangle(ShearedRay(down), a, b, c).has_value());
+        CHECK_FALSE(intersect_triangle(ShearedRay(down), a, a, a).has_value());
+        CHECK_FALSE(intersect_triangle(ShearedRay(down), a, b, b).has_value());
+        CHECK_FALSE(intersect_triangle(ShearedRay({{0.2f, 0.2f, 1}, {0, 0, 0}}), a, b, c).has_value());
+        CHECK_FALSE(intersect_triangle(ShearedRay({{0.2f, 0.2f, 1}, {NAN, 0, -1}}), a, b, c).has_value());
+        CHECK_FALSE(intersect_triangle(ShearedRay({{-1, 0.2f, 0}, {1, 0, 0}}), a, b, c).has_value()); // edge-on
+        const Ray minus_zero{{0.2f, 0.2f, 1}, {-0.0f, -0.0f, -1}};
+        CHECK(intersect_triangle(ShearedRay(minus_zero), a, b, c).has_value());
+    }
+
+    TEST_CASE("a quad's coordinates run along its edges, across both halves") {
+        Random random;
+        const Quad quad{{1, 2, 3}, {2, 0.5f, 0}, {-0.3f, 1, 1}};
+        for (int trial = 0; trial < 2000; ++trial) {
+            const float u = random.uniform(0.001f, 0.999f), v = random.uniform(0.001f, 0.999f);
+            const Vec3 target = quad.corner + quad.u * u + quad.v * v;
+            const auto hit = intersect_quad(ShearedRay(towards({0, 3, -8}, target)), quad);
+            REQUIRE(hit.has_value());
+            CHECK(hit->u == doctest::Approx(u).epsilon(1e-4));
+            CHECK(hit->v == doctest::Approx(v).epsilon(1e-4));
+        }
+    }
+
+    TEST_CASE("sphere hits lie on the sphere: far, huge and tiny ones, from outside and inside") {
+        Random random;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const float radius = std::pow(10.0f, random.uniform(-6, 6));
+            const Sphere sphere{random.vector() * radius * 3.0f, radius};
+            const float distance = std::pow(10.0f, random.uniform(0.1f, 4));
+            const Vec3 eye = sphere.center + normalize(random.vector()) * (radius * distance);
+            const Vec3 aim = sphere.center + random.vector() * (0.5f * radius);
+            const Ray ray = towards(eye, aim);
+            const auto t = intersect_sphere(ray, sphere);
+            REQUIRE(t.has_value());
+            const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(*t);
+            // t is rounded once: the point may leave the sphere by half an ulp of t.
+            const double off = std::abs(length(p - Vec3d(sphere.center)) - static_cast<double>(radius));
+            CHECK(off <= 6.0e-8 * static_cast<double>(*t) + 1e-12 * static_cast<double>(radius));
+            const auto from_inside = intersect_sphere(towards(aim, eye), sphere);
+            CHECK(from_inside.has_value());
+        }
+    }
+
+    TEST_CASE("a ray that leaves a sphere of radius 1000 from 1e-7 above it does not meet it again") {
+        const Sphere ground{{0, -1000, 0}, 1000};
+        CHECK_FALSE(intersect_sphere({{0, 1e-7f, 0}, normalize(Vec3(1, 1e-3f, 0))}, ground).has_value());
+        CHECK(intersect_sphere({{0, 1e-7f, 0}, normalize(Vec3(1, -1e-3f, 0))}, ground).has_value());
+    }
+
+    TEST_CASE("sphere_uv and sphere_direction are inverse, and follow the lat-long convention") {
+        CHECK(sphere_uv({0, 0, -1}).x == doctest::Approx(0.5f));
+        CHECK(sphere_uv({1, 0, 0}).x == doctest::Approx(0.75f));
+        CHECK(sphere_uv({0, 1, 0}).y == doctest::Approx(1.0f));
+        CHECK(sphere_uv({0, -1, 0}).y == doctest::Approx(0.0f));
+        Random random;
+        for (int trial = 0; trial < 2000; ++trial) {
+            const Vec3 n = normalize(random.vector());
+            CHECK(length(sphere_direction(sphere_uv(n)) - n) < 1e-5f);
+        }
+    }
+
+    TEST_CASE("a ray spawned from any surface point does not hit that surface, at scales from 1e-6 to 1e6 and far from "
+              "the origin") {
+        Random random;
+        int self_hits = 0;
+        for (int trial = 0; trial < 30000; ++trial) {
+            const float scale = std::pow(10.0f, random.uniform(-6, 6));
+            const Vec3 away = random.vector() * (trial % 3 == 0 ? 1e3f * scale : 0.0f);
+            Shape shape;
+            if (trial % 3 == 0)
+                shape = Sphere{away + random.vector() * scale, scale};
+            else if (trial % 3 == 1)
+                shape =
+                    QuadList{{Quad{away + random.vector() * scale, random.vector() * scale, random.vector() * scale}}};
+            else {
+                Mesh mesh;
+                mesh.positions = {away + random.vector() * scale, away + random.vector() * scale,
+                                  away + random.vector() * scale};
+                mesh.triangles = {{0, 1, 2}};
+                shape = mesh;
+            }
+            Hit hit;
+            hit.object = 0;
+            hit.u = random.uniform(0, 1);
+            hit.v = random.uniform(0, 1 - hit.u);
+            Ray ray{away + random.vector() * (4 * scale), random.vector()};
+            if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+                const auto t = intersect_sphere(ray, *sphere);
+                if (!t) continue;
+                hit.t = *t;
+            }
+            const SurfacePoint point = surface_point(shape, hit, ray, Mat4(), Mat4(), true);
+            if (!is_finite(point.ng)) continue; // a degenerate triangle cannot be hit
+            Vec3 w = normalize(random.vector());
+            if (trial % 5 == 0) w = normalize(w - point.ng * (0.999f * dot(w, point.ng))); // grazing
+            if (std::holds_alternative<Sphere>(shape) && dot(w, point.ng) < 0)
+                w = -w; // inwards it hits the far side, rightly
+            const Ray spawned{offset_origin(point, w), w};
+            bool again = false;
+            if (const auto* sphere = std::get_if<Sphere>(&shape))
+                again = intersect_sphere(spawned, *sphere).has_value();
+            else if (const auto* list = std::get_if<QuadList>(&shape))
+                again = intersect_quad(ShearedRay(spawned), list->quads[0]).has_value();
+            else {
+                const Mesh& mesh = std::get<Mesh>(shape);
+                again = intersect_triangle(ShearedRay(spawned), mesh.positions[0], mesh.positions[1], mesh.positions[2])
+                            .has_value();
+            }
+            self_hits += again ? 1 : 0;
+        }
+        CHECK(self_hits == 0);
+    }
+
+    TEST_CASE("closedness is judged by position, orientation by volume") {
+        Mesh tetrahedron;
+        tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+        CHECK(is_closed_outwards(tetrahedron));
+        Mesh seamed = tetrahedron; // the last face on vertices of its own, at the same places
+        seamed.positions.insert(seamed.positions.end(), {{1, 0, 0}, {0, 1, 0}, {-0.0f, 0, 1}});
+        seamed.triangles[3] = {4, 5, 6};
+        CHECK(is_closed_outwards(seamed));
+        Mesh open = tetrahedron;
+        open.triangles.pop_back();
+        CHECK_FALSE(is_closed_outwards(open));
+        Mesh inside_out = tetrahedron;
+        for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
+        CHECK_FALSE(is_closed_outwards(inside_out));
+        Mesh one_flipped = tetrahedron;
+        std::swap(one_flipped.triangles[0][0], one_flipped.triangles[0][1]);
+        CHECK_FALSE(is_closed_outwards(one_flipped));
+    }
+
+    TEST_CASE("bounds contain the surface points of a transformed shape") {
+        Random random;
+        for (int trial = 0; trial < 500; ++trial) {
+            const Mat4 m = Mat4(translation(Vec3d(random.vector()) * 10.0) *
+                                rotation(normalize(Vec3d(random.vector())), 2.0) * scaling(Vec3d(0.3, 1, 4)));
+            const Shape shape = Sphere{random.vector(), 0.5f};
+            const Box3 box = bounds(shape, m);
+            for (int i = 0; i < 20; ++i) {
+                const Sphere& s = std::get<Sphere>(shape);
+                CHECK(box.contains(transform_point(m, s.center + normalize(random.vector()) * s.radius)));
+            }
+        }
+        for (const Quad& quad : box_quads({-1, -2, -3}, {1, 2, 3}).quads) // normals point outwards
+            CHECK(dot(cross(quad.u, quad.v), quad.corner + quad.u * 0.5f + quad.v * 0.5f) > 0);
+    }
+
+} // TEST_SUITE

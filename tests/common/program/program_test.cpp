@@ -1,0 +1,54 @@
+#include "common/program/program.h"
+#include "common/program/render_program.h"
+#include "common/program/statistics.h"
+#include "common/system/error.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using namespace duet;
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("picture sizes are parsed whole or refused") {
+        const PictureSize size = parse_picture_size("640x480");
+        CHECK(size.width == 640);
+        CHECK(size.height == 480);
+        for (const char* bad :
+             {"", "x", "640", "640x", "x480", "0x5", "5x0", "-5x5", "5x5x5", "640X480", "99999x5", "5 x5", "1e3x5"})
+            CHECK_THROWS_AS(parse_picture_size(bad), Error);
+    }
+
+    TEST_CASE("lists of auxiliary pictures") {
+        const AovSet set = parse_aovs("depth,hit,samples");
+        CHECK((set.depth && set.hit && set.samples));
+        CHECK_FALSE((set.normal || set.albedo || set.variance));
+        CHECK_FALSE(parse_aovs("").any());
+        CHECK_THROWS_AS(parse_aovs("depth,,hit"), Error);
+        CHECK_THROWS_AS(parse_aovs("Depth"), Error);
+    }
+
+    TEST_CASE("errors become exit codes") {
+        CHECK(run_program("test", [] { return 7; }) == 7);
+        CHECK(run_program("test", []() -> int { throw Error("expected here by a test"); }) == kExitUnusable);
+        CHECK(run_program("test", []() -> int { throw Error("expected here by a test", 1); }) == kExitFailed);
+    }
+
+    TEST_CASE("seconds are readable") {
+        CHECK(readable_seconds(0.0123) == "12 ms");
+        CHECK(readable_seconds(0.9996) == "1.0 s");
+        CHECK(readable_seconds(59.96) == "1 min 00 s");
+        CHECK(readable_seconds(3599.6) == "1 h 00 min");
+    }
+
+    TEST_CASE("statistics have their keys; unknown errors are null, counts are numbers") {
+        RenderStatistics statistics;
+        statistics.skipped = {{"textures", "no material has one", -1}, {"backfaces", "", 17}};
+        const nlohmann::json json = statistics_json({"raster", "a.json", 4, 3, 2, 5, 1, 2, 3, 4}, statistics);
+        CHECK(json["seconds"]["total"] == 10);
+        CHECK(json["skipped"]["backfaces"] == 17);
+        CHECK(json["skipped"]["textures"] == "no material has one");
+        CHECK(json["estimated_relmse"].is_null());
+    }
+
+} // TEST_SUITE

@@ -1,0 +1,52 @@
+#include "common/system/error.h"
+#include "common/system/file.h"
+#include "common/system/parallel.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <vector>
+
+using namespace duet;
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a parallel loop runs each index once, on more threads than cores too") {
+        for (const int threads : {0, 1, 2, 7}) {
+            std::vector<std::atomic<int>> calls(1000);
+            parallel_for(calls.size(), threads, [&](std::size_t i) { ++calls[i]; });
+            for (const auto& c : calls) REQUIRE(c == 1);
+        }
+        parallel_for(0, 0, [](std::size_t) { FAIL("no index to call"); });
+    }
+
+    TEST_CASE("an exception in a parallel loop reaches the caller") {
+        for (const int threads : {1, 2, 7})
+            CHECK_THROWS_AS(parallel_for(100, threads,
+                                         [](std::size_t i) {
+                                             if (i == 57) throw Error("57");
+                                         }),
+                            Error);
+    }
+
+    TEST_CASE("an output file is whole or absent") {
+        const std::filesystem::path folder = std::filesystem::path(DUET_BINARY_DIR) / "tests/scratch/system";
+        std::filesystem::remove_all(folder);
+        std::filesystem::create_directories(folder);
+        write_file(folder / "a.txt", "whole");
+        CHECK(read_file(folder / "a.txt") == "whole");
+        CHECK_THROWS_AS(write_whole(folder / "b.txt",
+                                    [](const auto& temporary) {
+                                        write_file(temporary, "half");
+                                        throw Error("disk full", 1);
+                                    }),
+                        Error);
+        CHECK_FALSE(std::filesystem::exists(folder / "b.txt"));
+        CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1); // nothing left beside
+        CHECK_THROWS_AS(write_file(folder / "no/such/folder.txt", "x"), Error);
+        CHECK_THROWS_AS(read_file(folder / "missing"), Error);
+        CHECK_THROWS_AS(read_file(folder), Error);
+        CHECK_THROWS_AS(read_file(folder / "a.txt", 3), Error);
+    }
+
+} // TEST_SUITE
