@@ -11,14 +11,14 @@
 
 namespace duet::compare {
 
-/// Boxes split at the median of their centres along the longest axis. It serves the judge of the two pipelines, so it is
-/// plain on purpose, shares no code with the path tracer's own, and never leaves out a box that the ray touches.
+/// Boxes split at the median of their centres along the longest axis. It serves the judge of the two pipelines, so it
+/// is plain on purpose, shares no code with the path tracer's own, and never leaves out a box that the ray touches.
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box3d>& boxes);
 
-    /// Calls t_max = visit(index, t_max) for every box the ray may touch within (ray.t_min, t_max]: the visitor shortens the ray
-    /// as it finds hits. Nearer subtrees come first.
+    /// Calls t_max = visit(index, t_max) for every box the ray may touch within (ray.t_min, t_max]: the visitor
+    /// shortens the ray as it finds hits. Nearer subtrees come first.
     template <typename Visit> void visit(const Rayd& ray, Visit&& visit) const;
 
 private:
@@ -33,9 +33,9 @@ private:
     std::vector<std::uint32_t> items_;
 };
 
-/// Where the ray enters the box, or infinity where it misses it or enters beyond t_max. Conservative: the exit is moved away by
-/// the rounding error of its computation (Ize 2013, «Robust BVH Ray Traversal», §3). An axis along which the ray does not move,
-/// with the origin on the slab, gives NaN, which every comparison below ignores.
+/// Where the ray enters the box, or infinity where it misses it or enters beyond t_max. Conservative: the exit is moved
+/// away by the rounding error of its computation (Ize 2013, «Robust BVH Ray Traversal», §3). An axis along which the
+/// ray does not move, with the origin on the slab, gives NaN, which every comparison below ignores.
 inline double entry(const Box3d& box, const Rayd& ray, double t_max) {
     double near = ray.t_min, far = t_max;
     for (std::size_t axis = 0; axis < 3; ++axis) {

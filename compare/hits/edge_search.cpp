@@ -61,7 +61,8 @@ std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
     return kept;
 }
 
-/// The part of a polygon in the world that projects into the disk around `pixel`, in pixels; the disk as the octagon within it.
+/// The part of a polygon in the world that projects into the disk around `pixel`, in pixels; the disk as the octagon
+/// within it.
 std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners) {
     std::vector<Vec4d> polygon;
     for (const Vec3d& p : corners) polygon.push_back(pinhole.world_to_pixel * Vec4d(p, 1.0));
@@ -80,8 +81,8 @@ std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::
     return points;
 }
 
-/// Aims into the part of one primitive that lies within reach: its fan of triangles, low-discrepancy points in each. A sliver
-/// thousands of times thinner than the disk is found this way.
+/// Aims into the part of one primitive that lies within reach: its fan of triangles, low-discrepancy points in each. A
+/// sliver thousands of times thinner than the disk is found this way.
 bool try_primitive(Search& search, const Hit& hit) {
     if (!hit.valid()) return false;
     const std::vector<Vec2d> polygon =

@@ -7,8 +7,8 @@ namespace duet::compare {
 
 namespace {
 
-/// The ray's t on triangle abc, edges and vertices included. The signs of the volumes that the ray spans with each edge decide;
-/// those of a shared edge are exact negatives of each other, so no ray slips between two triangles.
+/// The ray's t on triangle abc, edges and vertices included. The signs of the volumes that the ray spans with each edge
+/// decide; those of a shared edge are exact negatives of each other, so no ray slips between two triangles.
 std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d n = cross(b - a, c - a);
     const Vec3d oa = a - ray.origin, ob = b - ray.origin, oc = c - ray.origin;
@@ -22,8 +22,8 @@ std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     return t;
 }
 
-/// As common/geometry/sphere.h, in double: the discriminant from the distance of the centre to the line, and the roots without
-/// subtracting nearly equal numbers.
+/// As common/geometry/sphere.h, in double: the discriminant from the distance of the centre to the line, and the roots
+/// without subtracting nearly equal numbers.
 std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
     const Vec3d f = ray.origin - Vec3d(sphere.center);
     const double radius = sphere.radius, a = length_squared(ray.direction), b = -dot(f, ray.direction);
@@ -31,7 +31,8 @@ std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
     if (discriminant < 0) return {};
     const double distance = length(f), c = (distance - radius) * (distance + radius);
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
-    const double t0 = c / q, t1 = q / a; // q = 0 only where the ray starts on the sphere and touches it: t0 is NaN, t1 is 0
+    const double t0 = c / q,
+                 t1 = q / a; // q = 0 only where the ray starts on the sphere and touches it: t0 is NaN, t1 is 0
     const double low = min(t0, t1), high = max(t0, t1);
     if (low > ray.t_min && low <= ray.t_max) return low;
     if (high > ray.t_min && high <= ray.t_max) return high;
@@ -70,8 +71,9 @@ std::vector<Box3d> primitive_boxes(const Shape& shape) {
 Box3d transformed(const Box3d& box, const Mat4d& map) {
     Box3d result;
     for (int corner = 0; corner < 8; ++corner)
-        result.extend(transform_point(map, Vec3d((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
-                                                 (corner & 4 ? box.high : box.low).z)));
+        result.extend(
+            transform_point(map, Vec3d((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
+                                       (corner & 4 ? box.high : box.low).z)));
     const double size = max_component(max(abs(result.low), abs(result.high))) * 1e-12;
     result.low = result.low - Vec3d(size, size, size);
     result.high = result.high + Vec3d(size, size, size);

@@ -21,8 +21,9 @@ struct ExactHit {
     }
 };
 
-/// Traces the scene as it stands at one moment. Vertices and transforms are the pipelines' own floats; all arithmetic is double
-/// precision, so positions are 2^29 times finer than what is judged. The code is shared with neither pipeline. Refers to the scene.
+/// Traces the scene as it stands at one moment. Vertices and transforms are the pipelines' own floats; all arithmetic
+/// is double precision, so positions are 2^29 times finer than what is judged. The code is shared with neither
+/// pipeline. Refers to the scene.
 class ExactTracer {
 public:
     /// `time` in [0, 1] of the objects' motion.
@@ -32,7 +33,8 @@ public:
     ExactHit nearest(const Rayd& ray) const;
     /// The nearest hit of the ray with one primitive, whatever stands before it.
     ExactHit intersect(const Rayd& ray, std::uint32_t object, std::uint32_t primitive) const;
-    /// |cos θ| between the ray and the geometric normal of a primitive; on a sphere at the distance t. 0 for a triangle without area.
+    /// |cos θ| between the ray and the geometric normal of a primitive; on a sphere at the distance t. 0 for a triangle
+    /// without area.
     double cosine(const Rayd& ray, std::uint32_t object, std::uint32_t primitive, double t) const;
     /// The corners of a triangle (3) or quad (4) in the world; none for a sphere.
     std::vector<Vec3d> corners(std::uint32_t object, std::uint32_t primitive) const;
@@ -45,7 +47,7 @@ private:
     Rayd to_object_space(const Rayd& ray, const Placed& placed) const;
 
     std::vector<Placed> objects_;
-    std::vector<BoxTree> shape_trees_; ///< one a shape of the scene, in the shape's own space
+    std::vector<BoxTree> shape_trees_;  ///< one a shape of the scene, in the shape's own space
     std::vector<const BoxTree*> trees_; ///< one an object
     BoxTree object_tree_;
 };

@@ -21,8 +21,8 @@ struct Judge {
         if (!a.valid() || !b.valid()) return false;
         const ExactHit ea = tracer.intersect(r, a.object, a.primitive), eb = tracer.intersect(r, b.object, b.primitive);
         if (!ea.valid() || !eb.valid()) return false;
-        const double cosine = max(tracer.cosine(r, ea.object, ea.primitive, ea.t),
-                                  tracer.cosine(r, eb.object, eb.primitive, eb.t));
+        const double cosine =
+            max(tracer.cosine(r, ea.object, ea.primitive, ea.t), tracer.cosine(r, eb.object, eb.primitive, eb.t));
         return std::abs(ea.t - eb.t) * cosine <= kDepthTolerance * min(ea.t, eb.t);
     }
 
@@ -36,7 +36,8 @@ struct Judge {
     /// |Δt|·|cos θ| / t of two hits of one primitive; infinity where a distance is no positive number.
     double distance_error(int x, int y, const Hit& a, const Hit& b) const {
         const double ta = a.t, tb = b.t;
-        if (!(std::isfinite(ta) && std::isfinite(tb) && ta > 0 && tb > 0)) return std::numeric_limits<double>::infinity();
+        if (!(std::isfinite(ta) && std::isfinite(tb) && ta > 0 && tb > 0))
+            return std::numeric_limits<double>::infinity();
         return std::abs(ta - tb) * tracer.cosine(ray(x, y), a.object, a.primitive, tb) / tb;
     }
 };

@@ -18,8 +18,8 @@ enum class Verdict : std::uint8_t {
     kUnexplained ///< neither: one of the pipelines is wrong
 };
 
-/// Distances are equal where |Δt|·|cos θ| ≤ kDepthTolerance·t: measured along the surface's normal, or a grazing ray would be
-/// asked for more than its rounded direction can give.
+/// Distances are equal where |Δt|·|cos θ| ≤ kDepthTolerance·t: measured along the surface's normal, or a grazing ray
+/// would be asked for more than its rounded direction can give.
 inline constexpr double kDepthTolerance = 1e-5;
 
 /// A pixel whose hits differ without explanation.
@@ -34,14 +34,15 @@ struct HitAgreement {
     Image<Verdict> verdicts;
     std::vector<UnexplainedPixel> listed; ///< the first kListed unexplained ones, from the top
     // Distances where both pipelines see the same primitive:
-    double worst_distance = 0;      ///< largest |Δt|·|cos θ| / t
-    int worst_x = 0, worst_y = 0;   ///< the first pixel that has it
+    double worst_distance = 0;            ///< largest |Δt|·|cos θ| / t
+    int worst_x = 0, worst_y = 0;         ///< the first pixel that has it
     std::int64_t distance_violations = 0; ///< pixels over kDepthTolerance, or without a finite distance
 };
 inline constexpr std::size_t kListed = 100;
 
-/// Judges two images of hits of one view, each made with one ray at each pixel's centre, through the lens's centre, as the
-/// shutter opens. Throws Error where an image isn't of the view's size or names a primitive that the scene doesn't have.
+/// Judges two images of hits of one view, each made with one ray at each pixel's centre, through the lens's centre, as
+/// the shutter opens. Throws Error where an image isn't of the view's size or names a primitive that the scene doesn't
+/// have.
 HitAgreement compare_hits(const Scene& scene, const View& view, const Image<Hit>& raster, const Image<Hit>& raytrace,
                           int threads = 0);
 

@@ -35,8 +35,8 @@ struct Sums {
 
 ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
     if (a.width() != b.width() || a.height() != b.height())
-        throw Error(message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x",
-                            b.height()));
+        throw Error(
+            message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
     ErrorMetrics metrics;
     metrics.worst = -1;
     Sums total;

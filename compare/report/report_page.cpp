@@ -26,20 +26,20 @@ json picture_planes(const ImageRgb& image) {
     return planes;
 }
 
-// Objects are stored plus one: none becomes 0. The path tracer's hits are stored as what differs (exclusive or) from the
-// rasterizer's, which is next to nothing.
+// Objects are stored plus one: none becomes 0. The path tracer's hits are stored as what differs (exclusive or) from
+// the rasterizer's, which is next to nothing.
 std::uint32_t object_code(const Hit& hit) { return hit.object + 1; }
 std::uint32_t primitive_code(const Hit& hit) { return hit.valid() ? hit.primitive : 0; }
 
 json hit_planes(const ReportPage& page) {
     const auto &a = page.raster_hits, &b = page.raytrace_hits;
-    return {{"object", plane(a, 4, [&](std::size_t i) { return object_code(a[i]); })},
-            {"primitive", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]); })},
-            {"object_change", plane(a, 4, [&](std::size_t i) { return object_code(a[i]) ^ object_code(b[i]); })},
-            {"primitive_change", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]) ^ primitive_code(b[i]); })},
-            {"verdict", plane(page.agreement.verdicts, 1, [&](std::size_t i) {
-                 return static_cast<std::uint32_t>(page.agreement.verdicts[i]);
-             })}};
+    return {
+        {"object", plane(a, 4, [&](std::size_t i) { return object_code(a[i]); })},
+        {"primitive", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]); })},
+        {"object_change", plane(a, 4, [&](std::size_t i) { return object_code(a[i]) ^ object_code(b[i]); })},
+        {"primitive_change", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]) ^ primitive_code(b[i]); })},
+        {"verdict", plane(page.agreement.verdicts, 1,
+                          [&](std::size_t i) { return static_cast<std::uint32_t>(page.agreement.verdicts[i]); })}};
 }
 
 /// What each object is called on the page: its name, or what it is made of.
@@ -59,6 +59,13 @@ json object_labels(const Scene& scene) {
     return labels;
 }
 
+/// The stages in the order they ran: [[name, seconds], …].
+json stages(const Rendering& rendering) {
+    json list = json::array();
+    for (const auto& [name, seconds] : rendering.statistics.seconds) list.push_back({name, seconds});
+    return list;
+}
+
 void replace_mark(std::string& text, const std::string& mark, std::string_view value) {
     const std::size_t at = text.find("{{" + mark + "}}");
     DUET_CHECK(at != std::string::npos);
@@ -67,12 +74,18 @@ void replace_mark(std::string& text, const std::string& mark, std::string_view v
 
 std::string escape_html(const std::string& text) {
     std::string escaped;
-    for (const char c : text)
-        switch (c) {
-        case '&': escaped += "&amp;"; break;
-        case '<': escaped += "&lt;"; break;
-        case '>': escaped += "&gt;"; break;
-        default: escaped += c;
+    for (const char c : text) switch (c) {
+        case '&':
+            escaped += "&amp;";
+            break;
+        case '<':
+            escaped += "&lt;";
+            break;
+        case '>':
+            escaped += "&gt;";
+            break;
+        default:
+            escaped += c;
         }
     return escaped;
 }
@@ -80,25 +93,27 @@ std::string escape_html(const std::string& text) {
 /// JSON that can stand in a script element: no text in it can end the element.
 std::string script_json(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) text.replace(at, 1, "\\u003c");
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
     return text;
 }
 
 } // namespace
 
 std::string report_page(const ReportPage& page) {
-    DUET_CHECK_EQ(page.raster.size(), page.raytrace.size());
-    DUET_CHECK_EQ(page.raster.size(), page.raster_hits.size());
-    DUET_CHECK_EQ(page.raster.size(), page.raytrace_hits.size());
-    DUET_CHECK_EQ(page.raster.size(), page.agreement.verdicts.size());
+    DUET_CHECK_EQ(page.raster.radiance.size(), page.raytrace.radiance.size());
+    DUET_CHECK_EQ(page.raster.radiance.size(), page.raster_hits.size());
+    DUET_CHECK_EQ(page.raster.radiance.size(), page.raytrace_hits.size());
+    DUET_CHECK_EQ(page.raster.radiance.size(), page.agreement.verdicts.size());
     const std::string title = page.scene.path.filename().string();
     const json data = {{"title", title},
-                       {"width", page.raster.width()},
-                       {"height", page.raster.height()},
+                       {"width", page.raster.radiance.width()},
+                       {"height", page.raster.radiance.height()},
                        {"objects", object_labels(page.scene)},
-                       {"raster", picture_planes(page.raster)},
-                       {"raytrace", picture_planes(page.raytrace)},
+                       {"raster", picture_planes(page.raster.radiance)},
+                       {"raytrace", picture_planes(page.raytrace.radiance)},
                        {"hits", hit_planes(page)},
+                       {"stages", {{"raster", stages(page.raster)}, {"raytrace", stages(page.raytrace)}}},
                        {"report", page.report}};
     std::string text(kReportHtml);
     replace_mark(text, "title", escape_html(title));

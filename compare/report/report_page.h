@@ -12,11 +12,11 @@ namespace duet::compare {
 
 /// What the page shows. All pictures are of one size.
 struct ReportPage {
-    const Scene& scene;                      ///< for the names of its objects and materials
-    const ImageRgb &raster, &raytrace;       ///< linear; kept in half precision
-    const Image<Hit> &raster_hits, &raytrace_hits;
+    const Scene& scene;                 ///< for the names of its objects and materials
+    const Rendering &raster, &raytrace; ///< radiance is kept in half precision
+    const Image<Hit>&raster_hits, &raytrace_hits;
     const HitAgreement& agreement;
-    const nlohmann::json& report;            ///< report.json: its figures fill the tables
+    const nlohmann::json& report; ///< report.json: its figures fill the tables
 };
 
 /// The page's text: two pictures to split, flicker, subtract and zoom into, and the tables. Its state can be linked to
