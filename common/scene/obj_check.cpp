@@ -98,7 +98,7 @@ public:
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
             fail(*path_, line, "found " + in_quotes(text) + ", expected a " + what_ + " index");
-        if (error == std::errc::result_out_of_range || index == 0 || -index > static_cast<std::int64_t>(count))
+        if (error == std::errc::result_out_of_range || index == 0 || index < -static_cast<std::int64_t>(count))
             refuse(text, count, line);
         if (index > largest_) {
             largest_ = index;
@@ -187,6 +187,8 @@ std::string join_continued(const std::string& text) {
 
 std::string read_obj_text(const std::filesystem::path& path) {
     std::string text = read_file(path);
+    if (text.starts_with("\xEF\xBB\xBF"))
+        text.replace(0, 3, "   "); // a byte order mark would hide the first line's key
     if (text.find('\0') != std::string::npos) throw Error(path.string() + ": holds a NUL byte, expected text");
     const bool continued = text.find("\\\n") != std::string::npos || text.find("\\\r\n") != std::string::npos;
     return continued ? join_continued(text) : text;
