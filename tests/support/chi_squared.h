@@ -1,0 +1,46 @@
+// Pearson's chi-squared test: do counts follow the expected frequencies?
+#pragma once
+
+#include "common/vec/vec.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace duet::test {
+
+/// P(X > statistic) for X chi-squared distributed: the regularized upper incomplete gamma function Q(dof/2,
+/// statistic/2).
+double chi_squared_tail(double statistic, int degrees_of_freedom);
+
+/// The significance of each of `tests` independent tests for which the odds of any false alarm are `alpha`
+/// (Šidák 1967).
+double sidak(double alpha, int tests);
+
+struct ChiSquared {
+    double p_value = 0;  ///< the odds of counts at least this unlikely; 0 where a count is impossible
+    std::string account; ///< statistic, degrees of freedom, worst bin: for the message of a failure
+};
+/// Bins of expectation below 5 are pooled. A count where nothing is expected (below 1e-6 of a sample) fails outright.
+ChiSquared chi_squared(const std::vector<double>& observed, const std::vector<double>& expected);
+
+/// Draws directions and compares them with a density by solid angle over cells of equal solid angle in a frame about
+/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own.
+struct DirectionTest {
+    Vec3 axis{0, 0, 1};
+    int samples = 100'000;
+    int rings = 16, sectors = 32;
+    int subdivisions = 8; ///< of a cell along each axis for the quadrature of the density
+    double axis_power =
+        1; ///< cells are narrower about the axis the larger it is: ring borders at 1 − cos θ = 2·(i/rings)^power
+};
+struct DirectionResult {
+    ChiSquared chi_squared;
+    double integral = 0; ///< of the density over the sphere
+};
+using DirectionSampler = std::function<std::optional<Vec3>(Vec2)>;
+using DirectionDensity = std::function<double(Vec3)>;
+DirectionResult test_directions(const DirectionTest& test, const DirectionSampler& sample, const DirectionDensity& pdf);
+
+} // namespace duet::test
