@@ -26,7 +26,8 @@ struct ChiSquared {
 ChiSquared chi_squared(const std::vector<double>& observed, const std::vector<double>& expected);
 
 /// Draws directions and compares them with a density by solid angle over cells of equal solid angle in a frame about
-/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own.
+/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own; if none did,
+/// the density is taken as it is up to a factor: check the integral, too.
 struct DirectionTest {
     Vec3 axis{0, 0, 1};
     int samples = 100'000;
