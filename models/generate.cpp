@@ -1,11 +1,15 @@
 #include "models/generate.h"
 
+#include "models/octopus.h"
+
 namespace duet::models {
 
 std::span<const Model> all_models() {
     using enum Model::Kind;
     static const std::vector<Model> models{
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
+        {"octopus", kBuilt, {kOctopusFile}, write_octopus},
+        {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},
     };
     return models;
 }

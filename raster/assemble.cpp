@@ -62,8 +62,8 @@ private:
             const FixedPoint beside{std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport_.width * kSubPixels),
                                     std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport_.height * kSubPixels)};
             if (area < 0) std::swap(p[1], p[2]);
-            out_.triangles.push_back({p, object_.object, whole.primitive, whole.piece,
-                                      Interpolation(whole.a, whole.b, whole.c, beside)});
+            out_.triangles.push_back(
+                {p, object_.object, whole.primitive, whole.piece, Interpolation(whole.a, whole.b, whole.c, beside)});
         }
     }
 

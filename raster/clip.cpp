@@ -7,9 +7,7 @@ namespace {
 struct Plane {
     double x, y, w, depth, constant;
 
-    double distance(const PixelVertex& v) const {
-        return x * v.xw + y * v.yw + w * v.w + depth * v.depth + constant;
-    }
+    double distance(const PixelVertex& v) const { return x * v.xw + y * v.yw + w * v.w + depth * v.depth + constant; }
 };
 
 PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner_distance, double outer_distance) {
@@ -21,8 +19,8 @@ PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner
 ClippedPolygon clip(const ClippedPolygon& polygon, const Plane& plane) {
     ClippedPolygon result;
     const auto emit = [&](const PixelVertex& v) {
-        // A convex polygon gains one vertex a plane; rounding can make it cross a plane more than twice, where the ninth
-        // corner is within rounding of the plane and may be left out.
+        // A convex polygon gains one vertex a plane; rounding can make it cross a plane more than twice, where the
+        // ninth corner is within rounding of the plane and may be left out.
         if (result.count < static_cast<int>(result.vertices.size()))
             result.vertices[static_cast<std::size_t>(result.count++)] = v;
     };

@@ -19,13 +19,14 @@ struct CullCounts {
 /// Whether all of a world box lies beyond one plane of the view's frustum. Empty boxes do.
 bool outside_frustum(const Box3& box, const Pinhole& pinhole, const Viewport& viewport);
 
-/// Whether an object's back faces may go: it is opaque, closed and oriented outwards (`solid`), and all of it lies beyond the
-/// near plane. Then the eye, or an orthographic ray's start, is not inside, and whatever sample a back face covers, a
-/// front face covers too: the snapped mesh is as closed as the mesh, so fronts and backs over a sample are equally many.
+/// Whether an object's back faces may go: it is opaque, closed and oriented outwards (`solid`), and all of it lies
+/// beyond the near plane. Then the eye, or an orthographic ray's start, is not inside, and whatever sample a back face
+/// covers, a front face covers too: the snapped mesh is as closed as the mesh, so fronts and backs over a sample are
+/// equally many.
 bool may_cull_backfaces(const TransformedObject& object, bool solid);
 
-/// Twice the signed area of a triangle of the grid, in units of the grid; exact. Positive where it runs clockwise as seen in the
-/// picture (y points down).
+/// Twice the signed area of a triangle of the grid, in units of the grid; exact. Positive where it runs clockwise as
+/// seen in the picture (y points down).
 std::int64_t doubled_area(FixedPoint a, FixedPoint b, FixedPoint c);
 
 /// Whether a triangle with that area shows its back. Front is counter-clockwise, in an object that is not mirrored.

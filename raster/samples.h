@@ -30,8 +30,8 @@ struct Pass {
     std::vector<SampleOffset> samples;
 };
 
-/// The passes of a picture of `count` >= 1 samples a pixel. All samples share one pass unless the view has a lens or the
-/// scene moves, when each is a pass of its own. A single sample is the pixel's centre, the lens's centre and the
+/// The passes of a picture of `count` >= 1 samples a pixel. All samples share one pass unless the view has a lens or
+/// the scene moves, when each is a pass of its own. A single sample is the pixel's centre, the lens's centre and the
 /// opening of the shutter. More are points of Owen-scrambled (0,2)-sequences (Sobol's first two dimensions; the pixel,
 /// the lens and the time each have a scramble of their own and a shuffled order: Burley 2020, «Practical Hash-based
 /// Owen Scrambling»), rounded to the grid. Sample i is a function of (i, seed) alone.

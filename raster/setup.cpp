@@ -27,9 +27,7 @@ EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
 
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
-    const auto local = [&](const PixelVertex& v) {
-        return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w);
-    };
+    const auto local = [&](const PixelVertex& v) { return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w); };
     const Vec3d va = local(a), vb = local(b), vc = local(c);
     e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
     if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};

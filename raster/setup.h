@@ -18,10 +18,10 @@ struct PixelRect {
 };
 PixelRect intersect(const PixelRect& a, const PixelRect& b);
 
-/// The line through two grid points as an integer function of the sample's place: a·x + b·y + c >= 0 where the sample is inside.
-/// The interior of a positive (clockwise in the picture) triangle is where all its edges' are. c carries the top-left rule: a sample
-/// on the edge is inside only if the edge is the triangle's left or top one, so of two triangles that share it exactly one has the
-/// sample. (Pineda 1988, «A Parallel Algorithm for Polygon Rasterization».)
+/// The line through two grid points as an integer function of the sample's place: a·x + b·y + c >= 0 where the sample
+/// is inside. The interior of a positive (clockwise in the picture) triangle is where all its edges' are. c carries the
+/// top-left rule: a sample on the edge is inside only if the edge is the triangle's left or top one, so of two
+/// triangles that share it exactly one has the sample. (Pineda 1988, «A Parallel Algorithm for Polygon Rasterization».)
 struct EdgeFunction {
     std::int64_t a, b, c;
 
@@ -43,10 +43,10 @@ struct Interpolated {
     double depth_sum;  ///< depth × sum
 };
 
-/// Perspective-correct barycentrics without a division by w: with homogeneous pixel vertices Vᵢ = (xw, yw, w), eᵢ(x, y) =
-/// (x, y, 1)·(Vⱼ × Vₖ) is linear in the pixel and bᵢ = eᵢ / Σe, also where vertices lie behind the eye (Olano and Greer
-/// 1997, «Triangle Scan Conversion using 2D Homogeneous Coordinates»). Pixels are counted from one beside the triangle, so that the
-/// products that cancel are of the triangle's size and not of the picture's; all in double.
+/// Perspective-correct barycentrics without a division by w: with homogeneous pixel vertices Vᵢ = (xw, yw, w), eᵢ(x, y)
+/// = (x, y, 1)·(Vⱼ × Vₖ) is linear in the pixel and bᵢ = eᵢ / Σe, also where vertices lie behind the eye (Olano and
+/// Greer 1997, «Triangle Scan Conversion using 2D Homogeneous Coordinates»). Pixels are counted from one beside the
+/// triangle, so that the products that cancel are of the triangle's size and not of the picture's; all in double.
 struct Interpolation {
     double origin_x = 0, origin_y = 0;
     std::array<Vec3d, 3> e; ///< e[i] = coefficients of x, y, 1; positive inside, whichever side is seen
@@ -57,7 +57,8 @@ struct Interpolation {
     Interpolated at(Vec2d pixel) const;
 };
 
-/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is there.
+/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is
+/// there.
 struct SetupTriangle {
     std::array<FixedPoint, 3> corners; ///< of positive area
     std::uint32_t object = 0, primitive = 0;

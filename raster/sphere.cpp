@@ -28,8 +28,8 @@ struct Interval {
     }
 };
 
-/// Extremes of x/w over the part of the ball with w >= near > 0. They lie where a plane x = s·w touches the ball, if that is beyond
-/// the near plane, or on the circle in which the near plane cuts it.
+/// Extremes of x/w over the part of the ball with w >= near > 0. They lie where a plane x = s·w touches the ball, if
+/// that is beyond the near plane, or on the circle in which the near plane cuts it.
 Interval perspective_extremes(BallFunction x, const BallFunction& w, double near) {
     Interval result;
     const double gw = length(w.g);
@@ -63,7 +63,8 @@ Interval perspective_extremes(BallFunction x, const BallFunction& w, double near
     return result;
 }
 
-/// First pixel and one past the last that may hold a sample within the interval, one pixel of margin for the rounding of float rays.
+/// First pixel and one past the last that may hold a sample within the interval, one pixel of margin for the rounding
+/// of float rays.
 std::pair<int, int> pixel_range(const Interval& extremes, int size) {
     const double low = std::clamp(extremes.low, -2.0, size + 2.0), high = std::clamp(extremes.high, -2.0, size + 2.0);
     return {std::clamp(static_cast<int>(std::floor(low)) - 1, 0, size),
@@ -98,8 +99,11 @@ std::vector<DrawSphere> set_up_spheres(const Scene& scene, const std::vector<std
     std::vector<DrawSphere> result;
     for (const std::uint32_t index : objects) {
         const Object& object = scene.objects[index];
-        DrawSphere draw{.object = index, .bounds = {}, .sphere = std::get<Sphere>(scene.shapes[object.shape]),
-                        .identity = object.identity, .to_object = {}};
+        DrawSphere draw{.object = index,
+                        .bounds = {},
+                        .sphere = std::get<Sphere>(scene.shapes[object.shape]),
+                        .identity = object.identity,
+                        .to_object = {}};
         if (!object.identity) draw.to_object = object_transform(object, time).to_object;
         draw.bounds = sphere_bounds(draw.sphere, object_to_pixel(object, pinhole, time), viewport);
         if (!draw.bounds.empty()) result.push_back(draw);

@@ -22,10 +22,11 @@ struct DrawSphere {
     std::optional<float> intersect(const Ray& ray) const;
 };
 
-/// The pixels that may see the part beyond the near plane of an affinely mapped sphere: conservative by a pixel, empty where it can't
-/// be seen. `to_pixel` takes the sphere's space to homogeneous pixels. Exact extremes of the projected ellipsoid by the dual
-/// quadric (Sigg et al. 2006, «GPU-Based Ray-Casting of Quadratic Surfaces», §3.1), cut at the near plane as Mara and McGuire
-/// (2013, «2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere») do for spheres.
+/// The pixels that may see the part beyond the near plane of an affinely mapped sphere: conservative by a pixel, empty
+/// where it can't be seen. `to_pixel` takes the sphere's space to homogeneous pixels. Exact extremes of the projected
+/// ellipsoid by the dual quadric (Sigg et al. 2006, «GPU-Based Ray-Casting of Quadratic Surfaces», §3.1), cut at the
+/// near plane as Mara and McGuire (2013, «2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere») do for
+/// spheres.
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport);
 
 /// The spheres of the listed objects that touch the picture, in order of objects.

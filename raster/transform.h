@@ -28,8 +28,8 @@ struct Viewport {
     double near = 0; ///< smallest depth seen
 };
 
-/// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of up
-/// to 2^16 pixels a side fixed-point coordinates stay below 2^25.6 and edge functions below 2^54: exact in 64 bits.
+/// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of
+/// up to 2^16 pixels a side fixed-point coordinates stay below 2^25.6 and edge functions below 2^54: exact in 64 bits.
 inline constexpr double kGuardBand = 65536;
 inline constexpr int kMaxPictureSide = 65536;
 
@@ -59,8 +59,8 @@ struct TransformedObject {
     std::uint8_t any_outside = 0; ///< all outcodes or-ed
 };
 
-/// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is rounded: a
-/// vertex is as exact as the object's floats.
+/// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is
+/// rounded: a vertex is as exact as the object's floats.
 Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
 
 /// Transforms the meshes and quads of the listed objects, in parallel; the result has one entry an object, in order.

@@ -1,0 +1,253 @@
+// EXR through OpenEXR. Files are read from memory, and only after the header alone has been read and found plausible:
+// OpenEXR takes memory for what a header claims.
+#include "common/image/formats.h"
+#include "common/system/file.h"
+
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <ImfVersion.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+namespace duet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class MemoryStream : public Imf::IStream {
+public:
+    explicit MemoryStream(const ImageBytes& file) : IStream(file.name.c_str()), bytes_(file.bytes) {}
+
+    bool read(char data[], int size) override {
+        const auto wanted = static_cast<std::size_t>(std::max(size, 0));
+        if (wanted > bytes_.size() - at_) throw Iex::InputExc("the file ends early");
+        std::memcpy(data, bytes_.data() + at_, wanted);
+        at_ += wanted;
+        return at_ < bytes_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t position) override {
+        if (position > bytes_.size()) throw Iex::InputExc("the file ends early");
+        at_ = static_cast<std::size_t>(position);
+    }
+
+private:
+    std::string_view bytes_;
+    std::size_t at_ = 0;
+};
+
+// Calls read() and turns whatever OpenEXR throws into an Error.
+template <typename Read> auto reading(const ImageBytes& file, Read read) {
+    try {
+        return read();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw Error(message(file.name, ": not a readable EXR picture: ", error.what()));
+    }
+}
+
+struct Window {
+    Imath::Box2i box;
+    long long width = 0, height = 0;
+};
+
+Window data_window(const Imf::Header& header) {
+    const Imath::Box2i& box = header.dataWindow();
+    return {box, 1LL + box.max.x - box.min.x, 1LL + box.max.y - box.min.y};
+}
+
+double bytes_a_pixel(const Imf::Header& header) {
+    double bytes = 0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+    return bytes;
+}
+
+// What a byte of a file may stand for: deflate shrinks no more than 1032 to 1 (after PXR24 has dropped a byte of four);
+// PIZ and RLE less; DWA keeps one value of 64 and deflates it.
+double greatest_compression(Imf::Compression compression) {
+    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 132096 : 1376;
+}
+
+// Throws Error for what is not read (parts, deep pixels, subsampled channels) and for what can't be there.
+void check_header(const ImageBytes& file, const Imf::Header& header) {
+    const Window window = data_window(header);
+    check_image_size(file.name, window.width, window.height);
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
+            throw Error(
+                message(file.name, ": channel ", channel.name(), " is subsampled, expected a value for each pixel"));
+    constexpr double kMostBytes = 0x1p32, kMostTileSide = 4096, kMostRowsAtOnce = 256;
+    const double pixel = bytes_a_pixel(header);
+    const double bytes = pixel * static_cast<double>(window.width) * static_cast<double>(window.height);
+    check_claim(file, window.width, window.height, bytes / greatest_compression(header.compression()),
+                static_cast<double>(file.bytes.size()));
+    double at_once = pixel * static_cast<double>(window.width) * kMostRowsAtOnce;
+    if (header.hasTileDescription()) {
+        const Imf::TileDescription& tile = header.tileDescription();
+        if (tile.xSize > kMostTileSide || tile.ySize > kMostTileSide)
+            throw Error(message(file.name, ": tiles of ", tile.xSize, " x ", tile.ySize, " pixels, expected at most ",
+                                kMostTileSide, " a side"));
+        at_once = std::max(at_once, pixel * tile.xSize * tile.ySize);
+    }
+    if (bytes > kMostBytes || at_once > kMostBytes)
+        throw Error(message(file.name, ": ", pixel, " bytes a pixel at ", window.width, " x ", window.height,
+                            " pixels, expected at most 4 GiB in all"));
+}
+
+Imf::Header read_header(const ImageBytes& file) {
+    MemoryStream stream(file);
+    char start[8];
+    stream.read(start, 8);
+    int version = 0;
+    for (int i = 7; i >= 4; --i) version = version << 8 | static_cast<unsigned char>(start[i]);
+    if (Imf::isMultiPart(version)) throw Error(message(file.name, ": an EXR of several parts, expected a single one"));
+    if (Imf::isNonImage(version)) throw Error(message(file.name, ": an EXR of deep pixels, expected flat ones"));
+    Imf::Header header;
+    header.readFrom(stream, version);
+    check_header(file, header);
+    header.sanityCheck(Imf::isTiled(version));
+    return header;
+}
+
+Imf::Slice slice(Imf::PixelType type, const void* values, const Imath::Box2i& window) {
+    // Frame buffers are for reading and writing; OpenEXR writes to none that is written to a file.
+    return Imf::Slice::Make(type, const_cast<void*>(values), window);
+}
+
+void read_pixels(const ImageBytes& file, const Imf::FrameBuffer& frame, const Window& window) {
+    MemoryStream stream(file);
+    Imf::InputFile input(stream, 0);
+    input.setFrameBuffer(frame);
+    input.readPixels(window.box.min.y, window.box.max.y);
+}
+
+// The channels of a plain picture: R, G, B or Y, and A.
+std::vector<const char*> picture_channels(const ImageBytes& file, const Imf::ChannelList& channels) {
+    std::vector<const char*> names;
+    const bool rgb = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+    if (rgb)
+        names = {"R", "G", "B"};
+    else if (channels.findChannel("Y"))
+        names = {"Y"};
+    else {
+        std::string found;
+        for (auto channel = channels.begin(); channel != channels.end() && found.size() < 200; ++channel)
+            found += message(' ', channel.name());
+        throw Error(message(file.name, ": channels", found.empty() ? " none" : found, ", expected R, G and B, or Y"));
+    }
+    if (channels.findChannel("A")) names.push_back("A");
+    return names;
+}
+
+} // namespace
+
+PixelFile decode_exr(const ImageBytes& file) {
+    return reading(file, [&] {
+        const Imf::Header header = read_header(file);
+        const Window window = data_window(header);
+        const std::vector<const char*> names = picture_channels(file, header.channels());
+        PixelFile picture{static_cast<int>(window.width),
+                          static_cast<int>(window.height),
+                          static_cast<int>(names.size()),
+                          PixelFile::Encoding::kLinear,
+                          {}};
+        const std::size_t stride = names.size() * sizeof(float);
+        picture.values.resize(static_cast<std::size_t>(window.width * window.height) * names.size());
+        Imf::FrameBuffer frame;
+        for (std::size_t c = 0; c < names.size(); ++c)
+            frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &picture.values[c], window.box, stride,
+                                                    stride * static_cast<std::size_t>(window.width)));
+        read_pixels(file, frame, window);
+        return picture;
+    });
+}
+
+ExrFile decode_exr_channels(const ImageBytes& file) {
+    return reading(file, [&] {
+        const Imf::Header header = read_header(file);
+        const Window window = data_window(header);
+        ExrFile result{static_cast<int>(window.width), static_cast<int>(window.height), {}, {}};
+        const auto count = static_cast<std::size_t>(window.width * window.height);
+        Imf::FrameBuffer frame;
+        for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+            ExrChannel& values = result.channels.emplace_back(ExrChannel{channel.name(), {}, {}});
+            const bool integers = channel.channel().type == Imf::UINT;
+            if (integers)
+                values.integers.resize(count);
+            else
+                values.floats.resize(count);
+            frame.insert(channel.name(), integers ? slice(Imf::UINT, values.integers.data(), window.box)
+                                                  : slice(Imf::FLOAT, values.floats.data(), window.box));
+        }
+        read_pixels(file, frame, window);
+        for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute()))
+                result.attributes.push_back({attribute.name(), text->value()});
+        return result;
+    });
+}
+
+ExrFile read_exr(const fs::path& path) {
+    const std::string bytes = read_file(path);
+    if (!std::string_view(bytes).starts_with("\x76\x2f\x31\x01"))
+        throw Error(message(path.string(), ": not an EXR file"));
+    return decode_exr_channels({path.string(), bytes});
+}
+
+void write_exr(const fs::path& path, int width, int height, const std::vector<ExrChannel>& channels,
+               const std::vector<ExrAttribute>& attributes) {
+    check_image_size(path.string(), width, height, 1);
+    Imf::Header header(width, height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer frame;
+    const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const auto write = [&](const fs::path& temporary) {
+        for (const ExrAttribute& attribute : attributes)
+            header.insert(attribute.name, Imf::StringAttribute(attribute.value));
+        for (const ExrChannel& channel : channels) {
+            const bool integers = channel.floats.empty();
+            DUET_CHECK_EQ(integers ? channel.integers.size() : channel.floats.size(), count);
+            DUET_CHECK(integers || channel.integers.empty());
+            DUET_CHECK(frame.findSlice(channel.name) == nullptr);
+            const Imf::PixelType type = integers ? Imf::UINT : Imf::FLOAT;
+            const void* values = integers ? static_cast<const void*>(channel.integers.data()) : channel.floats.data();
+            header.channels().insert(channel.name, Imf::Channel(type));
+            frame.insert(channel.name, slice(type, values, header.dataWindow()));
+        }
+        // On a stream of our own: OpenEXR's destructor writes the table of offsets last, and is silent where that
+        // fails.
+        std::ofstream out(temporary, std::ios::binary);
+        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+        {
+            Imf::StdOFStream stream(out, path.string().c_str());
+            Imf::OutputFile output(stream, header, 0);
+            output.setFrameBuffer(frame);
+            output.writePixels(height);
+        }
+        out.close();
+        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+    };
+    write_whole(path, [&](const fs::path& temporary) {
+        try {
+            write(temporary);
+        } catch (const Error&) {
+            throw;
+        } catch (const std::exception& error) {
+            throw Error(message(path.string(), ": cannot be written: ", error.what()), 1);
+        }
+    });
+}
+
+} // namespace duet

@@ -1,0 +1,153 @@
+#include "common/image/image_file.h"
+
+#include "common/image/formats.h"
+#include "common/image/srgb.h"
+#include "common/system/file.h"
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace duet {
+
+namespace fs = std::filesystem;
+using namespace std::string_view_literals;
+
+namespace {
+
+struct Reader {
+    std::string_view signature;
+    PixelFile (*decode)(const ImageBytes&);
+};
+constexpr std::array kReaders{
+    Reader{"\x89PNG\r\n\x1a\n"sv, decode_png},
+    Reader{"\xff\xd8\xff"sv, decode_jpeg},
+    Reader{"P3"sv, decode_ppm},
+    Reader{"P6"sv, decode_ppm},
+    Reader{"PF"sv, decode_pfm},
+    Reader{"Pf"sv, decode_pfm},
+    Reader{"#?"sv, decode_hdr},
+    Reader{"\x76\x2f\x31\x01"sv, decode_exr},
+};
+
+std::string encode_nothing(const ImageRgb&, const WriteOptions&) { return {}; }
+
+struct Writer {
+    std::string_view ending;
+    std::string (*encode)(const ImageRgb&, const WriteOptions&);
+};
+// OpenEXR writes its files itself.
+constexpr std::array kWriters{
+    Writer{".png", encode_png}, Writer{".jpg", encode_jpeg},    Writer{".jpeg", encode_jpeg},
+    Writer{".tga", encode_tga}, Writer{".ppm", encode_ppm},     Writer{".pfm", encode_pfm},
+    Writer{".hdr", encode_hdr}, Writer{".exr", encode_nothing},
+};
+
+std::string lower_case_ending(const fs::path& path) {
+    std::string ending = path.extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
+const Writer& find_writer(const fs::path& path) {
+    const std::string ending = lower_case_ending(path);
+    for (const Writer& writer : kWriters)
+        if (writer.ending == ending) return writer;
+    throw Error(message(path.string(), ": ", ending.empty() ? "no ending" : "unknown ending " + ending,
+                        ", expected .png, .jpg, .jpeg, .tga, .ppm, .pfm, .hdr or .exr"));
+}
+
+void write_rgb_exr(const fs::path& path, const ImageRgb& image) {
+    std::vector<ExrChannel> channels{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}};
+    for (std::size_t c = 0; c < 3; ++c) {
+        channels[c].floats.reserve(image.size());
+        for (const Rgb& pixel : image) channels[c].floats.push_back(pixel[c]);
+    }
+    write_exr(path, image.width(), image.height(), channels);
+}
+
+// Decodes encoded values: the 256 of 8-bit files (k/255, and k·257/65535 is the same float) by a table, others by the
+// curve.
+class Decoder {
+public:
+    Decoder() {
+        for (std::size_t k = 0; k < table_.size(); ++k) table_[k] = srgb_decode_8bit(static_cast<std::uint8_t>(k));
+    }
+    float operator()(float encoded) const {
+        const float code = std::nearbyint(encoded * 255.0f);
+        const bool listed = code >= 0.0f && code <= 255.0f && code / 255.0f == encoded;
+        return listed ? table_[static_cast<std::size_t>(code)] : srgb_decode(encoded);
+    }
+
+private:
+    std::array<float, 256> table_{};
+};
+
+} // namespace
+
+void check_image_size(const std::string& name, long long width, long long height, int exit_code) {
+    const bool sides_fit = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
+    if (sides_fit && width * height <= kMaxImagePixels) return;
+    throw Error(message(name, ": a picture of ", width, " x ", height, " pixels, expected 1 to ", kMaxImageSide,
+                        " a side and at most ", kMaxImagePixels, " in all"),
+                exit_code);
+}
+
+void check_claim(const ImageBytes& file, long long width, long long height, double needed, double available) {
+    if (needed <= available) return;
+    throw Error(message(file.name, ": truncated: ", width, " x ", height, " pixels cannot be in its ",
+                        file.bytes.size(), " bytes"));
+}
+
+PixelFile decode_image(const ImageBytes& file, const std::string& ending) {
+    if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected a picture"));
+    for (const Reader& reader : kReaders)
+        if (file.bytes.starts_with(reader.signature)) return reader.decode(file);
+    if (ending == ".tga") return decode_tga(file);
+    throw Error(
+        message(file.name, ": unknown format, expected a PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR or EXR picture"));
+}
+
+PixelFile read_pixel_file(const fs::path& path) {
+    const std::string bytes = read_file(path);
+    return decode_image({path.string(), bytes}, lower_case_ending(path));
+}
+
+ImageRgb to_linear(const PixelFile& file) {
+    const Decoder decode;
+    ImageRgb image(file.width, file.height);
+    const auto channels = static_cast<std::size_t>(file.channels), width = static_cast<std::size_t>(file.width);
+    DUET_CHECK_EQ(file.values.size(), image.size() * channels);
+    const bool grey = channels < 3, encoded = file.encoding == PixelFile::Encoding::kEncoded;
+    parallel_for(static_cast<std::size_t>(file.height), 0, [&](std::size_t y) {
+        for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
+            const float* value = &file.values[i * channels];
+            const Rgb stored = grey ? Rgb(value[0]) : Rgb(value[0], value[1], value[2]);
+            image[i] = encoded ? Rgb(decode(stored.r), decode(stored.g), decode(stored.b)) : stored;
+        }
+    });
+    return image;
+}
+
+ImageRgb read_image(const fs::path& path) { return to_linear(read_pixel_file(path)); }
+
+void write_image(const fs::path& path, const ImageRgb& image, const WriteOptions& options) {
+    const Writer& writer = find_writer(path);
+    check_image_size(path.string(), image.width(), image.height(), 1);
+    if (writer.encode == encode_nothing)
+        write_rgb_exr(path, image);
+    else
+        write_file(path, writer.encode(image, options));
+}
+
+void check_writable_image(const fs::path& path) {
+    find_writer(path);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) throw Error(message(path.string(), ": no folder ", folder.string()));
+    if (fs::is_directory(path, error)) throw Error(message(path.string(), ": is a folder, expected a file's name"));
+}
+
+} // namespace duet

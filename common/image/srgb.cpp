@@ -1,0 +1,58 @@
+#include "common/image/srgb.h"
+
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace duet {
+
+namespace {
+
+// The smallest float that is not below x (0 < x < 1).
+float round_up(double x) {
+    const float nearest = static_cast<float>(x);
+    return static_cast<double>(nearest) < x ? std::nextafter(nearest, 2.0f) : nearest;
+}
+
+} // namespace
+
+SrgbEncoder::SrgbEncoder() {
+    for (std::size_t k = 0; k < 255; ++k) change_[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
+    change_[255] = std::numeric_limits<float>::infinity();
+    std::uint8_t code = 0;
+    for (std::uint32_t i = 0; i < kIntervals; ++i) {
+        const float lower = std::bit_cast<float>(kSmallestBits + (i << kShift));
+        while (lower >= change_[code]) ++code;
+        first_code_[i] = code;
+        // What the class promises: no second change within the interval.
+        const float upper = std::bit_cast<float>(kSmallestBits + ((i + 1) << kShift));
+        DUET_CHECK(code >= 254 || change_[static_cast<std::size_t>(code) + 1] >= upper);
+    }
+}
+
+const SrgbEncoder& srgb_encoder() {
+    static const SrgbEncoder encoder;
+    return encoder;
+}
+
+std::vector<std::uint8_t> srgb_encode_8bit(const ImageRgb& image, int threads) {
+    const SrgbEncoder& encode = srgb_encoder();
+    const auto width = static_cast<std::size_t>(image.width());
+    std::vector<std::uint8_t> bytes(image.size() * 3);
+    // Bands of some 64,000 pixels: long enough to pay for the hand-over to a thread.
+    const std::size_t rows = width == 0 ? 1 : 1 + 65536 / width;
+    const auto height = static_cast<std::size_t>(image.height());
+    parallel_for((height + rows - 1) / rows, threads, [&](std::size_t band) {
+        const std::size_t first = band * rows * width, last = std::min((band + 1) * rows, height) * width;
+        for (std::size_t i = first; i < last; ++i) {
+            const Rgb& pixel = image[i];
+            bytes[3 * i] = encode(pixel.r);
+            bytes[3 * i + 1] = encode(pixel.g);
+            bytes[3 * i + 2] = encode(pixel.b);
+        }
+    });
+    return bytes;
+}
+
+} // namespace duet

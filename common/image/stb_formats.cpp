@@ -1,0 +1,234 @@
+// PNG, JPEG and TGA through stb. What stb leaves unchecked is checked here: it takes a file that ends early for one
+// that goes on with zeros, ignores PNG's checksums, and takes memory for any size that a header claims.
+#include "common/image/formats.h"
+#include "common/image/srgb.h"
+
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_NO_STDIO
+#define STBI_NO_LINEAR
+#define STBI_MAX_DIMENSIONS 32768
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+// stb's header is a SYSTEM one, but functions left unused are reported where their definitions are expanded.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+namespace duet {
+
+namespace {
+
+static_assert(STBI_MAX_DIMENSIONS == kMaxImageSide);
+
+std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+std::uint32_t big_endian_at(std::string_view bytes, std::size_t i) {
+    return byte_at(bytes, i) << 24 | byte_at(bytes, i + 1) << 16 | byte_at(bytes, i + 2) << 8 | byte_at(bytes, i + 3);
+}
+
+// Decoding -----------------------------------------------------------------------------------------------------------
+
+// Gives stb a file, and notices when it asks for more than there is. stb fills a buffer of 128 bytes at a time, which
+// the file's end may well cut short, or reads straight into its own memory, where it must get all.
+class Source {
+public:
+    explicit Source(std::string_view bytes) : bytes_(bytes) {}
+
+    bool ran_dry() const { return ran_dry_; }
+
+    static stbi_io_callbacks callbacks() {
+        return {[](void* source, char* data, int size) { return static_cast<Source*>(source)->read(data, size); },
+                [](void* source, int count) { static_cast<Source*>(source)->skip(count); },
+                [](void* source) { return static_cast<Source*>(source)->at_end() ? 1 : 0; }};
+    }
+
+private:
+    static constexpr std::size_t kBufferSize = sizeof(stbi__context::buffer_start);
+
+    int read(char* data, int size) {
+        const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0)),
+                          count = std::min(wanted, bytes_.size() - at_);
+        if (count < wanted && (wanted != kBufferSize || count == 0)) ran_dry_ = true;
+        std::memcpy(data, bytes_.data() + at_, count);
+        at_ += count;
+        return static_cast<int>(count);
+    }
+    void skip(int count) {
+        const std::size_t wanted = static_cast<std::size_t>(std::max(count, 0));
+        if (wanted > bytes_.size() - at_) ran_dry_ = true;
+        at_ += std::min(wanted, bytes_.size() - at_);
+    }
+    bool at_end() const { return at_ == bytes_.size(); }
+
+    std::string_view bytes_;
+    std::size_t at_ = 0;
+    bool ran_dry_ = false;
+};
+
+[[noreturn]] void stb_failed(const ImageBytes& file, const char* format, const Source& source) {
+    const char* reason = stbi_failure_reason();
+    throw Error(message(file.name, ": not a readable ", format, " picture: ",
+                        source.ran_dry()    ? "truncated"
+                        : reason != nullptr ? reason
+                                            : "unknown reason"));
+}
+
+struct Size {
+    int width = 0, height = 0, channels = 0;
+};
+
+Size stb_size(const ImageBytes& file, const char* format) {
+    if (file.bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw Error(message(file.name, ": ", file.bytes.size(), " bytes, expected less than 2 GiB"));
+    Size size;
+    Source source(file.bytes);
+    const stbi_io_callbacks callbacks = Source::callbacks();
+    if (stbi_info_from_callbacks(&callbacks, &source, &size.width, &size.height, &size.channels) == 0)
+        stb_failed(file, format, source);
+    check_image_size(file.name, size.width, size.height);
+    return size;
+}
+
+template <typename Sample, typename Load> PixelFile decode_with(Load load, const ImageBytes& file, const char* format) {
+    PixelFile picture;
+    picture.encoding = PixelFile::Encoding::kEncoded;
+    Source source(file.bytes);
+    const stbi_io_callbacks callbacks = Source::callbacks();
+    const std::unique_ptr<Sample, decltype(&stbi_image_free)> samples(
+        load(&callbacks, &source, &picture.width, &picture.height, &picture.channels, 0), stbi_image_free);
+    if (!samples || source.ran_dry()) stb_failed(file, format, source);
+    const std::size_t count = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
+                              static_cast<std::size_t>(picture.channels);
+    picture.values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+        picture.values.push_back(static_cast<float>(samples.get()[i]) /
+                                 static_cast<float>(std::numeric_limits<Sample>::max()));
+    return picture;
+}
+
+// PNG: chunks, each with a checksum (ISO/IEC 15948, §5; the checksum: Annex D).
+
+constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t i = 0; i < table.size(); ++i) {
+        std::uint32_t c = i;
+        for (int bit = 0; bit < 8; ++bit) c = (c & 1) != 0 ? 0xedb88320u ^ c >> 1 : c >> 1;
+        table[i] = c;
+    }
+    return table;
+}();
+
+std::uint32_t crc32(std::string_view bytes) {
+    std::uint32_t c = 0xffffffffu;
+    for (const char byte : bytes) c = kCrcTable[(c ^ static_cast<unsigned char>(byte)) & 255] ^ c >> 8;
+    return ~c;
+}
+
+// Throws Error unless the chunks are whole up to the last and the picture's size may be true: deflate shrinks no more
+// than 1032 to 1.
+void check_png(const ImageBytes& file) {
+    constexpr std::size_t kSignature = 8, kFrame = 12; // length, type, checksum
+    std::size_t pixel_bytes = 0;
+    std::string_view type;
+    for (std::size_t at = kSignature; type != "IEND";) {
+        const std::size_t left = file.bytes.size() - at;
+        const std::size_t length = left < kFrame ? 0 : big_endian_at(file.bytes, at);
+        if (left < kFrame || length > left - kFrame)
+            throw Error(message(file.name, ": truncated: the file ends before its last chunk (IEND)"));
+        type = file.bytes.substr(at + 4, 4);
+        if (crc32(file.bytes.substr(at + 4, length + 4)) != big_endian_at(file.bytes, at + 8 + length))
+            throw Error(message(file.name, ": corrupt: wrong checksum in the chunk at byte ", at));
+        const bool first = at == kSignature;
+        if (first != (type == "IHDR") || (first && length != 13))
+            throw Error(message(file.name, ": corrupt: the header (IHDR) is not where it belongs"));
+        if (type == "IDAT") pixel_bytes += length;
+        at += kFrame + length;
+    }
+    const std::string_view header = file.bytes.substr(kSignature + 8, 13);
+    const long long width = big_endian_at(header, 0), height = big_endian_at(header, 4);
+    check_image_size(file.name, width, height);
+    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by colour type
+    const double channels = byte_at(header, 9) < kChannels.size() ? kChannels[byte_at(header, 9)] : 0;
+    const double bytes = static_cast<double>(width * height) * channels * byte_at(header, 8) / 8;
+    check_claim(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
+}
+
+// The least bytes of a TGA's pixels: whole, or in runs of up to 128 (Truevision TGA, Version 2.0, «Data Types»).
+double least_tga_bytes(const ImageBytes& file, const Size& size) {
+    const double pixels = static_cast<double>(size.width) * size.height;
+    const bool runs = (byte_at(file.bytes, 2) & 8) != 0;
+    const double bytes_a_pixel = (byte_at(file.bytes, 16) + 7) / 8;
+    return runs ? pixels / 128 * (1 + bytes_a_pixel) : pixels * bytes_a_pixel;
+}
+
+// Encoding -----------------------------------------------------------------------------------------------------------
+
+void append(void* file, void* data, int size) {
+    static_cast<std::string*>(file)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+}
+
+template <typename Write> std::string encode_with(Write write, const ImageRgb& image) {
+    const std::vector<std::uint8_t> bytes = srgb_encode_8bit(image);
+    std::string file;
+    if (write(&append, &file, image.width(), image.height(), 3, bytes.data()) == 0)
+        throw Error("a picture cannot be encoded: out of memory", 1);
+    return file;
+}
+
+} // namespace
+
+PixelFile decode_png(const ImageBytes& file) {
+    check_png(file);
+    stb_size(file, "PNG");
+    // Bits a sample: byte 8 of the header chunk's data.
+    return byte_at(file.bytes, 24) == 16 ? decode_with<stbi_us>(stbi_load_16_from_callbacks, file, "PNG")
+                                         : decode_with<stbi_uc>(stbi_load_from_callbacks, file, "PNG");
+}
+
+PixelFile decode_jpeg(const ImageBytes& file) {
+    const Size size = stb_size(file, "JPEG");
+    // A block of 8 x 8 values takes a bit at least, and stands for 16 blocks at most where all channels are subsampled.
+    const double pixels = static_cast<double>(size.width) * size.height;
+    check_claim(file, size.width, size.height, pixels / (64 * 16 * 8), static_cast<double>(file.bytes.size()));
+    return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "JPEG");
+}
+
+PixelFile decode_tga(const ImageBytes& file) {
+    const Size size = stb_size(file, "TGA");
+    check_claim(file, size.width, size.height, least_tga_bytes(file, size),
+                static_cast<double>(file.bytes.size() - 18));
+    return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "TGA");
+}
+
+std::string encode_png(const ImageRgb& image, const WriteOptions&) {
+    const auto write = [](auto append_, void* file, int width, int height, int channels, const std::uint8_t* bytes) {
+        return stbi_write_png_to_func(append_, file, width, height, channels, bytes, width * channels);
+    };
+    return encode_with(write, image);
+}
+
+std::string encode_jpeg(const ImageRgb& image, const WriteOptions& options) {
+    const auto write = [&](auto append_, void* file, int width, int height, int channels, const std::uint8_t* bytes) {
+        const int quality = std::clamp(options.jpeg_quality, 1, 100);
+        return stbi_write_jpg_to_func(append_, file, width, height, channels, bytes, quality);
+    };
+    return encode_with(write, image);
+}
+
+std::string encode_tga(const ImageRgb& image, const WriteOptions&) {
+    return encode_with(stbi_write_tga_to_func, image);
+}
+
+} // namespace duet

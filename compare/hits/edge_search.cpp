@@ -1,0 +1,113 @@
+#include "compare/hits/edge_search.h"
+
+#include <cmath>
+
+namespace duet::compare {
+
+namespace {
+
+constexpr double kGoldenRatio = 1.6180339887498949;
+
+struct Search {
+    const ExactTracer& tracer;
+    const Pinhole& pinhole;
+    Vec2d pixel;
+    const Hit &a, &b;
+    EdgeSearch result;
+
+    /// Traces one displaced ray; true when both hits have been found.
+    bool try_at(Vec2d p) {
+        if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) note(tracer.nearest(pinhole.ray(p)));
+        return result.both();
+    }
+    void note(const ExactHit& hit) {
+        if (hit.same_as(a)) result.found_a = true;
+        if (hit.same_as(b)) result.found_b = true;
+    }
+};
+
+/// Circles, radii halving towards the centre: most disagreements are plain edges, and end here.
+bool try_circles(Search& search) {
+    constexpr int kAngles = 16;
+    for (double radius = kEdgeRadius * (1 - 1e-9); radius > kEdgeRadius / 100; radius /= 2)
+        for (int i = 0; i < kAngles; ++i) {
+            const double angle = (i + 0.5) * 2 * kPiDouble / kAngles;
+            if (search.try_at(search.pixel + Vec2d(std::cos(angle), std::sin(angle)) * radius)) return true;
+        }
+    return false;
+}
+
+/// Vogel's sunflower: even over the disk at any number of points.
+bool try_disk(Search& search) {
+    constexpr int kPoints = 4096;
+    for (int i = 0; i < kPoints; ++i) {
+        const double radius = kEdgeRadius * std::sqrt((i + 0.5) / kPoints);
+        const double angle = 2 * kPiDouble * i / sqr(kGoldenRatio);
+        if (search.try_at(search.pixel + Vec2d(std::cos(angle), std::sin(angle)) * radius)) return true;
+    }
+    return false;
+}
+
+/// The part of a homogeneous polygon (x·w, y·w, depth, w) where `plane` · vertex ≥ 0 (Sutherland and Hodgman 1974).
+std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
+    const auto side = [&](Vec4d v) { return plane.x * v.x + plane.y * v.y + plane.z * v.z + plane.w * v.w; };
+    std::vector<Vec4d> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec4d from = polygon[i], to = polygon[(i + 1) % polygon.size()];
+        const double d0 = side(from), d1 = side(to);
+        if (d0 >= 0) kept.push_back(from);
+        if ((d0 < 0) != (d1 < 0)) kept.push_back(from + (to + from * -1.0) * (d0 / (d0 - d1)));
+    }
+    return kept;
+}
+
+/// The part of a polygon in the world that projects into the disk around `pixel`, in pixels; the disk as the octagon
+/// within it.
+std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners) {
+    std::vector<Vec4d> polygon;
+    for (const Vec3d& p : corners) polygon.push_back(pinhole.world_to_pixel * Vec4d(p, 1.0));
+    // Depth is affine in the world (and equals w under perspective): what lies before the near plane goes first.
+    for (Vec4d& v : polygon) v.z -= pinhole.near;
+    polygon = clip(polygon, {0, 0, 1, 0});
+    constexpr int kSides = 8;
+    const double reach = kEdgeRadius * std::cos(kPiDouble / kSides);
+    for (int i = 0; i < kSides && !polygon.empty(); ++i) {
+        const double angle = 2 * kPiDouble * i / kSides, x = std::cos(angle), y = std::sin(angle);
+        polygon = clip(polygon, {-x, -y, 0, reach + x * pixel.x + y * pixel.y});
+    }
+    std::vector<Vec2d> points;
+    for (const Vec4d& v : polygon)
+        if (v.w > 0) points.emplace_back(v.x / v.w, v.y / v.w);
+    return points;
+}
+
+/// Aims into the part of one primitive that lies within reach: its fan of triangles, low-discrepancy points in each. A
+/// sliver thousands of times thinner than the disk is found this way.
+bool try_primitive(Search& search, const Hit& hit) {
+    if (!hit.valid()) return false;
+    const std::vector<Vec2d> polygon =
+        within_reach(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive));
+    constexpr int kPoints = 64;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        for (int k = 0; k < kPoints; ++k) {
+            // Roberts' R2 sequence, folded into the triangle.
+            double s = std::fmod(0.5 + 0.7548776662466927 * k, 1.0), t = std::fmod(0.5 + 0.5698402909980532 * k, 1.0);
+            if (s + t > 1) s = 1 - s, t = 1 - t;
+            const Vec2d p = polygon[0] + (polygon[i] - polygon[0]) * s + (polygon[i + 1] - polygon[0]) * t;
+            if (search.try_at(p)) return true;
+        }
+    return false;
+}
+
+} // namespace
+
+EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
+    Search search{tracer, pinhole, pixel, a, b, {}};
+    search.result.center = tracer.nearest(pinhole.ray(pixel));
+    search.note(search.result.center);
+    (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
+           try_disk(search));
+    return search.result;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,171 @@
+#include "compare/hits/exact_trace.h"
+
+#include <cmath>
+#include <optional>
+
+namespace duet::compare {
+
+namespace {
+
+/// The ray's t on triangle abc, edges and vertices included. The signs of the volumes that the ray spans with each edge
+/// decide; those of a shared edge are exact negatives of each other, so no ray slips between two triangles.
+std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d n = cross(b - a, c - a);
+    const Vec3d oa = a - ray.origin, ob = b - ray.origin, oc = c - ray.origin;
+    const double wa = dot(ray.direction, cross(ob, oc)), wb = dot(ray.direction, cross(oc, oa)),
+                 wc = dot(ray.direction, cross(oa, ob));
+    if (!((wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0))) return {};
+    const double slope = dot(n, ray.direction);
+    if (slope == 0) return {}; // seen edge-on, or no area
+    const double t = dot(n, oa) / slope;
+    if (!(t > ray.t_min && t <= ray.t_max)) return {};
+    return t;
+}
+
+/// As common/geometry/sphere.h, in double: the discriminant from the distance of the centre to the line, and the roots
+/// without subtracting nearly equal numbers.
+std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
+    const Vec3d f = ray.origin - Vec3d(sphere.center);
+    const double radius = sphere.radius, a = length_squared(ray.direction), b = -dot(f, ray.direction);
+    const double discriminant = sqr(radius) - length_squared(f + ray.direction * (b / a));
+    if (discriminant < 0) return {};
+    const double distance = length(f), c = (distance - radius) * (distance + radius);
+    const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+    const double t0 = c / q,
+                 t1 = q / a; // q = 0 only where the ray starts on the sphere and touches it: t0 is NaN, t1 is 0
+    const double low = min(t0, t1), high = max(t0, t1);
+    if (low > ray.t_min && low <= ray.t_max) return low;
+    if (high > ray.t_min && high <= ray.t_max) return high;
+    return {};
+}
+
+std::optional<double> intersect(const Rayd& ray, const Shape& shape, std::uint32_t primitive) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return intersect(ray, *sphere);
+    const Corners corners = primitive_corners(shape, primitive);
+    const Vec3d a(corners.p[0]), b(corners.p[1]), c(corners.p[2]);
+    const std::optional<double> t = intersect(ray, a, b, c);
+    return t || corners.count == 3 ? t : intersect(ray, a, c, Vec3d(corners.p[3]));
+}
+
+Box3d primitive_box(const Shape& shape, std::uint32_t primitive) {
+    Box3d box;
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        // A little larger than the sphere: rounding must not cut its poles off.
+        const double r = sphere->radius * (1 + 1e-12);
+        box.extend(Vec3d(sphere->center) - Vec3d(r, r, r));
+        box.extend(Vec3d(sphere->center) + Vec3d(r, r, r));
+        return box;
+    }
+    const Corners corners = primitive_corners(shape, primitive);
+    for (int i = 0; i < corners.count; ++i) box.extend(Vec3d(corners.p[static_cast<std::size_t>(i)]));
+    return box;
+}
+
+std::vector<Box3d> primitive_boxes(const Shape& shape) {
+    std::vector<Box3d> boxes(primitive_count(shape));
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) boxes[i] = primitive_box(shape, i);
+    return boxes;
+}
+
+/// The box of a box under an affine map, enlarged by far more than the map's rounding error.
+Box3d transformed(const Box3d& box, const Mat4d& map) {
+    Box3d result;
+    for (int corner = 0; corner < 8; ++corner)
+        result.extend(
+            transform_point(map, Vec3d((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
+                                       (corner & 4 ? box.high : box.low).z)));
+    const double size = max_component(max(abs(result.low), abs(result.high))) * 1e-12;
+    result.low = result.low - Vec3d(size, size, size);
+    result.high = result.high + Vec3d(size, size, size);
+    return result;
+}
+
+std::vector<BoxTree> build_trees(const Scene& scene, std::vector<Box3d>& shape_boxes) {
+    std::vector<BoxTree> trees;
+    for (const Shape& shape : scene.shapes) {
+        const std::vector<Box3d> boxes = primitive_boxes(shape);
+        Box3d all;
+        for (const Box3d& box : boxes) all.extend(box);
+        shape_boxes.push_back(all);
+        trees.emplace_back(boxes);
+    }
+    return trees;
+}
+
+bool before(const ExactHit& a, const ExactHit& b) {
+    if (a.t != b.t) return a.t < b.t;
+    return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
+}
+
+} // namespace
+
+ExactTracer::ExactTracer(const Scene& scene, double time) : object_tree_({}) {
+    std::vector<Box3d> shape_boxes, object_boxes;
+    shape_trees_ = build_trees(scene, shape_boxes);
+    for (const Object& object : scene.objects) {
+        const Mat4d to_world(object_transform(object, static_cast<float>(time)).to_world);
+        objects_.push_back({&scene.shapes[object.shape], to_world, inverse_affine(to_world)});
+        trees_.push_back(&shape_trees_[object.shape]);
+        const Box3d& box = shape_boxes[object.shape];
+        object_boxes.push_back(box.empty() ? box : transformed(box, to_world));
+    }
+    object_tree_ = BoxTree(object_boxes);
+}
+
+Rayd ExactTracer::to_object_space(const Rayd& ray, const Placed& placed) const {
+    Rayd local = ray; // the direction is not normalized: t stays what it is
+    local.origin = transform_point(placed.to_object, ray.origin);
+    local.direction = transform_vector(placed.to_object, ray.direction);
+    return local;
+}
+
+ExactHit ExactTracer::nearest(const Rayd& ray) const {
+    ExactHit best;
+    object_tree_.visit(ray, [&](std::uint32_t object, double t_max) {
+        const Placed& placed = objects_[object];
+        Rayd local = to_object_space(ray, placed);
+        local.t_max = t_max;
+        trees_[object]->visit(local, [&](std::uint32_t primitive, double local_t_max) {
+            local.t_max = local_t_max;
+            const std::optional<double> t = compare::intersect(local, *placed.shape, primitive);
+            if (!t) return local_t_max;
+            const ExactHit hit{object, primitive, *t};
+            if (before(hit, best)) best = hit;
+            return min(local_t_max, best.t);
+        });
+        return min(t_max, best.t);
+    });
+    return best;
+}
+
+ExactHit ExactTracer::intersect(const Rayd& ray, std::uint32_t object, std::uint32_t primitive) const {
+    const Placed& placed = objects_[object];
+    const std::optional<double> t = compare::intersect(to_object_space(ray, placed), *placed.shape, primitive);
+    return t ? ExactHit{object, primitive, *t} : ExactHit{};
+}
+
+double ExactTracer::cosine(const Rayd& ray, std::uint32_t object, std::uint32_t primitive, double t) const {
+    const Placed& placed = objects_[object];
+    Vec3d n;
+    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
+        n = to_object_space(ray, placed).at(t) - Vec3d(sphere->center);
+    } else {
+        const Corners corners = primitive_corners(*placed.shape, primitive);
+        n = cross(Vec3d(corners.p[1]) - Vec3d(corners.p[0]), Vec3d(corners.p[2]) - Vec3d(corners.p[0]));
+    }
+    n = transform_normal(placed.to_object, n);
+    const double size = length(n) * length(ray.direction);
+    return size > 0 ? std::abs(dot(n, ray.direction)) / size : 0;
+}
+
+std::vector<Vec3d> ExactTracer::corners(std::uint32_t object, std::uint32_t primitive) const {
+    const Placed& placed = objects_[object];
+    std::vector<Vec3d> points;
+    if (std::holds_alternative<Sphere>(*placed.shape)) return points;
+    const Corners corners = primitive_corners(*placed.shape, primitive);
+    for (int i = 0; i < corners.count; ++i)
+        points.push_back(transform_point(placed.to_world, Vec3d(corners.p[static_cast<std::size_t>(i)])));
+    return points;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,56 @@
+#include "compare/pipeline.h"
+
+#include "common/system/stopwatch.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+namespace duet::compare {
+
+namespace {
+
+/// One sample a pixel, and nothing but its hit.
+template <typename Settings> Settings hits_only(Settings settings) {
+    settings.samples_per_pixel = 1;
+    settings.aovs = AovSet{};
+    settings.aovs.hit = true;
+    return settings;
+}
+
+} // namespace
+
+Pipeline raster_pipeline(const Scene& scene, const PipelineSettings& common) {
+    raster::Settings settings;
+    settings.samples_per_pixel = common.raster_spp;
+    settings.threads = common.threads;
+    settings.seed = common.seed;
+    raster::Settings hits = hits_only(settings);
+    hits.shading = raster::Shading::kNormal; // the cheapest picture: only its hits are kept
+
+    const Stopwatch watch;
+    const raster::Prepared prepared = raster::prepare(scene, settings);
+    const auto renderer = [prepared](const raster::Settings& s) -> RenderFunction {
+        return [prepared, s](const View& view, Control& control) { return raster::render(prepared, view, s, control); };
+    };
+    return {"raster", renderer(settings), renderer(hits), watch.seconds()};
+}
+
+Pipeline raytrace_pipeline(const Scene& scene, const PipelineSettings& common) {
+    raytrace::Settings settings;
+    settings.samples_per_pixel = common.raytrace_spp;
+    settings.max_depth = common.max_depth;
+    settings.threads = common.threads;
+    settings.seed = common.seed;
+    raytrace::Settings hits = hits_only(settings);
+    hits.sampler = SamplerKind::kCenter;
+    hits.integrator = raytrace::Integrator::kNormal;
+
+    const Stopwatch watch;
+    const raytrace::Prepared prepared = raytrace::prepare(scene, settings);
+    const auto renderer = [prepared](const raytrace::Settings& s) -> RenderFunction {
+        return
+            [prepared, s](const View& view, Control& control) { return raytrace::render(prepared, view, s, control); };
+    };
+    return {"raytrace", renderer(settings), renderer(hits), watch.seconds()};
+}
+
+} // namespace duet::compare

@@ -1,0 +1,67 @@
+#include "compare/report/encode.h"
+
+#include <bit>
+#include <cmath>
+#include <zlib.h>
+
+namespace duet::compare {
+
+std::uint16_t half_bits(float value) {
+    const auto sign = static_cast<std::uint16_t>(std::signbit(value) ? 0x8000 : 0);
+    const auto with_sign = [&](std::uint32_t bits) { return static_cast<std::uint16_t>(sign | bits); };
+    const float size = std::abs(value);
+    if (std::isnan(value)) return with_sign(0x7e00);
+    if (std::isinf(value)) return with_sign(0x7c00);
+    if (size >= 65504.0f) return with_sign(0x7bff);
+    // Below 2^-14 the steps are 2^-24. nearbyint rounds ties to even; 1024 steps are the bits of 2^-14 itself.
+    if (size < 0x1p-14f) return with_sign(static_cast<std::uint32_t>(std::nearbyint(size * 0x1p24f)));
+    // Drop 13 of 23 bits, ties to even; a carry goes into the exponent, as it should.
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(size);
+    const std::uint32_t rounded = bits + 0xfff + ((bits >> 13) & 1);
+    return with_sign((rounded >> 13) - (112u << 10)); // exponents are biased by 127 there, by 15 here
+}
+
+std::string base64(std::string_view bytes) {
+    static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const auto byte = [&](std::size_t i) {
+        return i < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) : 0u;
+    };
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::uint32_t group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        text += kDigits[group >> 18];
+        text += kDigits[group >> 12 & 63];
+        text += i + 1 < bytes.size() ? kDigits[group >> 6 & 63] : '=';
+        text += i + 2 < bytes.size() ? kDigits[group & 63] : '=';
+    }
+    return text;
+}
+
+namespace {
+
+std::string deflate(const std::string& bytes) {
+    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+    std::string packed(size, '\0');
+    const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 6);
+    if (status != Z_OK) throw Error(message("the report's pictures cannot be compressed: zlib error ", status), 1);
+    packed.resize(size);
+    return packed;
+}
+
+} // namespace
+
+std::string encode_plane(const std::vector<std::uint32_t>& values, int width, int bytes) {
+    std::string planes(values.size() * static_cast<std::size_t>(bytes), '\0');
+    const auto columns = static_cast<std::size_t>(width);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::uint32_t difference = values[i] - (i % columns == 0 ? 0 : values[i - 1]);
+        for (int b = 0; b < bytes; ++b)
+            planes[static_cast<std::size_t>(b) * values.size() + i] =
+                static_cast<char>(difference >> (8 * (bytes - 1 - b)) & 255);
+    }
+    return base64(deflate(planes));
+}
+
+} // namespace duet::compare

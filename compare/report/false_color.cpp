@@ -1,0 +1,57 @@
+#include "compare/report/false_color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace duet::compare {
+
+namespace {
+
+// Nine anchors from dark blue over near white to dark orange, as sRGB bytes: the page's paint.js has the same.
+constexpr std::array<Rgb, 9> kAnchors = {Rgb(8, 48, 107),    Rgb(33, 102, 172),  Rgb(82, 148, 206),
+                                         Rgb(167, 205, 230), Rgb(246, 246, 244), Rgb(250, 203, 150),
+                                         Rgb(233, 143, 53),  Rgb(190, 92, 8),    Rgb(115, 49, 6)};
+
+/// The true curve (IEC 61966-2-1), both ways being the business of image files; here a colour table becomes linear.
+float decode_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+double luminance_difference(const ImageRgb& a, const ImageRgb& b, std::size_t i) {
+    return luminance(Rgbd(a[i])) - luminance(Rgbd(b[i]));
+}
+
+} // namespace
+
+Rgb diverging_color(double value) {
+    const double position = (std::clamp(value, -1.0, 1.0) + 1) / 2 * static_cast<double>(kAnchors.size() - 1);
+    const std::size_t low = std::min(static_cast<std::size_t>(position), kAnchors.size() - 2);
+    return lerp(kAnchors[low], kAnchors[low + 1], static_cast<float>(position - static_cast<double>(low))) / 255.0f;
+}
+
+ImageRgb difference_picture(const ImageRgb& a, const ImageRgb& b, double range) {
+    ImageRgb picture(a.width(), a.height());
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double difference = luminance_difference(a, b, i);
+        const Rgb color = std::isfinite(difference) ? diverging_color(difference / range) : Rgb(1, 0, 1);
+        picture[i] = {decode_srgb(color.r), decode_srgb(color.g), decode_srgb(color.b)};
+    }
+    return picture;
+}
+
+double difference_range(const ImageRgb& a, const ImageRgb& b) {
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double size = std::abs(luminance_difference(a, b, i));
+        if (std::isfinite(size)) sizes.push_back(size);
+    }
+    if (sizes.empty()) return 0.001;
+    const std::size_t rank = (sizes.size() - 1) * 99 / 100;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(rank), sizes.end());
+    const double value = std::max(sizes[rank], 0.001);
+    const double power = std::pow(10, std::floor(std::log10(value)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (step * power >= value * (1 - 1e-9)) return step * power;
+    return 10 * power;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,128 @@
+#include "compare/run.h"
+
+#include "common/image/image_file.h"
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/file.h"
+#include "common/system/parallel.h"
+#include "common/system/stopwatch.h"
+#include "compare/hits/hit_agreement.h"
+#include "compare/metrics/error_metrics.h"
+#include "compare/report/false_color.h"
+#include "compare/report/report_json.h"
+#include "compare/report/report_page.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace duet::compare {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// What one pipeline made.
+struct Side {
+    Rendering rendering;
+    Image<Hit> hits;
+    RenderContext context;
+};
+
+fs::path output_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!fs::is_directory(folder))
+        throw Error(
+            message(folder.string(), ": the folder cannot be made: ", error ? error.message() : "a file is there"));
+    return folder;
+}
+
+/// Renders the picture, then the hits. Empty where a signal came.
+std::optional<Side> render_side(const Pipeline& pipeline, const View& view, const RunOptions& options,
+                                const InterruptFlag& interrupt) {
+    Side side;
+    ProgressBar bar(pipeline.name, options.quiet);
+    Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};
+    Stopwatch watch;
+    side.rendering = pipeline.picture(view, control);
+    side.context.render_seconds = watch.lap();
+    side.context.prepare_seconds = pipeline.prepare_seconds;
+    Control hits_control{&interrupt.flag(), {}};
+    if (!interrupt.raised()) side.hits = pipeline.hits(view, hits_control).hit;
+    if (interrupt.raised()) return {};
+    return side;
+}
+
+void complete(RenderContext& context, const std::string& program, const RunOptions& options, const View& view,
+              double load_seconds) {
+    context.program = program;
+    context.scene = options.scene.string();
+    context.width = view.width;
+    context.height = view.height;
+    context.threads = options.settings.threads > 0 ? options.settings.threads : available_threads();
+    context.seed = options.settings.seed;
+    context.load_seconds = load_seconds;
+}
+
+/// Writes a side's picture, and keeps how long that took.
+void write_picture(Side& side, const fs::path& path) {
+    const Stopwatch watch;
+    write_image(path, side.rendering.radiance);
+    side.context.write_seconds = watch.seconds();
+}
+
+void print_summary(const fs::path& page, const Side& raster, const Side& raytrace, const HitAgreement& hits,
+                   const ErrorMetrics& metrics) {
+    std::cerr << "raster:   " << readable_seconds(raster.context.prepare_seconds + raster.context.render_seconds)
+              << '\n'
+              << "raytrace: " << readable_seconds(raytrace.context.prepare_seconds + raytrace.context.render_seconds)
+              << '\n'
+              << "hits:     " << hits.same << " of " << hits.pixels << " the same, " << hits.edge << " at edges, "
+              << hits.depth_tie << " depth ties, " << hits.unexplained << " unexplained\n"
+              << "relmse:   " << metrics.relmse << '\n'
+              << "report:   " << page.string() << '\n';
+}
+
+} // namespace
+
+int run(const RunOptions& options) {
+    const InterruptFlag interrupt;
+    Stopwatch watch;
+    const Scene scene = load_scene(options.scene);
+    const double load_seconds = watch.seconds();
+    const fs::path folder = output_folder(options.folder);
+    const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
+                    options.size.height > 0 ? options.size.height : scene.height};
+
+    std::optional<Side> raster = render_side(raster_pipeline(scene, options.settings), view, options, interrupt);
+    if (!raster) return kExitInterrupted;
+    std::optional<Side> raytrace = render_side(raytrace_pipeline(scene, options.settings), view, options, interrupt);
+    if (!raytrace) return kExitInterrupted;
+    complete(raster->context, "raster", options, view, load_seconds);
+    complete(raytrace->context, "raytrace", options, view, load_seconds);
+
+    const ImageRgb &a = raster->rendering.radiance, &b = raytrace->rendering.radiance;
+    const ErrorMetrics metrics = error_metrics(a, b);
+    const HitAgreement agreement = compare_hits(scene, view, raster->hits, raytrace->hits, options.settings.threads);
+    if (interrupt.raised()) return kExitInterrupted;
+
+    write_picture(*raster, folder / "raster.png");
+    write_picture(*raytrace, folder / "raytrace.png");
+    const double range = difference_range(a, b);
+    write_image(folder / "difference.png", difference_picture(a, b, range));
+    const json report = {{"raster", statistics_json(raster->context, raster->rendering.statistics)},
+                         {"raytrace", statistics_json(raytrace->context, raytrace->rendering.statistics)},
+                         {"metrics", metrics_json(metrics, "raster", "raytrace")},
+                         {"hits", hits_json(agreement, scene)},
+                         {"difference_range", range}};
+    write_json(folder / "report.json", report);
+    write_file(folder / "index.html", report_page({scene, raster->rendering, raytrace->rendering, raster->hits,
+                                                   raytrace->hits, agreement, report}));
+    if (!options.stats.empty()) write_json(options.stats, report);
+    if (!options.quiet) print_summary(folder / "index.html", *raster, *raytrace, agreement, metrics);
+    return kExitOk;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,226 @@
+// octopus.obj: an octopus on the ground, one arm wound around a ball: an implicit surface, made a mesh of some 150,000
+// triangles (or a million). The scene's eyes and ball stand where the constants of octopus.h say.
+#include "models/octopus.h"
+
+#include "models/field.h"
+#include "models/generate.h"
+#include "models/implicit.h"
+
+#include <memory>
+
+namespace duet::models {
+namespace {
+
+constexpr int kSteps = 160; ///< beads of an arm
+
+struct Sucker {
+    Vec3d center, outwards;
+    double radius;
+};
+
+/// How an arm runs: from the head it comes down to the ground, winds along it, and its tip curls.
+struct ArmPlan {
+    double azimuth_degrees; ///< direction in which it leaves the head; 0 = +x, 90 = +z, the front
+    double length;
+    double sway, phase; ///< amplitude (radians) and phase of its bends along the ground
+    double curl;        ///< turns of the tip, signed: counter-clockwise seen from above
+    double lift;        ///< how much of the curl goes upwards: 0 lies flat, 1 stands
+};
+
+constexpr ArmPlan kArms[] = {
+    {-8, 2.5, 0.8, 0.05, 1.5, 0.0},   {95, 2.2, 0.8, 0.55, -1.5, 0.0}, {142, 2.5, 0.7, 0.3, 1.4, 0.3},
+    {184, 2.6, 0.8, 0.85, -1.6, 0.0}, {228, 2.4, 0.8, 0.2, -1.4, 0.0}, {272, 2.4, 0.6, 0.65, 1.4, 0.0},
+    {312, 2.6, 0.8, 0.45, -1.3, 0.4},
+};
+
+double arm_radius(double s) { return 0.014 + 0.131 * std::pow(1 - s, 1.05); }
+
+/// An arm with its suckers: two rows along the underside.
+struct Arm {
+    std::vector<Bead> beads;
+    std::vector<Sucker> suckers;
+};
+
+/// Rolls a frame along the beads without twist and sets suckers in two rows about `underside(i)`, a direction wished
+/// for.
+template <typename Underside> void add_suckers(Arm& arm, const Underside& underside) {
+    double travelled = 0, next = 0.3;
+    for (std::size_t i = 1; i + 1 < arm.beads.size(); ++i) {
+        travelled += length(arm.beads[i].center - arm.beads[i - 1].center);
+        const double r = arm.beads[i].radius;
+        if (travelled < next || r < 0.042) continue;
+        const Vec3d tangent = normalize(arm.beads[i + 1].center - arm.beads[i - 1].center);
+        const Vec3d wish = underside(i);
+        const Vec3d down = normalize(wish - tangent * dot(wish, tangent)), side = cross(tangent, down);
+        const double size = 0.42 * r;
+        for (const double sign : {-1.0, 1.0}) {
+            const Vec3d outwards = normalize(down * 0.86 + side * (sign * 0.5));
+            arm.suckers.push_back(
+                {arm.beads[i].center + outwards * (0.93 * r) + tangent * (sign * 0.25 * size), outwards, size});
+        }
+        next = travelled + 2.15 * size;
+    }
+}
+
+Arm ground_arm(const ArmPlan& plan) {
+    Arm arm;
+    const double azimuth0 = radians(plan.azimuth_degrees);
+    const double step = plan.length / kSteps;
+    Vec3d p(0.16 * std::cos(azimuth0), 0.40, 0.16 * std::sin(azimuth0));
+    double curled = 0, elevation = -0.5;
+    std::vector<Vec3d> undersides;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double s = static_cast<double>(i) / kSteps, r = arm_radius(s);
+        arm.beads.push_back({p, r});
+        const double tip = smooth_step(0.45, 1.0, s);
+        curled += plan.curl * 2 * kPiDouble * tip * tip * 2.6 / kSteps;
+        const double sway = plan.sway * std::sin(2 * kPiDouble * (1.1 * s + plan.phase)) * smooth_step(0.1, 0.4, s);
+        const double azimuth = azimuth0 + sway + curled * (1 - plan.lift);
+        const double landing = -std::atan(5 * (p.y - 0.97 * r)); // steers the arm onto the ground
+        elevation = lerp(elevation, clamp(landing, -1.0, 0.6), 0.12);
+        const double rise = elevation * (1 - plan.lift * tip) + std::abs(curled) * plan.lift;
+        const Vec3d ahead(std::cos(azimuth) * std::cos(rise), std::sin(rise), std::sin(azimuth) * std::cos(rise));
+        // Suckers face the ground, and along the tip the inside of its curl... or, where it stands, upwards and back.
+        const double turn = plan.curl > 0 ? 1 : -1;
+        const Vec3d inwards = Vec3d(-std::sin(azimuth), 0, std::cos(azimuth)) * turn;
+        const Vec3d standing(-std::cos(azimuth) * std::sin(rise), std::cos(rise), -std::sin(azimuth) * std::sin(rise));
+        const double bare = smooth_step(0.12, 0.45, s);
+        undersides.push_back(lerp(Vec3d(0, -1, 0), lerp(inwards * 0.9 + Vec3d(0, 0.35, 0), standing, plan.lift), bare) +
+                             ahead * 0.01);
+        p += ahead * step;
+        p.y = max(p.y, 0.97 * arm_radius(min(s + 1.0 / kSteps, 1.0)));
+    }
+    add_suckers(arm, [&](std::size_t i) { return undersides[i]; });
+    return arm;
+}
+
+/// A point on the uniform Catmull-Rom spline through the points, t in [0, 1] from the second to the last but one.
+Vec3d spline(std::span<const Vec3d> points, double t) {
+    const double x = t * static_cast<double>(points.size() - 3);
+    const auto i = std::min(static_cast<std::size_t>(x), points.size() - 4);
+    const double f = x - static_cast<double>(i);
+    const Vec3d a = points[i], b = points[i + 1], c = points[i + 2], d = points[i + 3];
+    return (b * 2.0 + (c - a) * f + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (f * f) +
+            (b * 3.0 - a - c * 3.0 + d) * (f * f * f)) *
+           0.5;
+}
+
+/// The arm that reaches out to the ball and winds around it, from below upwards.
+Arm holding_arm() {
+    std::vector<Vec3d> way{{0.05, 0.55, -0.02}, {0.15, 0.42, 0.07}, {0.36, 0.25, 0.21}, {0.66, 0.17, 0.35}};
+    constexpr int kTurnSteps = 14;
+    for (int i = 0; i <= kTurnSteps; ++i) {
+        const double f = static_cast<double>(i) / kTurnSteps;
+        const double azimuth = radians(lerp(-44.0, 404.0, f)), latitude = radians(lerp(-36.0, 44.0, std::pow(f, 1.2)));
+        const double distance = kBallRadius + arm_radius(lerp(0.3, 1.0, f)) * 0.97;
+        way.push_back(kBallCenter + Vec3d(std::cos(latitude) * std::cos(azimuth), std::sin(latitude),
+                                          std::cos(latitude) * std::sin(azimuth)) *
+                                        distance);
+    }
+    way.push_back(way.back() * 2.0 - way[way.size() - 2]);
+    Arm arm;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double s = static_cast<double>(i) / kSteps;
+        arm.beads.push_back({spline(way, s), arm_radius(s)});
+    }
+    add_suckers(arm, [&](std::size_t i) {
+        const double s = static_cast<double>(i) / kSteps;
+        return lerp(Vec3d(0, -1, 0), normalize(kBallCenter - arm.beads[i].center), smooth_step(0.1, 0.3, s)) +
+               Vec3d(0.001, 0, 0);
+    });
+    return arm;
+}
+
+class Octopus {
+public:
+    Octopus() {
+        for (const ArmPlan& plan : kArms) add(ground_arm(plan));
+        add(holding_arm());
+    }
+
+    double value(Vec3d p) const {
+        // Limbs grow together near the head and stay apart farther out.
+        const double from_head = length(Vec3d(p.x, 0.6 * (p.y - 0.45), p.z));
+        const double k = lerp(0.16, 0.02, smooth_step(0.25, 0.75, from_head));
+        double d = body(p);
+        const double far = d + 0.3;
+        for (const Grown& arm : arms_) {
+            const double reach = arm.limb.distance(p, max(d, 0.0) + 0.35);
+            d = smooth_min(d, with_suckers(p, reach, arm), k);
+        }
+        d = min(d, far);
+        const double eye = length(Vec3d(std::abs(p.x), p.y, p.z) - Vec3d(kEyeX, kEyeY, kEyeZ)) - kEyeRadius;
+        if (std::abs(d) < 0.15) d -= skin(p) * smooth_step(0.0, 0.12, eye);
+        return smooth_max(d, -eye, 0.05);
+    }
+
+    static constexpr Vec3d kLow{-2.3, -0.2, -2.3}, kHigh{2.3, 2.2, 2.3};
+
+private:
+    struct Grown {
+        Limb limb;
+        std::vector<Sucker> suckers;
+    };
+    void add(Arm arm) { arms_.push_back({Limb(std::move(arm.beads)), std::move(arm.suckers)}); }
+
+    /// Mantle, head and brows.
+    static double body(Vec3d p) {
+        static const Limb mantle(mantle_beads());
+        double d = mantle.distance(p, 10);
+        d = smooth_min(d, link_distance(p, {{0, 0.36, 0.0}, 0.27}, {{0, 0.62, 0.04}, 0.25}), 0.15);
+        const Vec3d q(std::abs(p.x), p.y, p.z); // both sides at once
+        return smooth_min(d, length(q - Vec3d(kEyeX - 0.10, kEyeY - 0.01, kEyeZ - 0.07)) - kEyeRadius * 1.5, 0.08);
+    }
+
+    static std::vector<Bead> mantle_beads() {
+        // The sack leans back over the arms. Radii ride along as a spline of their own.
+        const Vec3d way[] = {{0, 0.4, 0.1},    {0, 0.62, 0.03},  {0, 0.85, -0.08}, {0, 1.10, -0.30},
+                             {0, 1.22, -0.62}, {0, 1.14, -0.95}, {0, 1.02, -1.16}, {0, 0.95, -1.3}};
+        const Vec3d radii[] = {{0.2, 0, 0},  {0.24, 0, 0}, {0.27, 0, 0}, {0.39, 0, 0},
+                               {0.44, 0, 0}, {0.31, 0, 0}, {0.12, 0, 0}, {0.0, 0, 0}};
+        std::vector<Bead> beads;
+        for (int i = 0; i <= 40; ++i) beads.push_back({spline(way, i / 40.0), spline(radii, i / 40.0).x});
+        return beads;
+    }
+
+    static double with_suckers(Vec3d p, double arm, const Grown& grown) {
+        if (arm > 0.1) return arm;
+        double d = arm;
+        for (const Sucker& sucker : grown.suckers) {
+            const Vec3d away = p - sucker.center;
+            if (length_squared(away) > sqr(sucker.radius + 0.1)) continue;
+            // A flattened ball with a hollow in its face.
+            const double height = dot(away, sucker.outwards);
+            const double flat = length(away + sucker.outwards * (height * 0.5)) - sucker.radius;
+            const double cup = length(away - sucker.outwards * (sucker.radius * 1.0)) - sucker.radius * 0.72;
+            d = smooth_min(d, flat, 0.4 * sucker.radius);
+            d = smooth_max(d, -cup, 0.4 * sucker.radius);
+        }
+        return d;
+    }
+
+    /// Height of the skin's wrinkles and warts.
+    static double skin(Vec3d p) {
+        const double upper = smooth_step(0.5, 0.8, p.y);
+        const double folds = gradient_noise(p * 5.0) * 0.012;
+        const double warts = max(gradient_noise(p * 16.0 + Vec3d(7, 3, 5)) - 0.1, 0.0) * 0.022;
+        return upper * (folds + warts);
+    }
+
+    std::vector<Grown> arms_;
+};
+
+void write_octopus_mesh(const std::filesystem::path& path, double cell) {
+    const Octopus octopus;
+    const Implicit surface{[&](Vec3d p) { return octopus.value(p); }, Octopus::kLow, Octopus::kHigh};
+    write_obj(path, polygonize(surface, cell), "An octopus, made by models/octopus.cpp.");
+}
+
+} // namespace
+
+void write_octopus(const std::filesystem::path& folder) { write_octopus_mesh(folder / kOctopusFile, 0.029); }
+void write_octopus_million(const std::filesystem::path& folder) {
+    write_octopus_mesh(folder / kOctopusMillionFile, 0.0075);
+}
+
+} // namespace duet::models

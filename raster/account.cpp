@@ -1,0 +1,110 @@
+#include "raster/account.h"
+
+#include "common/system/control.h"
+
+#include <algorithm>
+
+namespace duet::raster {
+namespace {
+
+/// What the scene didn't need, and how much was culled.
+std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& settings, const CullCounts& culled) {
+    const SceneNeeds& needs = data.scene.needs;
+    std::vector<Skipped> result;
+    const auto because = [&](bool skipped, const char* what, const char* why) {
+        if (skipped) result.push_back({.what = what, .why = why, .count = -1});
+    };
+    because(!needs.textures, "textures", "no material has one");
+    because(!needs.lens, "lens", "the camera is a pinhole: all samples share one view");
+    because(!needs.motion, "motion", "nothing moves: all samples share one moment");
+    because(!needs.spheres, "spheres", "the scene has none");
+    because(!needs.instances, "instances", "every object stands in world space");
+    if (settings.shading == Shading::kLit) {
+        because(!needs.environment, "environment", "it is black");
+        because(needs.environment && !settings.environment, "environment", "turned off");
+        because(data.scene.lights.empty(), "lights", "the scene has none");
+    }
+    because(settings.aovs.variance, "variance", "the samples are one pattern, the same in every pixel: no replicates");
+    const auto count = [&](std::int64_t number, const char* what, const char* why) {
+        if (number > 0) result.push_back({.what = what, .why = why, .count = number});
+    };
+    count(culled.backfaces, "backfaces", "of closed, opaque meshes seen from outside");
+    count(culled.outside, "outside the frustum", "primitives that no pixel can see");
+    count(culled.subpixel, "sub-pixel", "triangles between the samples");
+    count(culled.degenerate, "degenerate", "triangles of no area on the sub-pixel grid");
+    return result;
+}
+
+/// Each way in which this scene's picture differs from the path tracer's, as a sentence; none that doesn't apply.
+std::vector<std::string> list_approximations(const PreparedData& data, const Settings& settings) {
+    const Scene& scene = data.scene;
+    const SceneNeeds& needs = scene.needs;
+    std::vector<std::string> result;
+    const auto name = [&](bool applies, const char* sentence) {
+        if (applies) result.emplace_back(sentence);
+    };
+    const bool many = settings.samples_per_pixel > 1;
+    name(needs.lens && !many, "The lens is a pinhole at its centre: one sample a pixel sees no depth of field.");
+    name(needs.lens && many,
+         "Depth of field is the mean of one view a sample, through the same lens points in every pixel.");
+    name(needs.motion && !many,
+         "Moving objects stand where they are when the shutter opens: one sample a pixel sees no motion.");
+    name(needs.motion && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
+    if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
+
+    const bool environment = settings.environment && needs.environment;
+    name(true, "Light that surfaces reflect onto each other is left out.");
+    name(!scene.lights.empty(), "Direct light is unshadowed.");
+    name(environment, "Light from the environment is unoccluded.");
+    name(environment && !data.irradiance.is_closed_form(),
+         "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
+    name(needs.specular || needs.glossy,
+         "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
+    name(needs.glossy && environment, "Rough metal mirrors the environment as smooth metal does.");
+    name(needs.glossy && needs.surface_lights,
+         "Rough metal sees each light surface as a distant light in its centre's direction.");
+    name(needs.transmission,
+         "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
+    name(data.moving_emitters, "Moving light surfaces are seen, but light nothing.");
+    return result;
+}
+
+} // namespace
+
+void Account::add(const Geometry& geometry) {
+    transform += geometry.transform_seconds;
+    setup += geometry.setup_seconds;
+    bin += geometry.bin_seconds;
+    culled += geometry.list.culled;
+    geometry_bytes = std::max(geometry_bytes, geometry.memory_bytes);
+}
+
+std::vector<std::pair<std::string, double>> Account::seconds() const {
+    const double cover = static_cast<double>(cover_work), work = cover + static_cast<double>(shade_work);
+    const double covering = work > 0 ? tiles * cover / work : 0;
+    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"cover", covering},
+            {"shade", tiles - covering}, {"resolve", resolve}};
+}
+
+void Progress::step() {
+    if (!control_.progress) return;
+    const std::lock_guard lock(mutex_);
+    control_.report(static_cast<double>(++done_) / static_cast<double>(steps_));
+}
+
+void fill_statistics(RenderStatistics& statistics, const PreparedData& data, const Settings& settings,
+                     const Account& account, const std::vector<Pass>& passes, const TileGrid& grid,
+                     std::size_t picture_bytes) {
+    const std::size_t passes_done = account.tiles_done / grid.size();
+    statistics.interrupted = account.tiles_done < grid.size() * passes.size();
+    statistics.passes = static_cast<int>(passes_done);
+    for (std::size_t i = 0; i < passes_done; ++i)
+        statistics.samples_per_pixel += static_cast<int>(passes[i].samples.size());
+    statistics.seconds = account.seconds();
+    statistics.triangles = data.primitives;
+    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + picture_bytes);
+    statistics.skipped = list_skipped(data, settings, account.culled);
+    statistics.approximations = list_approximations(data, settings);
+}
+
+} // namespace duet::raster

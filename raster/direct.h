@@ -1,0 +1,34 @@
+// Light that comes straight from the scene's lights, visibility left out.
+#pragma once
+
+#include "common/geometry/surface_point.h"
+#include "common/light/light.h"
+#include "common/material/diffuse.h"
+#include "common/material/metal.h"
+
+#include <span>
+
+namespace duet::raster {
+
+/// A point on a surface as its viewer sees it.
+struct ShadingPoint {
+    const SurfacePoint& surface;
+    Vec3 wo; ///< unit, to the viewer
+    Vec3 ng; ///< geometric normal, on the viewer's side: light from its other side doesn't arrive
+    Vec3 ns; ///< shading normal, on the viewer's side
+
+    ShadingPoint(const SurfacePoint& point, Vec3 to_viewer);
+    /// Whether light from w arrives on the side of the geometric surface that is seen.
+    bool receives(Vec3 w) const { return dot(ng, w) > 0; }
+};
+
+/// Irradiance from a surface light at a shading point, in closed form: over the directions above the horizons of both
+/// normals. 0 on the light's own primitive.
+Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
+
+/// Radiance towards the viewer. Diffuse: exact for every light. Rough metal: exact for point, spot and sun; a surface
+/// light counts as a distant one of the same irradiance at its centre. Smooth metal: none.
+Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point);
+Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point);
+
+} // namespace duet::raster

@@ -1,0 +1,28 @@
+// Irradiance from the environment, nothing in between.
+#pragma once
+
+#include "common/light/environment.h"
+
+#include <array>
+
+namespace duet::raster {
+
+/// ∫ L(w) max(0, n·w) dw over all directions: in closed form where the environment has one; of a picture by its
+/// spherical harmonics up to the second order, which hold irradiance to 1 % of its mean for natural light (Ramamoorthi
+/// and Hanrahan 2001, «An Efficient Representation for Irradiance Environment Maps»; a small bright sun is worse: up to
+/// 9 %).
+class Irradiance {
+public:
+    /// Projects a picture, in parallel; the result is the same for any number of threads.
+    Irradiance(const Environment& environment, int threads);
+
+    /// At a surface with unit normal n; never negative. `environment` is the one it was made for.
+    Rgb at(const Environment& environment, Vec3 n) const;
+    bool is_closed_form() const { return closed_form_; }
+
+private:
+    bool closed_form_ = true;
+    std::array<Rgbd, 9> coefficients_{}; ///< of the irradiance in the real spherical harmonics
+};
+
+} // namespace duet::raster

@@ -1,0 +1,81 @@
+#include "raster/picture.h"
+
+#include "common/system/parallel.h"
+
+namespace duet::raster {
+namespace {
+
+bool is_valid(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+
+bool needs_hit_counts(const AovSet& aovs) { return aovs.depth || aovs.normal || aovs.albedo; }
+
+} // namespace
+
+Picture::Picture(const View& view, const Settings& settings) : settings_(settings) {
+    const int w = view.width, h = view.height;
+    const AovSet& aovs = settings.aovs;
+    rendering_.radiance = ImageRgb(w, h);
+    if (settings.samples_per_pixel > 1) sums_ = Image<Rgbd>(w, h);
+    added_ = Image<std::uint32_t>(w, h, 0);
+    valid_ = Image<std::uint32_t>(w, h, 0);
+    if (needs_hit_counts(aovs)) hits_ = Image<std::uint32_t>(w, h, 0);
+    if (aovs.depth) rendering_.depth = ImageFloat(w, h, 0.0f);
+    if (aovs.normal) rendering_.normal = Image<Vec3>(w, h);
+    if (aovs.albedo) rendering_.albedo = ImageRgb(w, h);
+    if (aovs.hit) rendering_.hit = Image<Hit>(w, h);
+}
+
+void Picture::add(const HitTile& tile, int x, int y, const Shaded& shaded) {
+    if (settings_.aovs.any()) add_auxiliary(tile, x, y, shaded);
+    ++added_(x, y);
+    if (!is_valid(shaded.radiance)) {
+        invalid_.fetch_add(1, std::memory_order_relaxed);
+        return;
+    }
+    ++valid_(x, y);
+    if (sums_.empty())
+        rendering_.radiance(x, y) = shaded.radiance;
+    else
+        sums_(x, y) += Rgbd(shaded.radiance);
+}
+
+void Picture::add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded) {
+    const AovSet& aovs = settings_.aovs;
+    const Hit& hit = tile.hit(x, y);
+    if (aovs.hit && added_(x, y) == 0) rendering_.hit(x, y) = hit;
+    if (!hit.valid()) return;
+    if (!hits_.empty()) ++hits_(x, y);
+    if (aovs.depth) rendering_.depth(x, y) += static_cast<float>(tile.depth(x, y));
+    if (aovs.normal) rendering_.normal(x, y) += shaded.normal;
+    if (aovs.albedo) rendering_.albedo(x, y) += shaded.albedo;
+}
+
+void Picture::finish_pixel(int x, int y) {
+    const AovSet& aovs = settings_.aovs;
+    if (!sums_.empty() && valid_(x, y) > 0)
+        rendering_.radiance(x, y) = Rgb(sums_(x, y) * (1.0 / static_cast<double>(valid_(x, y))));
+    if (hits_.empty()) return;
+    const float hits = static_cast<float>(hits_(x, y));
+    if (aovs.depth) rendering_.depth(x, y) = hits > 0 ? rendering_.depth(x, y) / hits : kInfinity;
+    if (hits == 0) return;
+    if (aovs.normal) rendering_.normal(x, y) = rendering_.normal(x, y) / hits;
+    if (aovs.albedo) rendering_.albedo(x, y) = rendering_.albedo(x, y) / hits;
+}
+
+Rendering Picture::finish(int threads) {
+    if (!sums_.empty() || !hits_.empty())
+        parallel_for(static_cast<std::size_t>(rendering_.radiance.height()), threads, [&](std::size_t row) {
+            for (int x = 0; x < rendering_.radiance.width(); ++x) finish_pixel(x, static_cast<int>(row));
+        });
+    rendering_.statistics.invalid_samples = invalid_;
+    if (settings_.aovs.samples) rendering_.samples = std::move(added_);
+    return std::move(rendering_);
+}
+
+std::size_t Picture::memory_bytes() const {
+    const auto bytes = [](const auto& image) { return image.size() * sizeof(image[0]); };
+    return bytes(rendering_.radiance) + bytes(rendering_.depth) + bytes(rendering_.normal) + bytes(rendering_.albedo) +
+           bytes(rendering_.hit) + bytes(sums_) + bytes(added_) + bytes(valid_) + bytes(hits_);
+}
+
+} // namespace duet::raster

@@ -1,0 +1,38 @@
+// Stage 8: samples become pixels.
+#pragma once
+
+#include "common/film/rendering.h"
+#include "raster/render.h"
+#include "raster/shade.h"
+
+#include <atomic>
+
+namespace duet::raster {
+
+/// The picture and the auxiliary pictures that are asked for, each pixel the mean of its samples. Threads may add
+/// different tiles at once; a pixel's samples come in order, so the sums are the same for any number of threads.
+class Picture {
+public:
+    Picture(const View& view, const Settings& settings);
+
+    /// One sample of one pixel: what the tile sees there, and how it was shaded. A radiance that is NaN, infinite or
+    /// negative is dropped and counted.
+    void add(const HitTile& tile, int x, int y, const Shaded& shaded);
+
+    /// Divides sums by counts. Pixels without a sample are black.
+    Rendering finish(int threads);
+    std::size_t memory_bytes() const;
+
+private:
+    void add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded);
+    void finish_pixel(int x, int y);
+
+    Settings settings_;
+    Rendering rendering_;
+    Image<Rgbd> sums_;                   ///< of radiance; empty for a single sample, which needs none
+    Image<std::uint32_t> added_, valid_; ///< samples a pixel, and those among them whose radiance counts
+    Image<std::uint32_t> hits_;          ///< samples that hit something; where depth, normal or albedo are asked for
+    std::atomic<std::int64_t> invalid_ = 0;
+};
+
+} // namespace duet::raster

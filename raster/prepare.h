@@ -1,0 +1,29 @@
+// What the rasterizer learns of a scene once, for any number of views.
+#pragma once
+
+#include "common/scene/scene.h"
+#include "raster/irradiance.h"
+#include "raster/render.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace duet::raster {
+
+struct PreparedObject {
+    Box3 bounds;        ///< in the world, over all of the object's motion
+    bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
+};
+
+struct PreparedData {
+    const Scene& scene;
+    std::vector<PreparedObject> objects;  ///< parallel to Scene::objects
+    std::vector<std::uint32_t> polygonal; ///< objects of triangles and quads, in order
+    std::vector<std::uint32_t> spheres;   ///< the others
+    std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
+    Irradiance irradiance;                ///< from the environment
+    bool moving_emitters = false;         ///< surfaces that emit but are no lights, because they move
+    std::int64_t memory_bytes = 0;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,100 @@
+#include "raster/shade.h"
+
+#include "raster/direct.h"
+
+#include "common/vec/frame.h"
+
+namespace duet::raster {
+namespace {
+
+/// Light from the environment, which nothing is taken to occlude.
+class EnvironmentLight {
+public:
+    EnvironmentLight(const PreparedData& data, const ShadingPoint& point) : data_(data), point_(point) {}
+
+    Rgb operator()(const DiffuseBsdf& bsdf) const {
+        return bsdf.albedo * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns);
+    }
+    /// What a smooth metal reflects, also for a rough one.
+    Rgb operator()(const MetalBsdf& bsdf) const { return look_up(MetalBsdf{bsdf.reflectance, 0}, false); }
+    /// The mirror image, and what is seen through this side of the glass alone: refracted once, tinted as by two
+    /// crossings; weighed by Fresnel's equations.
+    Rgb operator()(const DielectricBsdf& bsdf) const {
+        Rgb sum;
+        for (const bool transmitted : {false, true}) sum += look_up(bsdf, transmitted);
+        return sum;
+    }
+
+private:
+    template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted) const {
+        // Not turned to the viewer: a dielectric must know which side is its outside.
+        const Frame frame = frame_from_normal(point_.surface.ns);
+        // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
+        const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
+        const auto sample = bsdf.sample(frame.to_local(point_.wo), lobe, {0.5f, 0.5f}, TransportMode::kImportance);
+        if (!sample || sample->transmitted != transmitted) return {};
+        const Vec3 wi = frame.to_world(sample->wi);
+        if (point_.receives(wi) == transmitted) return {}; // the two normals disagree
+        const Rgb crossings = transmitted ? sample->weight * sample->weight : sample->weight;
+        return radiance(data_.scene.environment, normalize(wi)) * crossings * sample->pdf;
+    }
+
+    const PreparedData& data_;
+    const ShadingPoint& point_;
+};
+
+struct DirectLight {
+    std::span<const Light> lights;
+    const ShadingPoint& point;
+
+    Rgb operator()(const DiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
+    Rgb operator()(const MetalBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
+    Rgb operator()(const DielectricBsdf&) const { return {}; }
+};
+
+Rgb lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point) {
+    const Scene& scene = data.scene;
+    const Material& material = scene.materials[point.surface.material];
+    const Bsdf bsdf = bsdf_at(material, scene.textures, point.surface);
+    Rgb sum = emitted(material, point.surface, point.wo);
+    sum += std::visit(DirectLight{scene.lights, point}, bsdf);
+    if (settings.environment && scene.needs.environment) sum += std::visit(EnvironmentLight(data, point), bsdf);
+    return sum;
+}
+
+Rgb as_color(Vec3 n) { return {0.5f * n.x + 0.5f, 0.5f * n.y + 0.5f, 0.5f * n.z + 0.5f}; }
+
+Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
+    if (settings.shading != Shading::kLit || !settings.environment || !data.scene.needs.environment) return {};
+    return radiance(data.scene.environment, ray.direction);
+}
+
+} // namespace
+
+Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
+    const Ray& ray = tile.ray(x, y);
+    const Hit& hit = tile.hit(x, y);
+    if (!hit.valid()) return {.radiance = background(data, settings, ray), .normal = {}, .albedo = {}};
+    const Scene& scene = data.scene;
+    const SurfacePoint surface = surface_point(scene, ray, hit);
+    const ShadingPoint point(surface, -ray.direction);
+    const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
+    Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
+    switch (settings.shading) {
+    case Shading::kLit:
+        result.radiance = lit(data, settings, point);
+        break;
+    case Shading::kNormal:
+        result.radiance = as_color(point.ns);
+        break;
+    case Shading::kAlbedo:
+        result.radiance = color();
+        break;
+    case Shading::kDepth:
+        result.radiance = Rgb(tile.nearness(x, y));
+        break;
+    }
+    return result;
+}
+
+} // namespace duet::raster

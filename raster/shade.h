@@ -1,0 +1,20 @@
+// Stage 7: from a Hit to what the picture shows there, by the shared surface point, materials and lights.
+#pragma once
+
+#include "raster/cover.h"
+#include "raster/prepare.h"
+
+namespace duet::raster {
+
+/// What one sample gives to the picture and to the auxiliary pictures.
+struct Shaded {
+    Rgb radiance;
+    Vec3 normal; ///< shading normal, on the viewer's side
+    Rgb albedo;
+};
+
+/// Shades one sample of a tile. Where nothing is hit, radiance is the environment's, or black where that is off or the
+/// shading shows none. The albedo is filled in where the settings ask for it.
+Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
+
+} // namespace duet::raster

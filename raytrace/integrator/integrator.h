@@ -1,0 +1,48 @@
+// The integrators: how much light arrives along a camera ray. Each is a function of the same form, in a file of its
+// own.
+#pragma once
+
+#include "common/sampling/sampler.h"
+#include "raytrace/plan.h"
+
+namespace duet::raytrace {
+
+/// Rays sent, for the statistics.
+struct RayCounts {
+    std::int64_t camera = 0, indirect = 0, shadow = 0;
+
+    RayCounts& operator+=(const RayCounts& other) {
+        camera += other.camera;
+        indirect += other.indirect;
+        shadow += other.shadow;
+        return *this;
+    }
+};
+
+// Dimensions of a sample: the camera's come first, then each vertex of the path has a block of its own. What is left
+// out anywhere moves no number elsewhere.
+inline constexpr std::uint32_t kPixelDimension = 0, kLensDimension = 2, kTimeDimension = 4;
+struct VertexDimensions {
+    std::uint32_t base;
+
+    explicit VertexDimensions(int depth) : base(8 + 8 * static_cast<std::uint32_t>(depth)) {}
+    std::uint32_t bsdf() const { return base; }             ///< 2
+    std::uint32_t light() const { return base + 2; }        ///< 2
+    std::uint32_t light_choice() const { return base + 4; } ///< 1
+    std::uint32_t lobe() const { return base + 5; }         ///< 1
+    std::uint32_t roulette() const { return base + 6; }     ///< 1
+};
+
+/// An unbiased estimate of the radiance along a camera ray, whose first hit (or none) is given.
+using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
+                                 RayCounts& counts);
+
+Rgb path_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);       ///< path.cpp
+Rgb unshadowed_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< unshadowed.cpp
+Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< surface_colors.cpp
+Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< surface_colors.cpp
+
+/// The function of an integrator. Path, naive and direct are one: they differ in their plans.
+RadianceFunction radiance_function(Integrator integrator);
+
+} // namespace duet::raytrace

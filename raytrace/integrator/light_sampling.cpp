@@ -1,0 +1,63 @@
+#include "raytrace/integrator/light_sampling.h"
+
+#include "common/geometry/quad.h"
+
+namespace duet::raytrace {
+
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, Vec3 p, float choice, Vec2 u) {
+    const std::optional<LightChoice> chosen = lights.sample(choice);
+    if (!chosen) return std::nullopt;
+    if (chosen->index == lights.environment_index()) {
+        const std::optional<EnvironmentSample> s = sample(scene.environment, u);
+        if (!s) return std::nullopt;
+        return Arrival{s->wi, s->radiance, s->pdf * chosen->probability, false, kInfinity, -1};
+    }
+    const std::optional<LightSample> s = sample_light(scene.lights[chosen->index], p, u);
+    if (!s) return std::nullopt;
+    return Arrival{s->wi,    s->radiance, s->pdf * chosen->probability,
+                   s->delta, s->distance, static_cast<std::int64_t>(chosen->index)};
+}
+
+namespace {
+
+// Where a ray that was aimed at a flat light meets it, by the test that decides all other hits: what lies in the
+// light's plane is then before it or behind it by the same order as for any ray. A ray aimed at its rim may miss it by
+// a rounding.
+float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
+    if (const auto* quad = std::get_if<Quad>(&light.shape)) {
+        if (const auto hit = intersect_quad(ShearedRay(ray), *quad)) return hit->t;
+    } else if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape)) {
+        if (const auto hit = intersect_triangle(ShearedRay(ray), t->a, t->b, t->c)) return hit->t;
+    }
+    return sampled;
+}
+
+} // namespace
+
+bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
+    const Ray ray = spawn_ray(vertex, arrival.wi);
+    Hit end;
+    end.t = arrival.distance;
+    if (arrival.light >= 0) {
+        if (const auto* light =
+                std::get_if<SurfaceLight>(&plan.scene.lights[static_cast<std::size_t>(arrival.light)])) {
+            end.object = light->object;
+            end.primitive = light->primitive;
+            end.t = distance_along(ray, *light, arrival.distance);
+        }
+    }
+    return !plan.prepared.accelerator.occluded(ray, end);
+}
+
+float arrival_pdf(const Scene& scene, const LightChooser& lights, Vec3 p, const SurfacePoint& point) {
+    const std::int64_t index = surface_light_index(scene, point.object, point.primitive);
+    if (index < 0) return 0;
+    const auto i = static_cast<std::size_t>(index);
+    return lights.probability(i) * light_pdf(std::get<SurfaceLight>(scene.lights[i]), p, point.p, point.ng);
+}
+
+float arrival_pdf(const Environment& environment, const LightChooser& lights, Vec3 w) {
+    return lights.probability(lights.environment_index()) * pdf(environment, w);
+}
+
+} // namespace duet::raytrace

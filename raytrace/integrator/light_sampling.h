@@ -1,0 +1,34 @@
+// One light sample at a vertex, and its weight against BSDF sampling.
+#pragma once
+
+#include "common/light/light_choice.h"
+#include "raytrace/integrator/vertex.h"
+
+namespace duet::raytrace {
+
+/// Light that could arrive at a point from a light or the environment, chosen by power.
+struct Arrival {
+    Vec3 wi;                 ///< unit, in the world
+    Rgb radiance;            ///< as LightSample::radiance
+    float pdf = 0;           ///< by solid angle, the choice of the light included; > 0
+    bool delta = false;      ///< BSDF samples cannot find it
+    float distance = 0;      ///< infinity for the sun and the environment
+    std::int64_t light = -1; ///< index into Scene::lights; −1: the environment
+};
+/// choice in [0, 1) chooses the light, u in [0, 1)² the point on it. Empty where the chosen one sends nothing.
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, Vec3 p, float choice, Vec2 u);
+
+/// Whether nothing stands between the vertex and the light. Sends one shadow ray.
+bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival);
+
+/// The density with which sample_arrival at p returns the direction to `point`, which lies on an emissive surface: 0
+/// where that is no light that is sampled (it moves, or does not emit towards p).
+float arrival_pdf(const Scene& scene, const LightChooser& lights, Vec3 p, const SurfacePoint& point);
+/// The same of a direction w to the environment.
+float arrival_pdf(const Environment& environment, const LightChooser& lights, Vec3 w);
+
+/// The weight of a sample that was drawn with density `own` and could have been drawn with density `other`: the power
+/// heuristic, β = 2 (Veach 1997, §9.2.4). own > 0.
+inline float mis_weight(float own, float other) { return 1 / (1 + sqr(other / own)); }
+
+} // namespace duet::raytrace

@@ -1,0 +1,38 @@
+// A render's passes over the whole picture, each a range of samples of every pixel.
+#pragma once
+
+#include "common/film/film.h"
+#include "raytrace/aov.h"
+#include "raytrace/integrator/integrator.h"
+
+#include <optional>
+
+namespace duet::raytrace {
+
+/// Samples [first, last) of each pixel.
+struct SampleRange {
+    std::uint32_t first, last;
+};
+
+/// The next pass after `done` samples, or none where a limit is reached: the number of samples, the time (with
+/// `seconds` gone), or the error (of the film). Without limits of time and error passes are of 16 samples; with them
+/// they start with 2, one for each replicate, and grow with what is done, so that the end comes near the limit. A pass
+/// that would end farther beyond the time limit than it begins before it is not begun.
+std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t done, double seconds, const Film& film);
+
+/// Everything that a pass reads and adds to.
+struct PassTarget {
+    const RenderPlan& plan;
+    const View& view;
+    const Settings& settings;
+    Control& control;
+    Film& film;
+    AovBuffers& aovs;
+    RayCounts& counts;
+};
+
+/// Renders the samples of a pass, tile by tile on all threads. False where it was stopped: tiles at hand are finished,
+/// others left out. Reports progress from `begin` to `end`.
+bool render_pass(const PassTarget& target, SampleRange range, double begin, double end);
+
+} // namespace duet::raytrace

@@ -1,0 +1,89 @@
+#include "raytrace/plan.h"
+
+#include <algorithm>
+
+namespace duet::raytrace {
+
+namespace {
+
+bool samples_lights(Integrator integrator) {
+    return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
+           integrator == Integrator::kUnshadowed;
+}
+bool shows_light(Integrator integrator) { return samples_lights(integrator) || integrator == Integrator::kNaive; }
+
+int depth(const Settings& settings) {
+    const int asked = std::max(settings.max_depth, 0);
+    switch (settings.integrator) {
+    case Integrator::kPath:
+    case Integrator::kNaive:
+        return asked;
+    case Integrator::kDirect:
+    case Integrator::kUnshadowed:
+        return std::min(asked, 1);
+    case Integrator::kNormal:
+    case Integrator::kAlbedo:
+        break;
+    }
+    return 0;
+}
+
+} // namespace
+
+RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings)
+    : prepared(prepared_), scene(prepared_.scene), max_depth(depth(settings)),
+      russian_roulette(settings.russian_roulette && max_depth > 0), lens(CameraModel(view).has_lens()),
+      motion(prepared_.scene.needs.motion) {
+    const bool with_environment = settings.environment && prepared.environment && shows_light(settings.integrator);
+    if (with_environment) environment = &scene.environment;
+    hits_find_light = with_environment || prepared.emitters;
+    const LightChooser& chooser = with_environment ? prepared.lights : prepared.finite_lights;
+    if (samples_lights(settings.integrator) && max_depth > 0 && prepared.scatters_diffusely && !chooser.empty())
+        lights = &chooser;
+}
+
+std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
+    std::vector<Skipped> list;
+    const auto skip = [&](std::string what, std::string why) { list.push_back({std::move(what), std::move(why)}); };
+    const auto constant = std::count_if(plan.prepared.bsdfs.begin(), plan.prepared.bsdfs.end(),
+                                        [](const auto& bsdf) { return bsdf.has_value(); });
+    if (constant == static_cast<std::ptrdiff_t>(plan.prepared.bsdfs.size()))
+        skip("textures", "no material has one: each BSDF is made once, not at each hit");
+    else if (constant > 0)
+        list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
+    if (!plan.lens) skip("lens samples", "the camera has no aperture");
+    if (!plan.motion) skip("time samples", "nothing moves");
+    if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");
+    if (!settings.aovs.any()) skip("auxiliary pictures", "not asked for");
+    if (!shows_light(settings.integrator)) {
+        skip("bounces", "the integrator shows surfaces, not light");
+        return list;
+    }
+    if (plan.environment == nullptr)
+        skip("environment", settings.environment ? "it is black" : "left out by the settings");
+    if (plan.lights == nullptr && samples_lights(settings.integrator)) {
+        if (plan.max_depth == 0)
+            skip("light samples", "only emission is asked for");
+        else if (!plan.prepared.scatters_diffusely)
+            skip("light samples", "all materials are mirrors or glass, which they cannot reach");
+        else
+            skip("light samples", "nothing emits");
+    }
+    if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
+        skip("last bounce", "rays cannot find the lights: point, spot and sun");
+    if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
+    return list;
+}
+
+std::vector<std::string> approximations(const RenderPlan& plan, const Settings& settings) {
+    std::vector<std::string> list;
+    if (settings.integrator == Integrator::kNaive && plan.scene.needs.delta_lights)
+        list.emplace_back("point, spot and sun lights are missing: rays that follow the materials cannot find them");
+    if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
+    if (settings.integrator == Integrator::kUnshadowed)
+        list.emplace_back("direct light only, and nothing casts a shadow");
+    if (!settings.environment && plan.prepared.environment) list.emplace_back("the environment is left out");
+    return list;
+}
+
+} // namespace duet::raytrace

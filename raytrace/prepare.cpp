@@ -1,0 +1,57 @@
+#include "raytrace/prepare.h"
+
+#include "raytrace/render.h"
+
+#include <algorithm>
+
+namespace duet::raytrace {
+
+namespace {
+
+bool textured(const Material& material) {
+    struct {
+        bool operator()(const Diffuse& m) const { return m.albedo.texture >= 0; }
+        bool operator()(const Metal& m) const { return m.reflectance.texture >= 0; }
+        bool operator()(const Dielectric& m) const { return m.tint.texture >= 0; }
+        bool operator()(const Emissive& m) const { return m.albedo.texture >= 0; }
+    } const has_texture;
+    return std::visit(has_texture, material);
+}
+
+bool emits(const Material& material) {
+    const auto* emissive = std::get_if<Emissive>(&material);
+    return emissive != nullptr && !is_black(emissive->radiance);
+}
+
+template <typename Predicate> bool any_used_material(const Scene& scene, Predicate predicate) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+        return std::any_of(object.materials.begin(), object.materials.end(),
+                           [&](std::uint32_t material) { return predicate(scene.materials[material]); });
+    });
+}
+
+float radius(const Box3& box) { return box.empty() ? 0.0f : static_cast<float>(length(Vec3d(box.diagonal())) / 2); }
+
+} // namespace
+
+PreparedData::PreparedData(const Scene& scene_, int threads)
+    : scene(scene_), accelerator(scene_, threads),
+      lights(scene_.lights, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
+      finite_lights(scene_.lights, 0, radius(scene_.bounds)), emitters(any_used_material(scene_, emits)),
+      environment(!is_black(scene_.environment)) {
+    bsdfs.reserve(scene.materials.size());
+    for (const Material& material : scene.materials)
+        bsdfs.push_back(textured(material) ? std::nullopt
+                                           : std::optional(bsdf_at(material, scene.textures, SurfacePoint{})));
+    scatters_diffusely = any_used_material(scene, [&](const Material& material) {
+        return !is_specular(bsdf_at(material, scene.textures, SurfacePoint{}));
+    });
+}
+
+Prepared prepare(const Scene& scene, const Settings& settings) {
+    return Prepared(std::make_shared<const PreparedData>(scene, settings.threads));
+}
+
+Hit trace(const Prepared& prepared, const Ray& ray) { return prepared.data().accelerator.closest(ray); }
+
+} // namespace duet::raytrace

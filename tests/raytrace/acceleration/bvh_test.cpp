@@ -1,0 +1,418 @@
+// The hierarchy gives what testing every primitive gives, to the bit; it survives degenerate input; it never leaks.
+#include "common/geometry/quad.h"
+#include "common/geometry/sphere.h"
+#include "raytrace/acceleration/accelerator.h"
+#include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_traverse.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+struct Random {
+    std::mt19937 engine;
+    explicit Random(unsigned seed) : engine(seed) {}
+    float uniform(float low = -1, float high = 1) { return std::uniform_real_distribution<float>(low, high)(engine); }
+    int below(int n) { return static_cast<int>(engine() % static_cast<unsigned>(n)); }
+    Vec3 vector() {
+        const float x = uniform(), y = uniform();
+        return {x, y, uniform()};
+    }
+    Vec3 direction() {
+        for (;;) {
+            const Vec3 v = vector();
+            if (length_squared(v) > 0.01f && length_squared(v) <= 1) return normalize(v);
+        }
+    }
+};
+
+// Every primitive of every object, in the order of `precedes`.
+Hit brute_force(const Scene& scene, const Ray& ray) {
+    Hit best;
+    const auto consider = [&](const Hit& hit) {
+        if (precedes(hit, best)) best = hit;
+    };
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+        const Object& object = scene.objects[o];
+        Ray inside = ray;
+        if (!object.identity || object.moving) {
+            const Mat4 to_object = object.moving ? object_transform(object, ray.time).to_object : object.to_object;
+            inside.origin = transform_point(to_object, ray.origin);
+            inside.direction = transform_vector(to_object, ray.direction);
+        }
+        const ShearedRay sheared(inside);
+        const Shape& shape = scene.shapes[object.shape];
+        for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
+            if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+                if (const auto t = intersect_sphere(inside, *sphere)) consider({o, p, 0, 0, *t});
+            } else if (const auto* list = std::get_if<QuadList>(&shape)) {
+                if (const auto h = intersect_quad(sheared, list->quads[p])) consider({o, p, h->u, h->v, h->t});
+            } else {
+                const auto& mesh = std::get<Mesh>(shape);
+                const auto& [a, b, c] = mesh.triangles[p];
+                if (const auto h = intersect_triangle(sheared, mesh.positions[a], mesh.positions[b], mesh.positions[c]))
+                    consider({o, p, h->u, h->v, h->t});
+            }
+        }
+    }
+    return best;
+}
+
+struct Soup {
+    Random random;
+    float scale;
+    Vec3 offset;
+
+    Vec3 point() { return offset + random.vector() * scale; }
+
+    Mesh triangles(int count, float size) {
+        Mesh mesh;
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+            const Vec3 p = point();
+            for (int k = 0; k < 3; ++k) mesh.positions.push_back(p + random.vector() * (scale * size));
+            mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        // Twins, for ties; and axis-aligned ones, whose boxes are flat.
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count) / 8; ++i)
+            mesh.triangles.push_back(mesh.triangles[i]);
+        for (int i = 0; i < count / 8; ++i) {
+            const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+            const auto axis = static_cast<std::size_t>(i % 3);
+            Vec3 p = point();
+            for (int k = 0; k < 3; ++k) {
+                Vec3 q = p + random.vector() * (scale * size);
+                q[axis] = p[axis];
+                mesh.positions.push_back(q);
+            }
+            mesh.triangles.push_back({first, first + 1, first + 2});
+        }
+        return mesh;
+    }
+
+    Scene scene(bool with_instances) {
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        builder.add(triangles(120, 0.3f), grey);
+        QuadList quads;
+        for (int i = 0; i < 40; ++i) quads.quads.push_back({point(), random.vector() * scale, random.vector() * scale});
+        for (std::size_t i = 0; i < 5; ++i) quads.quads.push_back(quads.quads[i]);
+        builder.add(quads, grey);
+        builder.add(box_quads(offset - Vec3(0.5f, 0.5f, 0.5f) * scale, offset + Vec3(0.5f, 0.25f, 0.5f) * scale), grey);
+        for (int i = 0; i < 40; ++i) builder.add(Sphere{point(), scale * random.uniform(0.01f, 0.3f)}, grey);
+        builder.add(builder.scene.shapes[4], grey); // a sphere's twin
+        if (with_instances) {
+            const Soup own{random, 1, {}};
+            const std::uint32_t mesh = builder.shape(Soup(own).triangles(30, 0.5f));
+            const std::uint32_t sphere = builder.shape(Sphere{{0.2f, 0, 0}, 0.5f});
+            for (int i = 0; i < 12; ++i) {
+                const auto placed = [&] {
+                    return translation(point()) * rotation(random.direction(), random.uniform(0, 6)) *
+                           scaling(Vec3(1, random.uniform(-1, -0.5f), 0.5f) * (scale * random.uniform(0.1f, 0.5f)));
+                };
+                const Mat4 begin = placed();
+                builder.place_moving(i % 2 ? mesh : sphere, grey, begin,
+                                     i % 4 < 2 ? begin : translation(random.vector() * scale) * begin);
+            }
+        }
+        return builder.finish();
+    }
+
+    // Random, aimed at vertices, and along the axes with zeros of both signs, from points that share coordinates with
+    // the scene's.
+    Ray ray(const Scene& scene, int trial) {
+        const auto& positions = std::get<Mesh>(scene.shapes[0]).positions;
+        const Vec3 vertex = positions[static_cast<std::size_t>(random.below(static_cast<int>(positions.size())))];
+        Ray ray;
+        ray.time = random.uniform(0, 1);
+        ray.origin = trial % 2 ? point() : offset + random.direction() * (scale * 4);
+        switch (trial % 4) {
+        case 0:
+            ray.direction = random.direction();
+            break;
+        case 1:
+            ray.direction = normalize(vertex - ray.origin);
+            break;
+        default: {
+            const auto axis = static_cast<std::size_t>(random.below(3));
+            const float zero = random.below(2) ? 0.0f : -0.0f;
+            ray.direction = {zero, -zero, zero};
+            if (trial % 4 == 3) ray.direction[(axis + 1) % 3] = random.uniform();
+            ray.direction[axis] = random.below(2) ? 1.0f : -1.0f;
+            ray.origin = vertex - ray.direction * scale;
+        }
+        }
+        return ray;
+    }
+};
+
+std::string described(const Hit& hit) {
+    return message("object ", hit.object, " primitive ", hit.primitive, " t ", hit.t, " u ", hit.u, " v ", hit.v);
+}
+
+int depth_below(const BinaryTree& tree, std::uint32_t index) {
+    const BinaryNode& node = tree.nodes[index];
+    return node.leaf() ? 0 : 1 + std::max(depth_below(tree, node.left), depth_below(tree, node.right));
+}
+
+// Counts each item's leaf, and checks boxes and kinds.
+void check_tree(const BinaryTree& tree) {
+    std::vector<int> seen(tree.items.size());
+    for (const BinaryNode& node : tree.nodes) {
+        if (!node.leaf()) {
+            for (const std::uint32_t child : {node.left, node.right}) {
+                REQUIRE(child < tree.nodes.size());
+                CHECK(node.box.contains(tree.nodes[child].box.low));
+                CHECK(node.box.contains(tree.nodes[child].box.high));
+            }
+            continue;
+        }
+        CHECK(node.count <= Bvh::kMaxLeaf);
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            ++seen[i];
+            CHECK(node.box.contains(tree.items[i].box.low));
+            CHECK(node.box.contains(tree.items[i].box.high));
+            CHECK(tree.items[i].kind == tree.items[node.first].kind);
+        }
+    }
+    CHECK(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+    CHECK(depth_below(tree, 0) <= Bvh::kMaxDepth);
+}
+
+BuildItem item_at(Vec3 low, Vec3 high, std::size_t index, PrimitiveKind kind = PrimitiveKind::kTriangle) {
+    return {Box3{low, high}, static_cast<std::uint32_t>(index), kind};
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("the nearest hit is that of testing every primitive, to the bit") {
+        for (const bool with_instances : {false, true})
+            for (const float scale : {1e-6f, 1.0f, 1e6f})
+                for (const float shift : {0.0f, 30.0f}) {
+                    CAPTURE(with_instances);
+                    CAPTURE(scale);
+                    CAPTURE(shift);
+                    Soup soup{Random(7), scale, Vec3(1, -0.5f, 0.25f) * (shift * scale)};
+                    const Scene scene = soup.scene(with_instances);
+                    const Accelerator accelerator(scene, 2);
+                    int hits = 0, different = 0, wrong_shadows = 0;
+                    std::string first;
+                    for (int trial = 0; trial < 4000; ++trial) {
+                        Ray ray = soup.ray(scene, trial);
+                        const Hit expected = brute_force(scene, ray), found = accelerator.closest(ray);
+                        hits += expected.valid();
+                        if (!(expected == found) && different++ == 0)
+                            first = described(found) + ", expected " + described(expected);
+                        // Shadow rays: occluded at any distance from the hit's on, by the hit's primitive unless it is
+                        // the light.
+                        Hit end;
+                        end.t = expected.valid() ? expected.t : std::numeric_limits<float>::max();
+                        wrong_shadows += accelerator.occluded(ray, end) != expected.valid();
+                        if (expected.valid()) {
+                            wrong_shadows += accelerator.occluded(ray, expected);
+                            end.t = std::nextafter(expected.t, 0.0f);
+                            wrong_shadows += accelerator.occluded(ray, end);
+                        }
+                    }
+                    CHECK(hits > 1000);
+                    CHECK_MESSAGE(different == 0, first);
+                    CHECK(wrong_shadows == 0);
+                }
+    }
+
+    TEST_CASE("t_min and t_max are respected: the interval is open below and closed above") {
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        for (int i = 1; i <= 9; ++i) builder.add(quad({-1, -1, -static_cast<float>(i)}, {2, 0, 0}, {0, 2, 0}), grey);
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 1);
+        Ray ray{{0.25f, 0.125f, 0}, {0, 0, -1}};
+        for (int i = 1; i < 9; ++i) {
+            ray.t_min = static_cast<float>(i);
+            ray.t_max = static_cast<float>(i + 1);
+            CHECK(accelerator.closest(ray).object == static_cast<std::uint32_t>(i));
+            ray.t_max = std::nextafter(ray.t_max, 0.0f);
+            CHECK(!accelerator.closest(ray).valid());
+        }
+    }
+
+    TEST_CASE("at equal distance the lower object and primitive win, wherever they lie in the tree") {
+        Random random(3);
+        for (int trial = 0; trial < 50; ++trial) {
+            SceneBuilder builder;
+            const std::uint32_t grey = builder.material(Diffuse{});
+            // Quads of many sizes in one plane: their boxes are all entered at one distance.
+            for (int i = 0; i < 60; ++i) {
+                const float size = random.uniform(0.1f, 3);
+                builder.add(quad({-size, -size, 0}, {2 * size, 0, 0}, {0, 2 * size, 0}), grey);
+            }
+            const Scene scene = builder.finish();
+            const Accelerator accelerator(scene, 1);
+            for (int k = 0; k < 50; ++k) {
+                const Vec3 target(random.uniform(), random.uniform(), 0);
+                const Vec3 origin = target + Vec3(random.uniform(), random.uniform(), 2);
+                const Ray ray{origin, normalize(target - origin)};
+                CHECK(accelerator.closest(ray) == brute_force(scene, ray));
+            }
+        }
+    }
+
+    TEST_CASE("a closed mesh lets no ray through that is aimed at its edges and vertices") {
+        for (const float radius : {1e-6f, 1.0f, 1e6f})
+            for (const float shift : {0.0f, 10.0f}) {
+                CAPTURE(radius);
+                CAPTURE(shift);
+                const Vec3 center = Vec3(0.3f, 1, -0.7f) * (shift * radius);
+                const Mesh mesh = icosphere(3, radius, center);
+                SceneBuilder builder;
+                builder.add(mesh, builder.material(Diffuse{}));
+                const Scene scene = builder.finish();
+                const Accelerator accelerator(scene, 1);
+                Random random(5);
+                int leaks = 0;
+                for (int trial = 0; trial < 6000; ++trial) {
+                    const auto& t =
+                        mesh.triangles[static_cast<std::size_t>(random.below(static_cast<int>(mesh.triangles.size())))];
+                    const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]];
+                    const Vec3 target = trial % 2 ? a : lerp(a, b, random.uniform(0, 1));
+                    const Vec3 origin = trial % 3 ? center + random.direction() * (radius * 0.5f)
+                                                  : center + random.direction() * (radius * 3);
+                    // From outside, aimed at the far side through the centre: it must hit the near side.
+                    leaks += !accelerator.closest({origin, normalize((trial % 3 ? target : center) - origin)}).valid();
+                }
+                CHECK(leaks == 0);
+            }
+    }
+
+    TEST_CASE("a mesh far from the world's origin does not leak either") {
+        const Mesh mesh = icosphere(3, 1, {1e5f, -1e5f, 1e5f});
+        SceneBuilder builder;
+        builder.add(mesh, builder.material(Diffuse{}));
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 1);
+        Random random(6);
+        int leaks = 0;
+        for (int trial = 0; trial < 6000; ++trial) {
+            const auto& t =
+                mesh.triangles[static_cast<std::size_t>(random.below(static_cast<int>(mesh.triangles.size())))];
+            const Vec3 target =
+                lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial % 2 ? 0.0f : random.uniform(0, 1));
+            const Vec3 origin = Vec3(1e5f, -1e5f, 1e5f) + random.direction() * 0.5f;
+            leaks += !accelerator.closest({origin, normalize(target - origin)}).valid();
+        }
+        CHECK(leaks == 0);
+    }
+
+    TEST_CASE("rays without direction or with values that are not finite hit nothing and crash nothing") {
+        Soup soup{Random(9), 1, {}};
+        const Scene scene = soup.scene(true);
+        const Accelerator accelerator(scene, 1);
+        const float nan = std::numeric_limits<float>::quiet_NaN(), inf = kInfinity;
+        for (const float bad : {nan, inf, -inf})
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                Ray ray{{0, 0, 5}, {0, 0, -1}};
+                ray.direction[axis] = bad;
+                CHECK(!accelerator.closest(ray).valid());
+                ray = {{0, 0, 5}, {0, 0, -1}};
+                ray.origin[axis] = bad;
+                CHECK(!accelerator.closest(ray).valid());
+            }
+        CHECK(!accelerator.closest({{0, 0, 5}, {0, -0.0f, 0}}).valid());
+        Ray ray{{0, 0, 5}, {0, 0, -1}};
+        ray.t_max = nan;
+        CHECK(!accelerator.closest(ray).valid());
+    }
+
+    TEST_CASE("a scene without objects is hit by nothing; one of a single primitive is a list") {
+        const Scene nothing = SceneBuilder().finish();
+        CHECK(!Accelerator(nothing, 1).closest({{0, 0, 5}, {0, 0, -1}}).valid());
+        SceneBuilder builder;
+        builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{}));
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 1);
+        CHECK(accelerator.world().nodes.empty());
+        CHECK(accelerator.closest({{0, 0, 5}, {0, 0, -1}}).t == 4);
+    }
+
+    TEST_CASE("each primitive lies in one leaf, inside its box; kinds are not mixed; threads don't matter") {
+        Random random(11);
+        std::vector<BuildItem> items;
+        for (std::size_t i = 0; i < 20000; ++i) {
+            const Vec3 p = random.vector();
+            items.push_back(
+                item_at(p, p + Vec3(1, 1, 1) * random.uniform(0, 0.1f), i, static_cast<PrimitiveKind>(i % 4)));
+        }
+        const BinaryTree tree = build_binary_tree(items, 1);
+        check_tree(tree);
+        const BinaryTree same = build_binary_tree(items, 7);
+        REQUIRE(same.items.size() == tree.items.size());
+        bool equal = true;
+        for (std::size_t i = 0; i < tree.items.size(); ++i) equal = equal && same.items[i].index == tree.items[i].index;
+        CHECK(equal);
+    }
+
+    TEST_CASE("degenerate sets of boxes build quickly and not too deep") {
+        std::vector<std::vector<BuildItem>> sets(7);
+        Random random(13);
+        for (std::size_t i = 0; i < 100000; ++i) {
+            const Vec3 p = random.vector();
+            const auto kind = static_cast<PrimitiveKind>(i % 3);
+            sets[0].push_back(item_at({}, {}, i));                     // all in one point
+            sets[1].push_back(item_at({1, 2, 3}, {4, 5, 6}, i, kind)); // identical, kinds mixed
+            sets[2].push_back(item_at({p.x, 0, 0}, {p.x, 0, 0}, i));   // on a line, without area
+            const float far = std::exp2(random.uniform(-126, 100));
+            sets[3].push_back(item_at(Vec3(far, far, far), Vec3(far, far, far), i));    // over all magnitudes
+            sets[4].push_back(item_at(Vec3(-1, -1, -1) * far, Vec3(1, 1, 1) * far, i)); // nested, one centre
+            sets[5].push_back(item_at({1e30f * p.x, 0, 0}, {1e30f, 1e30f, 1e30f}, i));  // areas overflow float
+            sets[6].push_back(
+                item_at({}, i == 0 ? Vec3(1e20f, 0, 0) : Vec3(1e-20f, 0, 0), i)); // one far from all others
+        }
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            CAPTURE(i);
+            const BinaryTree tree = build_binary_tree(sets[i], 2);
+            CHECK(depth_below(tree, 0) <= Bvh::kMaxDepth);
+            std::size_t leaves = 0;
+            for (const BinaryNode& node : tree.nodes) leaves += node.count;
+            CHECK(leaves == sets[i].size());
+            CHECK(collapse(tree).nodes.size() <= tree.nodes.size());
+        }
+    }
+
+    TEST_CASE("a hundred thousand identical triangles are one hit, of the first") {
+        Mesh mesh;
+        mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+        mesh.triangles.assign(100000, {0, 1, 2});
+        SceneBuilder builder;
+        builder.add(mesh, builder.material(Diffuse{}));
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 2);
+        const Hit hit = accelerator.closest({{0.125f, 0, 3}, {0, 0, -1}});
+        CHECK(hit.primitive == 0);
+        CHECK(hit.t == 3);
+        CHECK(!accelerator.closest({{2, 0, 3}, {0, 0, -1}}).valid());
+    }
+
+    TEST_CASE("a ray in the plane of flat boxes passes them without harm") {
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        for (int i = 0; i < 30; ++i)
+            builder.add(quad({static_cast<float>(i), 0, 0}, {0.5f, 0, 0}, {0, 0, 1}), grey); // in y = 0
+        builder.add(quad({40, -1, -1}, {0, 2, 0}, {0, 0, 3}), grey);
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 1);
+        for (const float zero : {0.0f, -0.0f}) {
+            const Hit hit = accelerator.closest({{-1, 0, 0.5f}, {1, zero, zero}});
+            CHECK(hit.object == 30);
+            CHECK(hit.t == 41);
+        }
+    }
+}
