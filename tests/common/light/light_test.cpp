@@ -242,7 +242,8 @@ TEST_SUITE("statistical") {
         const auto all = settings();
         for (const Setting& s : all) { // odds of a false alarm: 1e-4 for all settings together
             CAPTURE(s.name);
-            if (s.name.ends_with("far")) continue; // a few of the test's cells: the next case has these
+            // Smaller or thinner than the test's cells: the next case has these.
+            if (s.name.ends_with("far") || s.name.ends_with("aside")) continue;
             test::DirectionTest setup;
             setup.axis =
                 normalize(normalize(center(s.light) - s.p) + Vec3(0.05f, 0.02f, -0.03f)); // no ring along a rim
