@@ -7,6 +7,7 @@ namespace duet::models {
 std::span<const Model> all_models() {
     using enum Model::Kind;
     static const std::vector<Model> models{
+        {"amphora", kCommitted, {"meshes/amphora.obj", "textures/amphora.png"}, write_amphora},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},

@@ -28,6 +28,7 @@ struct Model {
 std::span<const Model> all_models();
 
 // One function a model, each in the file of its name.
+void write_amphora(const std::filesystem::path& folder);
 void write_octopus(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);

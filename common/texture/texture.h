@@ -25,9 +25,9 @@ struct CheckerTexture {
 /// Gradient noise summed over octaves, in object space (Perlin 2002), between two colours.
 struct NoiseTexture {
     Rgb low{0.0f}, high{1.0f};
-    float scale = 1;       ///< cycles a metre of object space
-    int octaves = 4;       ///< 1 to 16, each of half the amplitude and twice the frequency
-    bool marble = false;   ///< sin(scale·z + 10·turbulence), as in Ray Tracing: The Next Week §5
+    float scale = 1;     ///< cycles a metre of object space
+    int octaves = 4;     ///< 1 to 16, each of half the amplitude and twice the frequency
+    bool marble = false; ///< sin(scale·z + 10·turbulence), as in Ray Tracing: The Next Week §5
 };
 using Texture = std::variant<ImageTexture, CheckerTexture, NoiseTexture>;
 
