@@ -9,7 +9,7 @@ namespace duet::raster {
 namespace {
 
 /// Point i of the (0,2)-sequence that `stream` names, as 32-bit fractions (common/sampling/sobol.h keeps digits in
-/// reversed order, where an Owen scramble of the index itself is a shuffle that keeps points stratified).
+/// reversed order). The index is scrambled as a number, which takes each aligned block of 2^k to another one.
 struct Point {
     std::uint32_t x, y;
 };
@@ -17,7 +17,7 @@ Point point(std::uint32_t i, std::uint64_t seed, std::uint64_t stream) {
     const auto key = [&](std::uint64_t purpose) {
         return high_bits(hash_combine(hash_combine(seed, stream), purpose));
     };
-    const std::uint32_t shuffled = owen_scramble(i, key(0));
+    const std::uint32_t shuffled = reverse_bits(owen_scramble(reverse_bits(i), key(0)));
     return {reverse_bits(owen_scramble(shuffled, key(1))), reverse_bits(owen_scramble(sobol_second(shuffled), key(2)))};
 }
 

@@ -82,7 +82,7 @@ function updateDifference() {
     scale.fillStyle = `rgb(${falseColor(state.palette, x / 511 * 2 - 1).join(" ")})`;
     scale.fillRect(x, 0, 1, 14);
   }
-  fill("ticks", ...[-1, -0.5, 0, 0.5, 1].map(f => make("span", {}, f === 0 ? "0" : signedText(f * state.range))));
+  fill("ticks", ...[-1, -0.5, 0, 0.5, 1].map(f => make("span", {}, f === 0 ? "0" : minus((f > 0 ? "+" : "") + Number((f * state.range).toPrecision(2))))));
   element("caption").textContent = `Rasterizer minus path tracer, ${state.channel === "luminance" ? "luminance" : element("channel").selectedOptions[0].textContent}, linear. `
     + (beyond > 0 ? `${percentText(beyond)} of the pixels lie beyond the scale's ends.` : "No pixel lies beyond the scale's ends.");
   showInspector();

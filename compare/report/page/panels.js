@@ -18,7 +18,12 @@ const tag = p => make("span", { class: p.key }, `${p.symbol} ${p.name}`);
 
 const workSeconds = p => report[p.key].seconds.prepare + report[p.key].seconds.render;
 const ratioText = r => r >= 100 ? r.toFixed(0) : r >= 10 ? r.toFixed(0) : r.toFixed(1);
-const percentText = share => share >= 0.9995 && share < 1 ? `${(Math.floor(share * 1e5) / 1e3).toFixed(3)} %` : `${(share * 100).toFixed(share === 1 || share === 0 ? 0 : 2)} %`;
+// Never rounded to all or nothing.
+function percentText(share) {
+  if (share === 0 || share === 1) return `${share * 100} %`;
+  if (share < 0.0001) return "< 0.01 %";
+  return share > 0.999 ? `${(Math.floor(share * 1e5) / 1e3).toFixed(3)} %` : `${(share * 100).toFixed(2)} %`;
+}
 
 function showLede() {
   const [raster, raytrace] = pipelines.map(workSeconds), hits = report.hits;
@@ -31,7 +36,7 @@ function showLede() {
     Number.isFinite(ratio) && ratio >= 1.05 ? `: ${ratioText(ratio)} times ${faster ? "as long" : "less"}. ` : ". ",
     "They see the same primitive in ", make("strong", {}, percentText(hits.same / hits.pixels)), " of the pixels",
     hits.unexplained === 0 ? " and differ nowhere without a reason. " : "; ",
-    hits.unexplained === 0 ? "" : make("strong", {}, `${countText(hits.unexplained)} differ without a reason. `),
+    hits.unexplained === 0 ? "" : make("strong", {}, `${countText(hits.unexplained)} ${hits.unexplained === 1 ? "differs" : "differ"} without a reason. `),
     "The pictures' relative squared error is ", make("strong", {}, figure(report.metrics.relmse)), ".");
 }
 
@@ -42,7 +47,8 @@ function figure(v) {
   if (size !== 0 && size < 0.001) {
     const power = Math.floor(Math.log10(size));
     const digits = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-    return minus(`${(v / 10 ** power).toFixed(2)} · 10${[...String(power)].map(d => digits[d]).join("")}`);
+    const factor = (v / 10 ** power).toFixed(2);
+    return minus(`${factor === "1.00" ? "" : factor + "\u00a0·\u00a0"}10${[...String(power)].map(d => digits[d]).join("")}`);
   }
   return minus(size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2) : size === 0 ? "0" : v.toFixed(size >= 1 ? 3 : 4));
 }
@@ -54,22 +60,17 @@ function row(name, explanation, value, options = {}) {
 }
 
 function symbolOf(kind) {
-  const { color, shape } = verdicts[kind];
+  const { key, shape } = verdicts[kind];
   const ns = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(ns, "svg");
   svg.setAttribute("width", "16");
   svg.setAttribute("height", "16");
   svg.setAttribute("viewBox", "0 0 16 16");
-  svg.setAttribute("class", "symbol");
+  svg.setAttribute("class", `symbol ${key}`);
   svg.setAttribute("aria-hidden", "true");
-  for (const [stroke, w] of [["#22262a", 4.4], [color, 2.4]]) {
-    const path = document.createElementNS(ns, "path");
-    path.setAttribute("d", { circle: "M13 8A5 5 0 1 1 3 8A5 5 0 1 1 13 8Z", square: "M3 3H13V13H3Z", cross: "M3 3L13 13M13 3L3 13" }[shape]);
-    path.setAttribute("fill", "none");
-    path.setAttribute("stroke", stroke);
-    path.setAttribute("stroke-width", w);
-    svg.append(path);
-  }
+  const path = document.createElementNS(ns, "path");
+  path.setAttribute("d", { circle: "M13 8A5 5 0 1 1 3 8A5 5 0 1 1 13 8Z", square: "M3 3H13V13H3Z", cross: "M3 3L13 13M13 3L3 13" }[shape]);
+  svg.append(path);
   return svg;
 }
 

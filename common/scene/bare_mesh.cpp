@@ -1,0 +1,70 @@
+#include "common/scene/bare_mesh.h"
+
+#include "common/scene/load_obj.h"
+#include "common/scene/read_objects.h"
+#include "common/system/error.h"
+
+namespace duet {
+
+namespace {
+
+constexpr double kMargin = 1.12;    ///< the picture is this much larger than the mesh
+constexpr double kGroundReach = 60; ///< half the ground's side, in radii of the mesh
+
+/// Twice the radius in 4:3, seen from a third to the side and a quarter above; as near as the whole mesh allows.
+Camera frame(const Mesh& mesh, const Box3d& box, int width, int height) {
+    Camera camera;
+    camera.fov_degrees = 35;
+    camera.look_at = box.center();
+    const Vec3d back = normalize(Vec3d(0.55, 0.42, 1)); // from the mesh to the eye
+    const Vec3d right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
+    const double tan_y = std::tan(radians(camera.fov_degrees / 2)) / kMargin;
+    const double tan_x = tan_y * width / height;
+    double distance = 0; // such that |x| ≤ (distance − z)·tan for each vertex
+    for (const Vec3 p : mesh.positions) {
+        const Vec3d d = Vec3d(p) - camera.look_at;
+        distance = max(distance, dot(d, back) + max(abs(dot(d, right)) / tan_x, abs(dot(d, up)) / tan_y));
+    }
+    camera.eye = camera.look_at + back * distance;
+    camera.near = 1e-4 * distance;
+    return camera;
+}
+
+} // namespace
+
+Scene scene_around_mesh(const std::filesystem::path& path) {
+    ObjFile obj = load_obj(path, {MeshNormals::kAuto, true});
+    Scene scene;
+    scene.path = path;
+    ImageCache images(scene.textures);
+    Object object;
+    object.name = path.stem().string();
+    object.materials = add_obj_materials(path, obj, images, scene);
+
+    Box3d box;
+    for (const Vec3 p : obj.mesh.positions) box.extend(Vec3d(p));
+    const double radius = 0.5 * length(box.diagonal());
+    if (!(radius > 1e-6 * max_component(max(abs(box.low), abs(box.high)))) || radius < 1e-15 || radius > 1e15)
+        throw Error(path.string() + ": the mesh is too small or too large to be framed by a camera");
+    scene.camera = frame(obj.mesh, box, scene.width, scene.height);
+
+    // The gap keeps a flat underside from fighting with the ground, here and in the rasterizer's depth.
+    const double ground = box.low.y - 1e-3 * radius, reach = kGroundReach * radius;
+    const Vec3d center = box.center();
+    Object floor;
+    floor.name = "ground";
+    floor.shape = 1;
+    floor.materials = {static_cast<std::uint32_t>(scene.materials.size())};
+    scene.materials.push_back(Diffuse{{Rgb(0.5f)}});
+    scene.material_names.push_back("ground");
+    scene.shapes.push_back(std::move(obj.mesh));
+    scene.shapes.push_back(QuadList{{Quad{Vec3(Vec3d(center.x - reach, ground, center.z + reach)),
+                                          Vec3(Vec3d(2 * reach, 0, 0)), Vec3(Vec3d(0, 0, -2 * reach))}}});
+    scene.objects = {std::move(object), std::move(floor)};
+    // Together about π of irradiance on a surface that lies open: white is just white.
+    scene.lights.push_back(SunLight{Vec3(normalize(Vec3d(-0.55, -1, -0.6))), Rgb(2.2f, 2.1f, 1.9f)});
+    scene.environment = SkyEnvironment{Rgb(0.62f, 0.62f, 0.62f), Rgb(0.34f, 0.46f, 0.68f)};
+    return scene;
+}
+
+} // namespace duet

@@ -1,0 +1,169 @@
+// What follows from a scene's description, worked out once for both pipelines.
+#include "common/scene/bake.h"
+#include "common/scene/scene.h"
+#include "common/system/error.h"
+
+#include <algorithm>
+
+namespace duet {
+
+namespace {
+
+/// Beyond this the squares of coordinates come near the end of float's range. A little above the 1e18 that files may
+/// say.
+constexpr float kMaxCoordinate = 1.001e18f;
+
+/// Broken references are faults of the program that built the scene, not of a file.
+void check_references(const Scene& scene) {
+    DUET_CHECK_EQ(scene.materials.size(), scene.material_names.size());
+    for (const Object& object : scene.objects) {
+        DUET_CHECK_LT(object.shape, scene.shapes.size());
+        DUET_CHECK(!object.materials.empty());
+        for (const std::uint32_t material : object.materials) DUET_CHECK_LT(material, scene.materials.size());
+        const auto* mesh = std::get_if<Mesh>(&scene.shapes[object.shape]);
+        if (mesh == nullptr || mesh->material_slots.empty()) continue;
+        DUET_CHECK_EQ(mesh->material_slots.size(), mesh->triangles.size());
+        DUET_CHECK_LT(*std::max_element(mesh->material_slots.begin(), mesh->material_slots.end()),
+                      object.materials.size());
+    }
+}
+
+void bake_single_objects(Scene& scene) {
+    std::vector<std::uint32_t> uses(scene.shapes.size());
+    for (const Object& object : scene.objects) ++uses[object.shape];
+    for (Object& object : scene.objects)
+        if (!object.identity && !object.moving && uses[object.shape] == 1) bake(scene, object);
+}
+
+/// Points move on straight lines, as matrix entries are interpolated: the boxes at both ends hold all in between, but
+/// for the rounding of the interpolated matrix, which the bounds of either leave room for.
+Box3 motion_bounds(const Scene& scene, const Object& object) {
+    Box3 box = bounds(scene.shapes[object.shape], object.to_world);
+    if (object.moving) box.extend(bounds(scene.shapes[object.shape], object.to_world_end));
+    return box;
+}
+
+void find_bounds(Scene& scene) {
+    scene.bounds = Box3();
+    for (const Object& object : scene.objects) {
+        const Box3 box = motion_bounds(scene, object);
+        const Vec3 reach = max(abs(box.low), abs(box.high));
+        if (!is_finite(reach) || max_component(reach) > kMaxCoordinate)
+            throw Error(message(scene.path.string(), ": the object ", object.name, " reaches beyond 1e18 metres"));
+        scene.bounds.extend(box);
+    }
+    if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};
+}
+
+/// The light of an emissive primitive of an object that stands still; none of one without area, and none of a sphere
+/// that its transform makes an ellipsoid: those are found by chance only.
+std::optional<SurfaceLight> surface_light(const Shape& shape, const Mat4& to_world, std::uint32_t primitive) {
+    SurfaceLight light;
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        const std::optional<Sphere> moved = transformed(*sphere, to_world);
+        if (!moved || !(moved->radius > 0)) return std::nullopt;
+        light.shape = *moved;
+        return light;
+    }
+    Vec3d area;
+    if (const auto* list = std::get_if<QuadList>(&shape)) {
+        const Quad quad = transformed(list->quads[primitive], to_world);
+        area = cross(Vec3d(quad.u), Vec3d(quad.v));
+        light.shape = quad;
+    } else {
+        const Corners c = primitive_corners(shape, primitive);
+        const auto [a, b, d] = transformed(std::array{c.p[0], c.p[1], c.p[2]}, to_world);
+        area = cross(Vec3d(b) - Vec3d(a), Vec3d(d) - Vec3d(a));
+        light.shape = SurfaceLight::Triangle{a, b, d};
+    }
+    if (!(length_squared(area) > 0)) return std::nullopt;
+    return light;
+}
+
+const Emissive* emissive(const Scene& scene, std::uint32_t material) {
+    const auto* lamp = std::get_if<Emissive>(&scene.materials[material]);
+    return lamp != nullptr && !is_black(lamp->radiance) ? lamp : nullptr;
+}
+
+void add_surface_lights(Scene& scene) {
+    std::erase_if(scene.lights, [](const Light& light) { return std::holds_alternative<SurfaceLight>(light); });
+    scene.first_surface_light = scene.lights.size();
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+        const Object& object = scene.objects[o];
+        if (object.moving || std::none_of(object.materials.begin(), object.materials.end(),
+                                          [&](std::uint32_t m) { return emissive(scene, m); }))
+            continue;
+        const Shape& shape = scene.shapes[object.shape];
+        for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
+            const Emissive* lamp = emissive(scene, material_index(scene, o, p));
+            if (lamp == nullptr) continue;
+            std::optional<SurfaceLight> light = surface_light(shape, object.to_world, p);
+            if (!light) continue;
+            light->two_sided = lamp->two_sided;
+            light->radiance = lamp->radiance;
+            light->object = o;
+            light->primitive = p;
+            scene.lights.push_back(*light);
+        }
+    }
+}
+
+void check_power(const Scene& scene) {
+    const float radius = 0.5f * length(scene.bounds.diagonal());
+    for (const Light& light : scene.lights)
+        if (!std::isfinite(light_power(light, radius)))
+            throw Error(scene.path.string() + ": a light's power is beyond what a float holds: radiance times area, or "
+                                              "irradiance times the scene's cross-section");
+}
+
+void note_material(const Scene& scene, const Material& material, SceneNeeds& needs) {
+    if (const auto* metal = std::get_if<Metal>(&material)) {
+        const bool smooth = sqr(metal->roughness) < MetalBsdf::kSmoothAlpha;
+        needs.specular = needs.specular || smooth;
+        needs.glossy = needs.glossy || !smooth;
+    }
+    if (std::holds_alternative<Dielectric>(material)) needs.specular = needs.transmission = true;
+    const std::int32_t texture = texture_slot(material).texture;
+    if (texture < 0) return;
+    needs.textures = true;
+    if (std::holds_alternative<ImageTexture>(scene.textures.textures[static_cast<std::size_t>(texture)]))
+        needs.image_textures = true;
+}
+
+SceneNeeds find_needs(const Scene& scene) {
+    SceneNeeds needs;
+    std::vector<bool> used(scene.materials.size());
+    for (const Object& object : scene.objects) {
+        for (const std::uint32_t material : object.materials) used[material] = true;
+        const Shape& shape = scene.shapes[object.shape];
+        const auto* mesh = std::get_if<Mesh>(&shape);
+        needs.meshes = needs.meshes || mesh != nullptr;
+        needs.quads = needs.quads || std::holds_alternative<QuadList>(shape);
+        needs.spheres = needs.spheres || std::holds_alternative<Sphere>(shape);
+        needs.smooth_normals = needs.smooth_normals || (mesh != nullptr && !mesh->normals.empty());
+        needs.instances = needs.instances || !object.identity;
+        needs.motion = needs.motion || object.moving;
+    }
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) note_material(scene, scene.materials[i], needs);
+    needs.lens = scene.camera.aperture_radius > 0;
+    needs.environment = !is_black(scene.environment);
+    needs.delta_lights = scene.first_surface_light > 0;
+    needs.surface_lights = scene.lights.size() > scene.first_surface_light;
+    return needs;
+}
+
+} // namespace
+
+void finish_scene(Scene& scene) {
+    check_references(scene);
+    bake_single_objects(scene);
+    find_bounds(scene);
+    for (Shape& shape : scene.shapes)
+        if (auto* mesh = std::get_if<Mesh>(&shape)) mesh->closed = is_closed_outwards(*mesh);
+    add_surface_lights(scene);
+    check_power(scene);
+    scene.needs = find_needs(scene);
+}
+
+} // namespace duet

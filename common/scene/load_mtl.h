@@ -1,0 +1,22 @@
+// MTL files: Wavefront materials, with the PBR extension, mapped to ours. models/README.md has the table.
+#pragma once
+
+#include "common/scene/load_obj.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace duet {
+
+/// A material of an MTL file and the picture it asks for.
+struct MtlMaterial {
+    Material material;               ///< a slot with a texture has texture = 0, standing for `texture`
+    std::vector<ObjTexture> texture; ///< none or one
+};
+
+/// Adds the materials of an MTL file by name; the first of a name stands. Throws Error with path and line for malformed
+/// numbers, and for a file that is missing.
+void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMaterial>& materials);
+
+} // namespace duet

@@ -1,0 +1,176 @@
+#include "common/scene/load_obj.h"
+
+#include "common/scene/json_reader.h"
+#include "common/scene/load_mtl.h"
+#include "common/scene/obj_check.h"
+#include "common/scene/obj_mesh.h"
+#include "common/scene/read_materials.h"
+#include "common/scene/smooth_normals.h"
+#include "common/system/error.h"
+
+#include <tiny_obj_loader.h>
+
+#include <istream>
+#include <streambuf>
+
+namespace duet {
+
+namespace {
+
+/// Reads a text where it lies.
+class TextStream : public std::streambuf {
+public:
+    explicit TextStream(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
+};
+
+/// The material slots of a mesh, as the usemtl lines ask for them.
+class Slots {
+public:
+    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted) : path_(&path), wanted_(wanted) {
+        if (!wanted) return;
+        for (const std::string& line : counts.material_files) load_library(line);
+    }
+
+    void use(const char* name) {
+        std::string text = name;
+        text.erase(std::min(text.find_last_not_of(" \t") + 1, text.size()));
+        text.erase(0, std::min(text.find_first_not_of(" \t"), text.size()));
+        current_ = wanted_ ? text : "";
+        slot_ = kUnknown;
+    }
+
+    /// The slot of the next face; the material is looked up now, so that one which no face uses may be missing.
+    std::uint16_t slot() {
+        if (slot_ == kUnknown) slot_ = find_slot();
+        return static_cast<std::uint16_t>(slot_);
+    }
+
+    void finish(ObjFile& file) {
+        file.materials = std::move(materials_);
+        file.textures = std::move(textures_);
+    }
+
+private:
+    static constexpr std::uint32_t kUnknown = ~0u;
+
+    /// «mtllib a.mtl b.mtl», or one name with blanks in it.
+    void load_library(const std::string& line) {
+        const auto is_there = [&](const std::string& name) {
+            std::error_code error;
+            return std::filesystem::is_regular_file(beside(*path_, name), error);
+        };
+        const std::size_t first = line.find_first_not_of(" \t");
+        if (first == std::string::npos) return;
+        const std::string whole = line.substr(first, line.find_last_not_of(" \t") - first + 1);
+        if (is_there(whole)) return load_mtl(beside(*path_, whole), library_);
+        for (std::size_t at = 0; at < whole.size();) {
+            const std::size_t end = std::min(whole.find_first_of(" \t", at), whole.size());
+            const std::string name = whole.substr(at, end - at);
+            at = end + 1;
+            if (name.empty()) continue;
+            if (is_there(name))
+                load_mtl(beside(*path_, name), library_);
+            else
+                missing_.push_back(beside(*path_, name).string());
+        }
+    }
+
+    std::uint32_t find_slot() {
+        const auto [entry, added] = slots_.try_emplace(current_, static_cast<std::uint32_t>(slots_.size()));
+        if (!added) return entry->second;
+        if (slots_.size() > 65536) throw Error(path_->string() + ": more than 65536 materials are used");
+        ObjMaterial material{current_, default_obj_material()};
+        const auto found = library_.find(current_);
+        if (found != library_.end()) {
+            material.material = found->second.material;
+            add_texture(material.material, found->second.texture);
+        } else if (!current_.empty() && !missing_.empty()) {
+            throw Error(message(path_->string(), ": the material ", in_quotes(current_), " is used, but its file ",
+                                missing_.front(), " is missing"));
+        } else if (!current_.empty() && !library_.empty()) {
+            throw Error(message(path_->string(), ": the material ", in_quotes(current_),
+                                " is used, but no MTL file has it", suggest()));
+        }
+        materials_.push_back(std::move(material));
+        return entry->second;
+    }
+
+    std::string suggest() const {
+        std::vector<std::string_view> known;
+        for (const auto& entry : library_) known.push_back(entry.first);
+        return suggestion(current_, known);
+    }
+
+    void add_texture(Material& material, const std::vector<ObjTexture>& texture) {
+        const auto move_slot = [&](RgbSlot& slot) {
+            if (slot.texture < 0) return;
+            slot.texture = static_cast<std::int32_t>(textures_.size());
+            textures_.push_back(texture.front());
+        };
+        if (auto* diffuse = std::get_if<Diffuse>(&material)) move_slot(diffuse->albedo);
+        if (auto* metal = std::get_if<Metal>(&material)) move_slot(metal->reflectance);
+        if (auto* lamp = std::get_if<Emissive>(&material)) move_slot(lamp->albedo);
+    }
+
+    const std::filesystem::path* path_;
+    bool wanted_;
+    std::map<std::string, MtlMaterial> library_;
+    std::vector<std::string> missing_;
+    std::string current_;
+    std::uint32_t slot_ = kUnknown;
+    std::map<std::string, std::uint32_t> slots_;
+    std::vector<ObjMaterial> materials_;
+    std::vector<ObjTexture> textures_;
+};
+
+/// What tinyobjloader calls back into.
+struct Reader {
+    ObjMeshBuilder mesh;
+    Slots slots;
+};
+
+tinyobj::callback_t callbacks() {
+    tinyobj::callback_t c;
+    c.vertex_cb = [](void* reader, float x, float y, float z, float) {
+        static_cast<Reader*>(reader)->mesh.add_position({x, y, z});
+    };
+    c.normal_cb = [](void* reader, float x, float y, float z) {
+        static_cast<Reader*>(reader)->mesh.add_normal({x, y, z});
+    };
+    c.texcoord_cb = [](void* reader, float u, float v, float) { static_cast<Reader*>(reader)->mesh.add_uv({u, v}); };
+    c.usemtl_cb = [](void* reader, const char* name, int) { static_cast<Reader*>(reader)->slots.use(name); };
+    c.index_cb = [](void* user, tinyobj::index_t* indices, int count) {
+        auto* reader = static_cast<Reader*>(user);
+        reader->mesh.begin_face(reader->slots.slot());
+        for (int i = 0; i < count; ++i)
+            reader->mesh.add_corner(indices[i].vertex_index, indices[i].texcoord_index, indices[i].normal_index);
+        reader->mesh.end_face();
+    };
+    return c;
+}
+
+} // namespace
+
+Material default_obj_material() { return Diffuse{{Rgb(0.62f, 0.5f, 0.42f)}}; }
+
+ObjFile load_obj(const std::filesystem::path& path, const ObjOptions& options) {
+    std::string text = read_obj_text(path);
+    const ObjCounts counts = check_obj(path, text);
+    const bool file_normals =
+        options.normals == MeshNormals::kFile || (options.normals == MeshNormals::kAuto && counts.normals > 0);
+    Reader reader{ObjMeshBuilder(path, counts, file_normals), Slots(path, counts, options.materials)};
+    TextStream buffer(text);
+    std::istream stream(&buffer);
+    std::string warnings, errors;
+    if (!tinyobj::LoadObjWithCallback(stream, callbacks(), &reader, nullptr, &warnings, &errors))
+        throw Error(message(path.string(), ": ", errors));
+    ObjFile file;
+    reader.slots.finish(file);
+    file.mesh = reader.mesh.finish(file.degenerate_faces);
+    if (file.materials.size() == 1) file.mesh.material_slots.clear();
+    if (options.normals == MeshNormals::kSmooth || (options.normals == MeshNormals::kAuto && !file_normals))
+        add_smooth_normals(file.mesh);
+    return file;
+}
+
+} // namespace duet

@@ -1,0 +1,66 @@
+#include "common/scene/bare_mesh.h"
+#include "common/scene/json_reader.h"
+#include "common/scene/read_lights.h"
+#include "common/scene/read_materials.h"
+#include "common/scene/read_objects.h"
+#include "common/scene/scene.h"
+#include "common/scene/scene_keys.h"
+#include "common/system/error.h"
+#include "common/system/file.h"
+
+#include <algorithm>
+
+namespace duet {
+
+namespace {
+
+/// A scene file is text that people and scripts write: 1 GiB is far more than kMaxObjects need.
+constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 30;
+
+void read_image_size(const JsonValue& image, Scene& scene) {
+    image.check_keys(scene_keys("image"));
+    if (image.has("width")) scene.width = image.at("width").integer(1, kMaxPictureSide);
+    if (image.has("height")) scene.height = image.at("height").integer(1, kMaxPictureSide);
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+    const JsonNode root = parse_json(path, read_file(path, kMaxSceneBytes));
+    const JsonValue file(root, path);
+    file.check_keys(scene_keys("scene"));
+    for (const std::string_view text : {"$schema", "description"})
+        if (file.has(text)) file.at(text).string();
+
+    Scene scene;
+    scene.path = path;
+    scene.camera = read_camera(file.at("camera"));
+    if (file.has("image")) read_image_size(file.at("image"), scene);
+    ImageCache images(scene.textures);
+    NameIndex textures, materials;
+    if (file.has("textures")) textures = read_textures(file.at("textures"), scene, images);
+    if (file.has("materials")) materials = read_materials(file.at("materials"), textures, scene);
+    read_objects(file.at("objects"), materials, images, scene);
+    if (file.has("lights"))
+        for (const JsonValue& light : file.at("lights").elements()) scene.lights.push_back(read_light(light));
+    if (file.has("environment")) scene.environment = read_environment(file.at("environment"));
+    return scene;
+}
+
+std::string lower_case_extension(const std::filesystem::path& path) {
+    std::string text = path.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return text;
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& path) {
+    const std::string extension = lower_case_extension(path);
+    if (extension != ".json" && extension != ".obj")
+        throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
+    Scene scene = extension == ".obj" ? scene_around_mesh(path) : read_scene(path);
+    finish_scene(scene);
+    return scene;
+}
+
+} // namespace duet

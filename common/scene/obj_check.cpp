@@ -1,0 +1,238 @@
+#include "common/scene/obj_check.h"
+
+#include "common/scene/json_reader.h"
+#include "common/system/error.h"
+#include "common/system/file.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace duet {
+
+namespace {
+
+/// Words of a line, separated by blanks and tabs, as tinyobjloader separates them.
+class Words {
+public:
+    explicit Words(std::string_view line) : rest_(line) {}
+    /// The next word, empty at the line's end. (By hand: find_first_of calls memchr for each byte.)
+    std::string_view next() {
+        std::size_t begin = 0, end = 0;
+        while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
+        for (end = begin; end < rest_.size() && !is_blank(rest_[end]);) ++end;
+        const std::string_view word = rest_.substr(begin, end - begin);
+        rest_.remove_prefix(end);
+        return word;
+    }
+    std::string_view rest() const { return rest_; }
+
+private:
+    static bool is_blank(char c) { return c == ' ' || c == '\t'; }
+    std::string_view rest_;
+};
+
+/// Walks over the lines of a text, which end as in tinyobjloader: by \n, \r\n or \r.
+class Lines {
+public:
+    explicit Lines(std::string_view text) : rest_(text) {}
+    bool next(std::string_view& line) {
+        if (rest_.empty()) return false;
+        std::size_t end = 0;
+        while (end < rest_.size() && rest_[end] != '\n' && rest_[end] != '\r') ++end;
+        line = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        if (rest_.starts_with("\r\n"))
+            rest_.remove_prefix(2);
+        else if (!rest_.empty())
+            rest_.remove_prefix(1);
+        ++number_;
+        return true;
+    }
+    std::size_t number() const { return number_; }
+
+private:
+    std::string_view rest_;
+    std::size_t number_ = 0;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::size_t line, const std::string& what) {
+    throw Error(message(path.string(), ": line ", line, ": ", what));
+}
+
+void check_number(const std::filesystem::path& path, std::size_t line, std::string_view word) {
+    if (word.empty()) fail(path, line, "ends too early, expected another number");
+    const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument || std::isnan(value))
+        fail(path, line, "found " + in_quotes(word) + ", expected a number");
+    // Out of range is said of numbers too small for a double, too: those are 0 for tinyobjloader, and for us.
+    const bool tiny = error == std::errc::result_out_of_range &&
+                      (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos);
+    if ((error == std::errc::result_out_of_range && !tiny) || !(std::abs(value) <= kMaxMeshNumber))
+        fail(path, line, "found " + in_quotes(word) + ", expected a number between -1e18 and 1e18");
+}
+
+/// A line of at least `least` numbers, and at most `most` that are looked at.
+void check_numbers(const std::filesystem::path& path, std::size_t line, Words words, std::size_t least,
+                   std::size_t most) {
+    for (std::size_t i = 0; i < most; ++i) {
+        const std::string_view word = words.next();
+        if (word.empty() && i >= least) return;
+        check_number(path, line, word);
+    }
+}
+
+/// Checks the indices of face corners against the counts so far, and keeps the largest, to be compared with the final
+/// counts: a positive index may name what comes later.
+class IndexCheck {
+public:
+    IndexCheck(const std::filesystem::path& path, const char* what) : path_(&path), what_(what) {}
+
+    void add(std::string_view text, std::size_t count, std::size_t line) {
+        std::int64_t index = 0;
+        const std::string_view digits = text.substr(text.starts_with('+') ? 1 : 0);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+        if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
+            fail(*path_, line, "found " + in_quotes(text) + ", expected a " + what_ + " index");
+        if (error == std::errc::result_out_of_range || index == 0 || index < -static_cast<std::int64_t>(count))
+            refuse(text, count, line);
+        if (index > largest_) {
+            largest_ = index;
+            line_ = line;
+        }
+    }
+    void finish(std::size_t count) const {
+        if (largest_ > static_cast<std::int64_t>(count)) refuse(std::to_string(largest_), count, line_);
+    }
+
+private:
+    [[noreturn]] void refuse(std::string_view text, std::size_t count, std::size_t line) const {
+        fail(*path_, line,
+             message("the ", what_, " index ", text.substr(0, 30), " is out of range: there are ", count));
+    }
+
+    const std::filesystem::path* path_;
+    const char* what_;
+    std::int64_t largest_ = 0;
+    std::size_t line_ = 0;
+};
+
+/// The checks of f lines: «f 1 2 3», «f 1/1 …», «f 1//1 …», «f 1/1/1 …».
+class FaceCheck {
+public:
+    explicit FaceCheck(const std::filesystem::path& path)
+        : path_(&path), index_{IndexCheck(path, "vertex"), IndexCheck(path, "texture coordinate"),
+                               IndexCheck(path, "normal")} {}
+
+    void line(Words words, std::size_t number, ObjCounts& counts) {
+        std::size_t corners = 0;
+        for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++corners)
+            corner(word, number, counts);
+        if (corners < 3)
+            fail(*path_, number,
+                 message("a face of ", corners, corners == 1 ? " corner" : " corners", ", expected at least 3"));
+        ++counts.faces;
+        counts.corners += corners;
+    }
+    void finish(const ObjCounts& counts) const {
+        index_[0].finish(counts.positions);
+        index_[1].finish(counts.texture_coordinates);
+        index_[2].finish(counts.normals);
+    }
+
+private:
+    void corner(std::string_view word, std::size_t line, const ObjCounts& counts) {
+        const std::array<std::size_t, 3> have = {counts.positions, counts.texture_coordinates, counts.normals};
+        std::string_view rest = word;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string_view part = rest.substr(0, rest.find('/'));
+            if (!part.empty() || i == 0) index_[i].add(part, have[i], line);
+            if (part.size() == rest.size()) return;
+            rest.remove_prefix(part.size() + 1);
+        }
+        fail(*path_, line, "found " + in_quotes(word) + ", expected at most three indices");
+    }
+
+    const std::filesystem::path* path_;
+    std::array<IndexCheck, 3> index_;
+};
+
+/// «f 1 2 \⏎ 3 4⏎» becomes «f 1 2   3 4⏎⏎»: tinyobjloader does not know continued lines.
+std::string join_continued(const std::string& text) {
+    std::string joined;
+    joined.reserve(text.size());
+    std::size_t pending = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::size_t next = i + (text.compare(i + 1, 2, "\r\n") == 0 ? 2 : 1);
+        if (text[i] == '\\' && next < text.size() && text[next] == '\n') {
+            joined += ' ';
+            ++pending;
+            i = next;
+        } else {
+            joined += text[i];
+            if (text[i] == '\n') {
+                joined.append(pending, '\n');
+                pending = 0;
+            }
+        }
+    }
+    return joined;
+}
+
+} // namespace
+
+std::string read_obj_text(const std::filesystem::path& path) {
+    std::string text = read_file(path);
+    if (text.starts_with("\xEF\xBB\xBF"))
+        text.replace(0, 3, "   "); // a byte order mark would hide the first line's key
+    if (text.find('\0') != std::string::npos) throw Error(path.string() + ": holds a NUL byte, expected text");
+    const bool continued = text.find("\\\n") != std::string::npos || text.find("\\\r\n") != std::string::npos;
+    return continued ? join_continued(text) : text;
+}
+
+ObjCounts check_obj(const std::filesystem::path& path, std::string_view text) {
+    ObjCounts counts;
+    FaceCheck faces(path);
+    Lines lines(text);
+    for (std::string_view line; lines.next(line);) {
+        Words words(line);
+        const std::string_view key = words.next();
+        if (key == "v") {
+            check_numbers(path, lines.number(), words, 3, 3);
+            ++counts.positions;
+        } else if (key == "vt") {
+            check_numbers(path, lines.number(), words, 1, 2);
+            ++counts.texture_coordinates;
+        } else if (key == "vn") {
+            check_numbers(path, lines.number(), words, 3, 3);
+            ++counts.normals;
+        } else if (key == "f") {
+            faces.line(words, lines.number(), counts);
+        } else if (key == "mtllib") {
+            counts.material_files.emplace_back(words.rest());
+        }
+    }
+    faces.finish(counts);
+    if (counts.faces == 0) throw Error(path.string() + ": has no faces");
+    return counts;
+}
+
+void check_mtl(const std::filesystem::path& path, std::string_view text) {
+    Lines lines(text);
+    for (std::string_view line; lines.next(line);) {
+        Words words(line);
+        const std::string_view key = words.next();
+        // "Kd spectral FILE" and "Kd xyz X Y Z" are not read by tinyobjloader, nor accepted here.
+        if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf" || key == "Kt")
+            check_numbers(path, lines.number(), words, 3, 3);
+        else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr" || key == "Pr" || key == "Pm" ||
+                 key == "illum")
+            check_numbers(path, lines.number(), words, 1, 1);
+    }
+}
+
+} // namespace duet

@@ -1,0 +1,101 @@
+// The one file that knows nlohmann/json for scenes: its SAX events become a tree of JsonNode.
+#include "common/scene/json_reader.h"
+#include "common/system/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace duet {
+
+namespace {
+
+/// Line and column (from 1) of the byte at an offset.
+std::string line_and_column(std::string_view text, std::size_t offset) {
+    const std::string_view before = text.substr(0, std::min(offset, text.size()));
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t start = before.rfind('\n');
+    const std::size_t column = start == std::string_view::npos ? before.size() + 1 : before.size() - start;
+    return message("line ", line, ", column ", column);
+}
+
+/// «[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while …» without what comes before
+/// «syntax».
+std::string reason(const std::string& what) {
+    std::string text = what;
+    const std::size_t bracket = text.find("] ");
+    if (text.starts_with("[json") && bracket != std::string::npos) text.erase(0, bracket + 2);
+    const std::size_t colon = text.find(": ");
+    if (text.starts_with("parse error at") && colon != std::string::npos) text.erase(0, colon + 2);
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+    if (text.size() > 200) text = text.substr(0, 200) + " …";
+    return text;
+}
+
+class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
+public:
+    TreeBuilder(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {}
+    JsonNode take() { return std::move(root_); }
+
+    bool null() override { return add({}); }
+    bool boolean(bool value) override { return add({.kind = JsonNode::Kind::kBoolean, .boolean = value}); }
+    bool number_integer(number_integer_t value) override { return add_number(static_cast<double>(value)); }
+    bool number_unsigned(number_unsigned_t value) override { return add_number(static_cast<double>(value)); }
+    bool number_float(number_float_t value, const string_t&) override { return add_number(value); }
+    bool string(string_t& value) override { return add({.kind = JsonNode::Kind::kString, .text = std::move(value)}); }
+    bool binary(binary_t&) override { return false; }
+    bool start_object(std::size_t) override { return open(JsonNode::Kind::kObject); }
+    bool start_array(std::size_t) override { return open(JsonNode::Kind::kArray); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& value) override {
+        if (!seen_.back().insert(value).second)
+            throw Error(message(file_.string(), ": the key ", in_quotes(value), " is given twice in one object"));
+        open_.back()->keys.push_back(std::move(value));
+        return true;
+    }
+    bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) override {
+        throw Error(message(file_.string(), ": ", line_and_column(text_, position > 0 ? position - 1 : 0), ": ",
+                            reason(error.what())));
+    }
+
+private:
+    bool add_number(double value) { return add({.kind = JsonNode::Kind::kNumber, .number = value}); }
+    /// Puts the value in its place; the pointers of open_ stay valid, as only the innermost open node grows.
+    bool add(JsonNode&& node) {
+        last_ = open_.empty() ? &(root_ = std::move(node)) : &open_.back()->items.emplace_back(std::move(node));
+        return true;
+    }
+    bool open(JsonNode::Kind kind) {
+        if (open_.size() >= kMaxJsonDepth)
+            throw Error(message(file_.string(), ": values are nested more than ", kMaxJsonDepth, " deep"));
+        add({.kind = kind});
+        open_.push_back(last_);
+        seen_.emplace_back();
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        seen_.pop_back();
+        return true;
+    }
+
+    const std::filesystem::path& file_;
+    std::string_view text_;
+    JsonNode root_;
+    JsonNode* last_ = nullptr;
+    std::vector<JsonNode*> open_;
+    std::vector<std::unordered_set<std::string>> seen_; ///< keys so far of each open value
+};
+
+} // namespace
+
+JsonNode parse_json(const std::filesystem::path& file, std::string_view text) {
+    TreeBuilder builder(file, text);
+    nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
+    return builder.take();
+}
+
+} // namespace duet

@@ -1,0 +1,16 @@
+// Camera, picture size, lights and environment of scene files.
+#pragma once
+
+#include "common/scene/json_reader.h"
+#include "common/scene/scene.h"
+
+namespace duet {
+
+inline constexpr int kMaxPictureSide = 16384;
+
+Camera read_camera(const JsonValue& camera);
+/// One of "lights".
+Light read_light(const JsonValue& light);
+Environment read_environment(const JsonValue& environment);
+
+} // namespace duet

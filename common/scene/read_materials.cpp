@@ -1,0 +1,160 @@
+#include "common/scene/read_materials.h"
+
+#include "common/image/image_file.h"
+#include "common/scene/scene_keys.h"
+#include "common/system/error.h"
+
+#include <algorithm>
+
+namespace duet {
+
+namespace fs = std::filesystem;
+
+fs::path beside(const fs::path& owner, const std::string& name) {
+    return (owner.parent_path() / name).lexically_normal();
+}
+
+std::string canonical_key(const fs::path& path) {
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(path, error);
+    return (error ? path : canonical).string();
+}
+
+std::uint32_t ImageCache::load(const fs::path& file) {
+    const auto [entry, added] =
+        index_.try_emplace(canonical_key(file), static_cast<std::uint32_t>(textures_->images.size()));
+    if (!added) return entry->second;
+    ImageRgb image = read_image(file);
+    for (Rgb& pixel : image.pixels()) {
+        if (!is_finite(pixel))
+            throw Error(message(file.string(), ": holds a value that is not finite, which no texture may"));
+        pixel = {clamp(pixel.r, 0.0f, 1.0f), clamp(pixel.g, 0.0f, 1.0f), clamp(pixel.b, 0.0f, 1.0f)};
+    }
+    textures_->images.push_back(std::move(image));
+    return entry->second;
+}
+
+namespace {
+
+Texture read_image_texture(const JsonValue& value, ImageCache& images) {
+    value.check_keys(scene_keys("image_texture"));
+    ImageTexture texture;
+    if (value.has("scale")) {
+        const JsonValue scale = value.at("scale");
+        const bool uniform = scale.is(JsonNode::Kind::kNumber);
+        const Vec2d s =
+            uniform ? Vec2d(scale.number(), scale.number()) : Vec2d(scale.numbers(2)[0], scale.numbers(2)[1]);
+        texture.scale = Vec2(s);
+    }
+    if (value.has("filter")) texture.bilinear = value.at("filter").one_of({"bilinear", "nearest"}) == 0;
+    const fs::path file = beside(value.file(), value.at("file").string());
+    try {
+        texture.image = images.load(file);
+    } catch (const Error& error) {
+        value.at("file").fail(error.what());
+    }
+    return texture;
+}
+
+Texture read_texture(const JsonValue& value, ImageCache& images) {
+    switch (value.at("type").one_of({"image", "checker", "noise"})) {
+    case 0:
+        return read_image_texture(value, images);
+    case 1: {
+        value.check_keys(scene_keys("checker_texture"));
+        CheckerTexture texture;
+        texture.even = value.rgb_or("even", texture.even);
+        texture.odd = value.rgb_or("odd", texture.odd);
+        texture.scale = static_cast<float>(value.number_or("scale", texture.scale, kPositive));
+        texture.solid = value.boolean_or("solid", texture.solid);
+        return texture;
+    }
+    default: {
+        value.check_keys(scene_keys("noise_texture"));
+        NoiseTexture texture;
+        texture.low = value.rgb_or("low", texture.low);
+        texture.high = value.rgb_or("high", texture.high);
+        texture.scale = static_cast<float>(value.number_or("scale", texture.scale, kPositive));
+        if (value.has("octaves")) texture.octaves = value.at("octaves").integer(1, 16);
+        texture.marble = value.boolean_or("marble", texture.marble);
+        return texture;
+    }
+    }
+}
+
+RgbSlot read_slot(const JsonValue& owner, std::string_view key, const RgbSlot& fallback, const NameIndex& textures) {
+    if (!owner.has(key)) return fallback;
+    const JsonValue value = owner.at(key);
+    if (value.is(JsonNode::Kind::kObject)) {
+        value.check_keys(scene_keys("texture_slot"));
+        return {value.rgb_or("tint", Rgb(1.0f)),
+                static_cast<std::int32_t>(look_up(value.at("texture"), textures, "texture"))};
+    }
+    if (!value.is(JsonNode::Kind::kNumber) && !value.is(JsonNode::Kind::kArray))
+        value.expected("a number, an array of 3 numbers, or {\"texture\": name}");
+    return {value.rgb()};
+}
+
+Material read_material(const JsonValue& value, const NameIndex& textures) {
+    switch (value.at("type").one_of({"diffuse", "metal", "dielectric", "emissive"})) {
+    case 0: {
+        value.check_keys(scene_keys("diffuse"));
+        Diffuse material;
+        material.albedo = read_slot(value, "albedo", material.albedo, textures);
+        return material;
+    }
+    case 1: {
+        value.check_keys(scene_keys("metal"));
+        Metal material;
+        material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
+        material.roughness = static_cast<float>(value.number_or("roughness", material.roughness, kUnit));
+        return material;
+    }
+    case 2: {
+        value.check_keys(scene_keys("dielectric"));
+        Dielectric material;
+        material.ior = static_cast<float>(value.number_or("ior", material.ior, {1, 4, false}));
+        material.tint = read_slot(value, "tint", material.tint, textures);
+        return material;
+    }
+    default: {
+        value.check_keys(scene_keys("emissive"));
+        Emissive material;
+        material.radiance = value.at("radiance").rgb(kLightRange);
+        material.two_sided = value.boolean_or("two_sided", material.two_sided);
+        material.albedo = read_slot(value, "albedo", material.albedo, textures);
+        return material;
+    }
+    }
+}
+
+} // namespace
+
+std::uint32_t look_up(const JsonValue& name, const NameIndex& index, std::string_view what) {
+    const auto found = index.find(name.string());
+    if (found != index.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const auto& entry : index) known.push_back(entry.first);
+    name.fail(message("unknown ", what, " ", in_quotes(name.string()), suggestion(name.string(), known)));
+}
+
+NameIndex read_textures(const JsonValue& textures, Scene& scene, ImageCache& images) {
+    NameIndex index;
+    for (const auto& [name, value] : textures.members()) {
+        index[name] = static_cast<std::uint32_t>(scene.textures.textures.size());
+        scene.textures.textures.push_back(read_texture(value, images));
+    }
+    return index;
+}
+
+NameIndex read_materials(const JsonValue& materials, const NameIndex& textures, Scene& scene) {
+    NameIndex index;
+    for (const auto& [name, value] : materials.members()) {
+        index[name] = static_cast<std::uint32_t>(scene.materials.size());
+        scene.materials.push_back(read_material(value, textures));
+        scene.material_names.push_back(name);
+    }
+    return index;
+}
+
+} // namespace duet

@@ -1,0 +1,54 @@
+#include "common/scene/scene.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+
+namespace duet {
+
+ObjectTransform object_transform(const Object& object, float time) {
+    if (!object.moving) return {object.to_world, object.to_object};
+    const Mat4 to_world = lerp(object.to_world, object.to_world_end, time);
+    return {to_world, Mat4(inverse_affine(Mat4d(to_world)))};
+}
+
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+    const Object& object = scene.objects[hit.object];
+    const Shape& shape = scene.shapes[object.shape];
+    const ObjectTransform transform = object_transform(object, ray.time);
+    SurfacePoint point = surface_point(shape, hit, ray, transform.to_world, transform.to_object, object.identity);
+    point.object = hit.object;
+    point.material = material_index(scene, hit.object, hit.primitive);
+    return point;
+}
+
+std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive) {
+    const Object& o = scene.objects[object];
+    const auto* mesh = std::get_if<Mesh>(&scene.shapes[o.shape]);
+    const std::size_t slot = mesh != nullptr && !mesh->material_slots.empty() ? mesh->material_slots[primitive] : 0;
+    return o.materials[slot];
+}
+
+std::int64_t surface_light_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive) {
+    const auto first = scene.lights.begin() + static_cast<std::ptrdiff_t>(scene.first_surface_light);
+    const auto found = std::lower_bound(first, scene.lights.end(), std::pair(object, primitive),
+                                        [](const Light& light, const auto& key) {
+                                            const auto& surface = std::get<SurfaceLight>(light);
+                                            return std::pair(surface.object, surface.primitive) < key;
+                                        });
+    if (found == scene.lights.end()) return -1;
+    const auto& surface = std::get<SurfaceLight>(*found);
+    return surface.object == object && surface.primitive == primitive ? found - scene.lights.begin() : -1;
+}
+
+Corners primitive_corners(const Shape& shape, std::uint32_t primitive) {
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+        const auto& [a, b, c] = mesh->triangles[primitive];
+        return {{mesh->positions[a], mesh->positions[b], mesh->positions[c]}, 3};
+    }
+    const auto* list = std::get_if<QuadList>(&shape);
+    DUET_CHECK(list != nullptr); // a sphere has no corners
+    return {corners(list->quads[primitive]), 4};
+}
+
+} // namespace duet

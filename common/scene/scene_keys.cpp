@@ -1,0 +1,60 @@
+#include "common/scene/scene_keys.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+
+namespace duet {
+
+const std::vector<JsonKeys>& scene_keys() {
+    static const std::vector<JsonKeys> all = {
+        {"scene",
+         {"camera", "objects"},
+         {"$schema", "description", "image", "textures", "materials", "lights", "environment"}},
+        {"perspective",
+         {"eye", "look_at"},
+         {"projection", "up", "fov_degrees", "near", "aperture_radius", "focus_distance", "shutter"}},
+        {"orthographic", {"projection", "eye", "look_at"}, {"up", "height", "near", "shutter"}},
+        {"image", {}, {"width", "height"}},
+
+        {"image_texture", {"type", "file"}, {"scale", "filter"}},
+        {"checker_texture", {"type"}, {"even", "odd", "scale", "solid"}},
+        {"noise_texture", {"type"}, {"low", "high", "scale", "octaves", "marble"}},
+        {"texture_slot", {"texture"}, {"tint"}},
+
+        {"diffuse", {"type"}, {"albedo"}},
+        {"metal", {"type"}, {"reflectance", "roughness"}},
+        {"dielectric", {"type"}, {"ior", "tint"}},
+        {"emissive", {"type", "radiance"}, {"two_sided", "albedo"}},
+
+        {"quad", {"type", "corner", "u", "v", "material"}, {"name", "transform", "transform_end"}},
+        {"sphere", {"type", "center", "radius", "material"}, {"name", "transform", "transform_end"}},
+        {"box", {"type", "low", "high", "material"}, {"name", "transform", "transform_end"}},
+        {"mesh", {"type", "file"}, {"name", "material", "normals", "transform", "transform_end"}},
+        {"group", {"type", "objects"}, {"name", "hidden", "transform", "transform_end"}},
+        {"instance", {"type", "of"}, {"name", "transform", "transform_end"}},
+
+        {"translate", {"translate"}, {}},
+        {"scale", {"scale"}, {}},
+        {"rotate", {"rotate_degrees", "axis"}, {}},
+        {"matrix", {"matrix"}, {}},
+
+        {"point", {"type", "position", "intensity"}, {}},
+        {"spot", {"type", "position", "direction", "intensity"}, {"inner_degrees", "outer_degrees"}},
+        {"sun", {"type", "direction", "irradiance"}, {}},
+
+        {"constant_environment", {"type", "radiance"}, {}},
+        {"sky_environment", {"type"}, {"down", "up"}},
+        {"image_environment", {"type", "file"}, {"scale", "rotate_degrees"}},
+    };
+    return all;
+}
+
+const JsonKeys& scene_keys(std::string_view kind) {
+    const std::vector<JsonKeys>& all = scene_keys();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const JsonKeys& keys) { return keys.kind == kind; });
+    DUET_CHECK(found != all.end());
+    return *found;
+}
+
+} // namespace duet

@@ -1,0 +1,117 @@
+#include "common/scene/scene_node.h"
+
+#include "common/scene/load_obj.h"
+#include "common/scene/read_objects.h"
+#include "common/scene/scene_keys.h"
+#include "common/system/error.h"
+
+namespace duet {
+
+namespace {
+
+const std::vector<std::string_view>& node_types() {
+    static const std::vector<std::string_view> types{"quad", "sphere", "box", "mesh", "group", "instance"};
+    return types;
+}
+
+Shape read_quad(const JsonValue& value) {
+    const Quad quad{Vec3(value.at("corner").vec3()), Vec3(value.at("u").vec3()), Vec3(value.at("v").vec3())};
+    const Vec3d u(quad.u), v(quad.v);
+    const double lengths = length(u) * length(v);
+    if (!(lengths > 0) || !(length(cross(u, v)) > 1e-6 * lengths))
+        value.fail("the quad's \"u\" and \"v\" span no area");
+    return QuadList{{quad}};
+}
+
+Shape read_box(const JsonValue& value) {
+    const Vec3 low(value.at("low").vec3()), high(value.at("high").vec3());
+    if (!(low.x < high.x && low.y < high.y && low.z < high.z))
+        value.fail("\"low\" must be below \"high\" on each axis");
+    // Faces are corner + edge: the far corners must be sums that rounding leaves alike, or rays slip between faces.
+    Vec3 far = high;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < 4; ++i) far[axis] = low[axis] + (far[axis] - low[axis]);
+    if (!(low.x < far.x && low.y < far.y && low.z < far.z)) value.fail("the box is too thin for where it stands");
+    return box_quads(low, far);
+}
+
+} // namespace
+
+std::vector<SceneNode> SceneNodeReader::read(const JsonValue& objects, std::size_t depth) {
+    if (depth > kMaxGroupDepth) objects.fail(message("groups are nested more than ", kMaxGroupDepth, " deep"));
+    std::vector<SceneNode> nodes;
+    for (const JsonValue& value : objects.elements()) {
+        nodes.push_back(read_node(value, depth));
+        if (nodes.back().name.empty()) nodes.back().name = message(value.at("type").string(), "-", nodes.size() - 1);
+    }
+    return nodes;
+}
+
+SceneNode SceneNodeReader::read_node(const JsonValue& value, std::size_t depth) {
+    const std::size_t type = value.at("type").one_of(node_types());
+    value.check_keys(scene_keys(node_types()[type]));
+    SceneNode node;
+    node.path = value.path();
+    node.named = value.has("name");
+    if (node.named) node.name = value.at("name").string();
+    node.motion = read_motion(value);
+    switch (type) {
+    case 0:
+        set_shape(node, read_quad(value), value);
+        break;
+    case 1:
+        set_shape(node,
+                  Sphere{Vec3(value.at("center").vec3()), static_cast<float>(value.at("radius").number(kPositive))},
+                  value);
+        break;
+    case 2:
+        set_shape(node, read_box(value), value);
+        break;
+    case 3:
+        read_mesh(value, node);
+        break;
+    case 4:
+        node.hidden = value.boolean_or("hidden", false);
+        if (node.hidden && !node.named) value.fail("a hidden group needs a \"name\", or no instance can show it");
+        node.members = read(value.at("objects"), depth + 1);
+        break;
+    default:
+        node.instance_of = value.at("of").string();
+        if (node.name.empty()) node.name = node.instance_of;
+    }
+    return node;
+}
+
+void SceneNodeReader::set_shape(SceneNode& node, Shape shape, const JsonValue& value) {
+    node.shape = static_cast<std::uint32_t>(scene_->shapes.size());
+    node.materials = {look_up(value.at("material"), *materials_, "material")};
+    scene_->shapes.push_back(std::move(shape));
+}
+
+void SceneNodeReader::read_mesh(const JsonValue& value, SceneNode& node) {
+    const bool own_material = value.has("material");
+    const LoadedMesh& mesh = load_mesh(value, own_material);
+    node.shape = mesh.shape;
+    node.materials = mesh.materials;
+    if (own_material) node.materials.assign(mesh.slots, look_up(value.at("material"), *materials_, "material"));
+}
+
+const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& value, bool own_material) {
+    constexpr MeshNormals kKinds[] = {MeshNormals::kFile, MeshNormals::kFlat, MeshNormals::kSmooth};
+    const std::size_t kind = value.has("normals") ? value.at("normals").one_of({"file", "flat", "smooth"}) : 0;
+    const std::filesystem::path file = beside(value.file(), value.at("file").string());
+    const auto key = std::tuple(canonical_key(file), static_cast<int>(kind), own_material);
+    const auto found = meshes_.find(key);
+    if (found != meshes_.end()) return found->second;
+    try {
+        ObjFile obj = load_obj(file, {kKinds[kind], !own_material});
+        LoadedMesh mesh{static_cast<std::uint32_t>(scene_->shapes.size()), {}, obj.materials.size()};
+        if (!own_material) mesh.materials = add_obj_materials(file, obj, *images_, *scene_);
+        scene_->shapes.push_back(std::move(obj.mesh));
+        return meshes_.emplace(key, std::move(mesh)).first->second;
+    } catch (const Error& error) {
+        value.at("file").fail(error.what());
+    }
+}
+
+} // namespace duet

@@ -1,0 +1,58 @@
+// The tree of objects as a scene file describes it, before groups and instances are flattened.
+#pragma once
+
+#include "common/scene/json_reader.h"
+#include "common/scene/read_materials.h"
+#include "common/scene/read_transform.h"
+#include "common/scene/scene.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace duet {
+
+/// One entry of "objects": a shape with its materials, a group of members, or an instance of a group.
+struct SceneNode {
+    std::string name;   ///< the file's, or one made up for messages and reports: "sphere-3"
+    bool named = false; ///< by the file: a group that instances may show
+    std::string path;   ///< JSON path, for messages
+    MotionTransform motion;
+    bool hidden = false;                  ///< a group that is only a definition
+    std::optional<std::uint32_t> shape;   ///< index into Scene::shapes
+    std::vector<std::uint32_t> materials; ///< of a shape, one a slot
+    std::vector<SceneNode> members;       ///< of a group
+    std::string instance_of;              ///< the group's name
+};
+
+/// Reads nodes, and puts their shapes and meshes' materials into the scene; a mesh file is read once for each way of
+/// normals.
+class SceneNodeReader {
+public:
+    SceneNodeReader(const NameIndex& materials, ImageCache& images, Scene& scene)
+        : materials_(&materials), images_(&images), scene_(&scene) {}
+
+    /// The nodes of an "objects" array; `depth` is the number of groups around it.
+    std::vector<SceneNode> read(const JsonValue& objects, std::size_t depth = 0);
+
+private:
+    struct LoadedMesh {
+        std::uint32_t shape;
+        std::vector<std::uint32_t> materials; ///< of its MTL file, one a slot
+        std::size_t slots;
+    };
+
+    SceneNode read_node(const JsonValue& value, std::size_t depth);
+    void read_mesh(const JsonValue& value, SceneNode& node);
+    const LoadedMesh& load_mesh(const JsonValue& value, bool own_material);
+    void set_shape(SceneNode& node, Shape shape, const JsonValue& value);
+
+    const NameIndex* materials_;
+    ImageCache* images_;
+    Scene* scene_;
+    std::map<std::tuple<std::string, int, bool>, LoadedMesh> meshes_;
+};
+
+} // namespace duet

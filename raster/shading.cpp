@@ -1,0 +1,17 @@
+#include "common/system/error.h"
+#include "raster/render.h"
+
+#include <array>
+#include <utility>
+
+namespace duet::raster {
+
+Shading shading(std::string_view name) {
+    constexpr std::array<std::pair<std::string_view, Shading>, 4> kNames{
+        {{"lit", Shading::kLit}, {"normal", Shading::kNormal}, {"albedo", Shading::kAlbedo}, {"depth", Shading::kDepth}}};
+    for (const auto& [known, value] : kNames)
+        if (known == name) return value;
+    throw Error(message("shading: found ", name, ", expected lit, normal, albedo or depth"));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,196 @@
+#include "compare/hits/hit_agreement.h"
+
+#include "compare/hits/edge_search.h"
+#include "tests/compare/test_scenes.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::compare;
+
+namespace {
+
+constexpr int kWidth = 64, kHeight = 64;
+
+/// A camera at z = 10 that looks along −z, 64 pixels over 64 units at z = 0, so that pixel (x, y) is centred at (x
+/// − 31.5, 31.5 − y).
+View plain_view() {
+    View view;
+    view.width = kWidth;
+    view.height = kHeight;
+    view.camera.projection = Camera::Projection::kOrthographic;
+    view.camera.height = 64;
+    view.camera.eye = {0, 0, 10};
+    view.camera.look_at = {0, 0, 0};
+    return view;
+}
+
+Quad facing(float x0, float x1, float y0, float y1, float z) { return {{x0, y0, z}, {x1 - x0, 0, 0}, {0, y1 - y0, 0}}; }
+
+/// What a faultless pipeline returns.
+Image<Hit> perfect_hits(const Scene& scene, const View& view) {
+    const ExactTracer tracer(scene, 0);
+    const Pinhole pinhole = CameraModel(view).through();
+    Image<Hit> hits(view.width, view.height);
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            const ExactHit exact = tracer.nearest(pinhole.ray({x + 0.5, y + 0.5}));
+            if (exact.valid()) hits(x, y) = {exact.object, exact.primitive, 0, 0, static_cast<float>(exact.t)};
+        }
+    return hits;
+}
+
+void set(Image<Hit>& hits, int x, int y, std::uint32_t object, std::uint32_t primitive = 0, float t = 10) {
+    hits(x, y) = {object, primitive, 0, 0, t};
+}
+
+void check_counts(const HitAgreement& result, std::int64_t edge, std::int64_t depth_tie, std::int64_t unexplained) {
+    CHECK(result.edge == edge);
+    CHECK(result.depth_tie == depth_tie);
+    CHECK(result.unexplained == unexplained);
+    CHECK(result.pixels == kWidth * kHeight);
+    CHECK(result.same == result.pixels - edge - depth_tie - unexplained);
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("pipelines that agree: all the same, no distance error") {
+        Scene scene = test::empty_scene();
+        test::add(scene, QuadList{{facing(-10, 10, -10, 10, 0)}});
+        const Image<Hit> hits = perfect_hits(scene, plain_view());
+        const HitAgreement result = compare_hits(scene, plain_view(), hits, hits);
+        check_counts(result, 0, 0, 0);
+        CHECK(result.worst_distance == 0);
+        CHECK(result.distance_violations == 0);
+    }
+
+    TEST_CASE("an edge that passes the pixel's centre within 1/128 pixel explains; one a little further off does not") {
+        // The boundary between two quads lies at x = offset; pixel 32's centre at 0.5.
+        for (const double side : {-1.0, 1.0})
+            for (const double distance : {0.0077, 0.0079}) {
+                const float boundary = static_cast<float>(0.5 + side * distance);
+                Scene scene = test::empty_scene();
+                test::add(scene, QuadList{{facing(-20, boundary, -20, 20, 0), facing(boundary, 20, -20, 20, 0)}});
+                const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+                Image<Hit> raster = raytrace;
+                raster(32, 30).primitive = 1 - raytrace(32, 30).primitive;
+                CAPTURE(side);
+                CAPTURE(distance);
+                const bool near = distance < kEdgeRadius;
+                check_counts(compare_hits(scene, plain_view(), raster, raytrace), near, 0, !near);
+                check_counts(compare_hits(scene, plain_view(), raytrace, raster), near, 0, !near);
+            }
+    }
+
+    TEST_CASE("an edge of something else close by explains nothing") {
+        Scene scene = test::empty_scene();
+        test::add(scene, QuadList{{facing(-20, 0.5f, -20, 20, 0), facing(0.5f, 20, -20, 20, 0)}});
+        test::add(scene, QuadList{{facing(-20, 20, -20, 20, -5)}}); // wholly hidden by the two
+        const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+        Image<Hit> raster = raytrace;
+        set(raster, 32, 30, 1, 0, 15);
+        const HitAgreement result = compare_hits(scene, plain_view(), raster, raytrace);
+        check_counts(result, 0, 0, 1);
+        REQUIRE(result.listed.size() == 1);
+        CHECK(result.listed[0].x == 32);
+        CHECK(result.listed[0].y == 30);
+        CHECK(result.listed[0].raster.object == 1);
+        CHECK(result.listed[0].exact.object == 0);
+        CHECK(result.verdicts(32, 30) == Verdict::kUnexplained);
+    }
+
+    TEST_CASE("a silhouette: hit and miss are an edge; a miss in the middle of a surface is not") {
+        Scene scene = test::empty_scene();
+        test::add(scene,
+                  Sphere{{0.5f, 0.5f, 0}, 10.001f}); // its rightmost point is 0.001 right of the centre of pixel 42
+        const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+        REQUIRE(raytrace(42, 31).valid());
+        Image<Hit> raster = raytrace;
+        raster(42, 31) = Hit{};
+        check_counts(compare_hits(scene, plain_view(), raster, raytrace), 1, 0, 0);
+        raster(32, 31) = Hit{};
+        check_counts(compare_hits(scene, plain_view(), raster, raytrace), 1, 0, 1);
+    }
+
+    TEST_CASE("a sliver far thinner than the disk is found, if it is seen") {
+        for (const float depth : {1.0f, -1.0f}) { // before the wall, behind it
+            Scene scene = test::empty_scene();
+            test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
+            const float x = 0.505f;
+            test::add(scene,
+                      Mesh{{{x, -5, depth}, {x + 2e-6f, -5, depth}, {x, 5, depth}}, {}, {}, {{0, 1, 2}}, {}, false});
+            const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+            Image<Hit> raster = raytrace;
+            set(raster, 32, 33, 1);
+            const bool seen = depth > 0;
+            CAPTURE(depth);
+            check_counts(compare_hits(scene, plain_view(), raster, raytrace), seen, 0, !seen);
+        }
+    }
+
+    TEST_CASE("surfaces at one distance are a depth tie, surfaces further apart than the tolerance are not") {
+        for (const float gap : {0.0f, 0.5e-4f, 2e-4f}) { // tolerance at t = 10: 1e-4
+            Scene scene = test::empty_scene();
+            test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
+            test::add(scene, QuadList{{facing(-20, 20, -20, 20, -gap)}});
+            const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+            Image<Hit> raster = raytrace;
+            set(raster, 20, 20, 1);
+            CAPTURE(gap);
+            const bool tie = gap < 1e-4f;
+            check_counts(compare_hits(scene, plain_view(), raster, raytrace), 0, tie, !tie);
+        }
+    }
+
+    TEST_CASE("distances: worst one, violations, and the relief for grazing surfaces") {
+        Scene scene = test::empty_scene();
+        test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
+        const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+        Image<Hit> raster = raytrace;
+        raster(30, 31).t = 10 * (1 + 0.8e-5f);
+        HitAgreement result = compare_hits(scene, plain_view(), raster, raytrace);
+        CHECK(result.worst_distance == doctest::Approx(0.8e-5).epsilon(0.02));
+        CHECK(result.distance_violations == 0);
+        raster(33, 34).t = 10 * (1 - 3e-5f);
+        raster(34, 34).t = std::numeric_limits<float>::quiet_NaN();
+        result = compare_hits(scene, plain_view(), raster, raytrace);
+        CHECK(result.distance_violations == 2);
+        CHECK(result.same == result.pixels);
+
+        Scene grazing = test::empty_scene(); // a slope of 1 : 10, cos θ = 0.0995
+        test::add(grazing, QuadList{{Quad{{-2, -20, 20}, {4, 0, -40}, {0, 40, 0}}}});
+        const Image<Hit> exact = perfect_hits(grazing, plain_view());
+        Image<Hit> off = exact;
+        REQUIRE(exact(31, 31).valid());
+        off(31, 31).t *= 1 + 5e-5f;
+        result = compare_hits(grazing, plain_view(), off, exact);
+        CHECK(result.distance_violations == 0);
+        CHECK(result.worst_distance == doctest::Approx(5e-5 * 0.0995).epsilon(0.02));
+    }
+
+    TEST_CASE("moving objects are judged as the shutter opens, instances where they stand") {
+        Scene scene = test::empty_scene();
+        const Mat4 start = translation(Vec3(-10, 0, 0)), end = translation(Vec3(10, 0, 0));
+        test::add(scene, QuadList{{facing(-2, 2, -2, 2, 0)}}, start, &end);
+        View view = plain_view();
+        view.camera.shutter_open = 0.25; // at x = −5 then
+        const Pinhole pinhole = CameraModel(view).through();
+        const ExactTracer tracer(scene, CameraModel(view).time(0));
+        CHECK(tracer.nearest(pinhole.ray({32 - 5.0, 32})).valid());
+        CHECK_FALSE(tracer.nearest(pinhole.ray({32 - 10.0, 32})).valid());
+        Image<Hit> raster(kWidth, kHeight), raytrace(kWidth, kHeight);
+        set(raster, 22, 32, 0); // seen where it stands at time 0, not at 0.25
+        check_counts(compare_hits(scene, view, raster, raytrace), 0, 0, 1);
+    }
+
+    TEST_CASE("hits that don't fit are refused") {
+        Scene scene = test::empty_scene();
+        test::add(scene, Sphere{{0, 0, 0}, 1.0f});
+        Image<Hit> hits(kWidth, kHeight), bad(kWidth, kHeight);
+        set(bad, 3, 3, 0, 1);
+        CHECK_THROWS_AS(compare_hits(scene, plain_view(), hits, bad), Error);
+        CHECK_THROWS_AS(compare_hits(scene, plain_view(), Image<Hit>(3, 3), hits), Error);
+    }
+}

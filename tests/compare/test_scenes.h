@@ -1,0 +1,34 @@
+// Scenes built by hand for the tests of compare/.
+#pragma once
+
+#include "common/scene/scene.h"
+
+namespace duet::test {
+
+/// A scene of one grey material, to which shapes are added.
+inline Scene empty_scene(int width = 64, int height = 48) {
+    Scene scene;
+    scene.path = "test.json";
+    scene.width = width;
+    scene.height = height;
+    scene.materials.emplace_back(Diffuse{});
+    scene.material_names.emplace_back("grey");
+    return scene;
+}
+
+/// Adds a shape under a transform, and its end where it moves; returns the object's index.
+inline std::uint32_t add(Scene& scene, Shape shape, const Mat4& to_world = {}, const Mat4* to_world_end = nullptr) {
+    Object object;
+    object.shape = static_cast<std::uint32_t>(scene.shapes.size());
+    object.materials = {0};
+    object.to_world = to_world;
+    object.to_object = inverse_affine(to_world);
+    object.to_world_end = to_world_end != nullptr ? *to_world_end : to_world;
+    object.moving = !(object.to_world_end == object.to_world);
+    object.identity = !object.moving && to_world == Mat4{};
+    scene.shapes.push_back(std::move(shape));
+    scene.objects.push_back(std::move(object));
+    return static_cast<std::uint32_t>(scene.objects.size() - 1);
+}
+
+} // namespace duet::test

@@ -1,0 +1,144 @@
+// Screen bounds of spheres and ellipsoids against a ray for every pixel.
+#include "raster/sphere.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace duet;
+using namespace duet::raster;
+
+namespace {
+
+/// Whether the ray sees the sphere of the unit ball's image under `to_world` at or beyond t_min: a quadratic in the
+/// ball's space, in double.
+bool sees(const Rayd& ray, const Sphere& sphere, const Mat4d& to_object) {
+    const Vec3d o = transform_point(to_object, ray.origin) - Vec3d(sphere.center);
+    const Vec3d d = transform_vector(to_object, ray.direction);
+    const double r = static_cast<double>(sphere.radius);
+    const double a = dot(d, d), b = dot(o, d), closest2 = length_squared(o - d * (b / a));
+    if (closest2 > r * r) return false;
+    return (-b + std::sqrt(a * (r * r - closest2))) / a >= ray.t_min; // the far intersection
+}
+
+struct Case {
+    Camera camera;
+    Sphere sphere;
+    Mat4d to_world;
+};
+
+void check_bounds(const Case& c) {
+    const View view{c.camera, 64, 48};
+    const Pinhole pinhole = CameraModel(view).through();
+    const Mat4d to_object = inverse_affine(c.to_world);
+    const Viewport viewport{view.width, view.height, pinhole.near};
+    const PixelRect bounds = sphere_bounds(c.sphere, pinhole.world_to_pixel * c.to_world, viewport);
+    PixelRect seen{view.width, view.height, 0, 0};
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            // The centre and the corners of the pixel: the tight box is of the silhouette, not of pixel centres.
+            bool any = false;
+            for (const Vec2d at :
+                 {Vec2d(x + 0.5, y + 0.5), Vec2d(x, y), Vec2d(x + 1, y), Vec2d(x, y + 1), Vec2d(x + 1, y + 1)})
+                any = any || sees(pinhole.ray(at), c.sphere, to_object);
+            if (any)
+                seen = {std::min(seen.x0, x), std::min(seen.y0, y), std::max(seen.x1, x + 1), std::max(seen.y1, y + 1)};
+        }
+    CAPTURE(c.sphere.center.x);
+    CAPTURE(c.sphere.center.y);
+    CAPTURE(c.sphere.center.z);
+    CAPTURE(c.sphere.radius);
+    if (seen.empty()) return;
+    CAPTURE(seen.x0);
+    CAPTURE(bounds.x0);
+    CAPTURE(seen.x1);
+    CAPTURE(bounds.x1);
+    CAPTURE(seen.y0);
+    CAPTURE(bounds.y0);
+    CAPTURE(seen.y1);
+    CAPTURE(bounds.y1);
+    REQUIRE(bounds.x0 <= seen.x0);
+    REQUIRE(bounds.y0 <= seen.y0);
+    REQUIRE(bounds.x1 >= seen.x1);
+    REQUIRE(bounds.y1 >= seen.y1);
+    // Tight where the silhouette is whole in the picture: the margin is a pixel, the pixels' corners another.
+    if (seen.x0 > 0 && seen.x1 < view.width && seen.y0 > 0 && seen.y1 < view.height) {
+        CHECK(seen.x0 - bounds.x0 <= 3);
+        CHECK(bounds.x1 - seen.x1 <= 3);
+        CHECK(seen.y0 - bounds.y0 <= 3);
+        CHECK(bounds.y1 - seen.y1 <= 3);
+    }
+}
+
+class Random {
+public:
+    explicit Random(unsigned seed) : engine_(seed) {}
+    double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+    Vec3d vector(double reach) { return {(*this)(-reach, reach), (*this)(-reach, reach), (*this)(-reach, reach)}; }
+    Mat4d stretch() {
+        const Vec3d axis = normalize(vector(1) + Vec3d(0, 0, 1e-3));
+        return translation(vector(2)) * rotation(axis, (*this)(0, 6)) *
+               scaling(Vec3d((*this)(0.2, 2), (*this)(0.2, 2), -(*this)(0.2, 2))) * rotation(axis, (*this)(0, 6));
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+Camera camera(Camera::Projection projection, double near) {
+    Camera c;
+    c.projection = projection;
+    c.eye = {0, 0, 4};
+    c.near = near;
+    c.height = 4;
+    c.fov_degrees = 60;
+    return c;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("bounds hold every pixel that sees a sphere") {
+        Random random(1);
+        for (int i = 0; i < 1200; ++i) {
+            // From far ones to those that cross the near plane or hold the eye.
+            const auto projection = i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective;
+            const double near = std::array{1e-4, 0.5, 2.0}[static_cast<std::size_t>(i) % 3];
+            const Sphere sphere{Vec3(random.vector(4)), static_cast<float>(random(0.05, i % 2 == 0 ? 1 : 5))};
+            check_bounds({camera(projection, near), sphere, Mat4d()});
+        }
+    }
+
+    TEST_CASE("bounds hold every pixel that sees an ellipsoid, mirrored or not") {
+        Random random(2);
+        for (int i = 0; i < 1200; ++i) {
+            const auto projection = i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective;
+            const double near = std::array{1e-4, 0.5, 2.0}[static_cast<std::size_t>(i) % 3];
+            const Sphere sphere{Vec3(random.vector(2)), static_cast<float>(random(0.2, 2))};
+            check_bounds({camera(projection, near), sphere, random.stretch()});
+        }
+    }
+
+    TEST_CASE("a huge sphere under the eye, as ground, and tiny far ones") {
+        Camera ground = camera(Camera::Projection::kPerspective, 1e-5);
+        ground.eye = {13, 2, 3};
+        ground.look_at = {0, 0, 0};
+        ground.fov_degrees = 20;
+        check_bounds({ground, {Vec3(0, -1000, 0), 1000}, Mat4d()});
+        ground.eye = {13, 1e-3, 3}; // the eye a millimetre above it
+        check_bounds({ground, {Vec3(0, -1000, 0), 1000}, Mat4d()});
+        check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(200, 100, -1000), 20}, Mat4d()});
+        check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(0, 0, 4), 1}, Mat4d()}); // around the eye
+    }
+
+    TEST_CASE("what lies behind the eye or beside the picture has empty bounds") {
+        const View view{camera(Camera::Projection::kPerspective, 1e-3), 64, 48};
+        const Pinhole pinhole = CameraModel(view).through();
+        const Viewport viewport{64, 48, pinhole.near};
+        CHECK(sphere_bounds({Vec3(0, 0, 6), 1.9f}, pinhole.world_to_pixel, viewport).empty());
+        CHECK(sphere_bounds({Vec3(50, 0, 0), 1}, pinhole.world_to_pixel, viewport).empty());
+        CHECK(sphere_bounds({Vec3(0, -50, 0), 1}, pinhole.world_to_pixel, viewport).empty());
+        CHECK_FALSE(sphere_bounds({Vec3(0, 0, 6), 2.1f}, pinhole.world_to_pixel, viewport).empty());
+    }
+}
