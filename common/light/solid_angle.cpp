@@ -1,9 +1,11 @@
 #include "common/light/solid_angle.h"
 
+#include "common/light/spherical_triangle.h"
 #include "common/sampling/warp.h"
 #include "common/vec/frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace duet {
@@ -16,11 +18,11 @@ using Triangle = SurfaceLight::Triangle;
 struct Plane {
     Vec3d area_vector, to_plane;
 };
-Plane plane(const Triangle& t, Vec3d p) {
+Plane plane_of(const Triangle& t, Vec3d p) {
     const Vec3d a(t.a);
     return {cross(Vec3d(t.b) - a, Vec3d(t.c) - a) * 0.5, a - p};
 }
-Plane plane(const Quad& q, Vec3d p) { return {cross(Vec3d(q.u), Vec3d(q.v)), Vec3d(q.corner) - p}; }
+Plane plane_of(const Quad& q, Vec3d p) { return {cross(Vec3d(q.u), Vec3d(q.v)), Vec3d(q.corner) - p}; }
 
 /// Density by solid angle of a point at offset w from p, uniform by area: d²/(A cos θ) = d³/|A⃗·w|, where A⃗·w is the
 /// same for all points of the plane.
@@ -30,10 +32,71 @@ double area_pdf(const Plane& plane, Vec3d w) {
     return slant > 0 ? d2 * std::sqrt(d2) / slant : 0;
 }
 
-std::optional<SolidAngleSample> towards(const Plane& plane, Vec3d w) {
+std::optional<SolidAngleSample> sample_area(const Plane& plane, Vec3d w) {
     const double d = length(w), pdf = area_pdf(plane, w);
     if (!(pdf > 0)) return std::nullopt;
     return SolidAngleSample{w / d, d, pdf};
+}
+
+/// A flat shape as N spherical triangles.
+template <std::size_t N> struct Seen {
+    std::array<SphericalTriangle, N> triangles;
+    std::array<double, N> solid_angles;
+    double total = 0;
+};
+
+/// A shape is sampled by solid angle where it is near: where the density by area would vary much. Far away that of
+/// area is as good and cheaper; below and above these solid angles rounding would show.
+constexpr double kNear = 0.05; ///< area over squared distance to the centre
+constexpr double kMinSolidAngle = 1e-4, kMaxSolidAngle = 6.2;
+
+/// The shape of these corners (a fan about the first) in directions from p; empty where it is to be sampled by area. A
+/// function of shape and point alone, so that sampling and density always decide alike.
+template <std::size_t Corners>
+std::optional<Seen<Corners - 2>> seen_near(const Plane& plane, const std::array<Vec3d, Corners>& corners) {
+    Vec3d center;
+    for (const Vec3d corner : corners) center += corner * (1.0 / Corners);
+    if (!(length(plane.area_vector) > kNear * length_squared(center))) return std::nullopt;
+
+    std::array<Vec3d, Corners> w;
+    for (std::size_t i = 0; i < Corners; ++i) {
+        const double d = length(corners[i]);
+        if (!(d > 0)) return std::nullopt;
+        w[i] = corners[i] / d;
+    }
+    Seen<Corners - 2> seen;
+    for (std::size_t i = 0; i + 2 < Corners; ++i) {
+        seen.triangles[i] = {w[0], w[i + 1], w[i + 2]};
+        seen.solid_angles[i] = seen.triangles[i].solid_angle();
+        if (!(seen.solid_angles[i] > kMinSolidAngle)) return std::nullopt;
+        seen.total += seen.solid_angles[i];
+    }
+    if (!(seen.total < kMaxSolidAngle)) return std::nullopt;
+    return seen;
+}
+
+template <std::size_t N> std::optional<SolidAngleSample> sample_seen(const Plane& plane, const Seen<N>& seen, Vec2d u) {
+    double share = u.x * seen.total; // chooses the triangle; what is left of it is used again
+    std::size_t i = 0;
+    while (i + 1 < N && share >= seen.solid_angles[i]) share -= seen.solid_angles[i++];
+    const double x = std::min(share / seen.solid_angles[i], 1.0);
+    const Vec3d wi = normalize(seen.triangles[i].sample(seen.solid_angles[i], {x, u.y}));
+    const double distance = dot(plane.area_vector, plane.to_plane) / dot(plane.area_vector, wi);
+    if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
+    return SolidAngleSample{wi, distance, 1 / seen.total};
+}
+
+// Corners relative to p.
+std::array<Vec3d, 3> corners(const Triangle& t, Vec3d p) { return {Vec3d(t.a) - p, Vec3d(t.b) - p, Vec3d(t.c) - p}; }
+std::array<Vec3d, 4> corners(const Quad& q, Vec3d p) {
+    const Vec3d corner = Vec3d(q.corner) - p, u(q.u), v(q.v);
+    return {corner, corner + u, corner + u + v, corner + v};
+}
+
+template <typename Shape> double flat_pdf(const Shape& shape, Vec3d p, Vec3d q) {
+    const Plane plane = plane_of(shape, p);
+    const auto seen = seen_near(plane, corners(shape, p));
+    return seen ? 1 / seen->total : area_pdf(plane, q - p);
 }
 
 /// 1 − cos of the half angle of the cone a sphere fills, from sin² = r²/d² < 1.
@@ -42,16 +105,21 @@ double cone_gap(double sin2) { return sin2 / (1 + std::sqrt(1 - sin2)); }
 } // namespace
 
 std::optional<SolidAngleSample> sample_solid_angle(const Triangle& t, Vec3d p, Vec2d u) {
+    const Plane plane = plane_of(t, p);
+    const std::array<Vec3d, 3> c = corners(t, p);
+    if (const auto seen = seen_near(plane, c)) return sample_seen(plane, *seen, u);
     const Vec2d b = uniform_triangle(u);
-    const Vec3d a(t.a);
-    return towards(plane(t, p), (a - p) + (Vec3d(t.b) - a) * b.x + (Vec3d(t.c) - a) * b.y);
+    return sample_area(plane, c[0] + (c[1] - c[0]) * b.x + (c[2] - c[0]) * b.y);
 }
-double solid_angle_pdf(const Triangle& t, Vec3d p, Vec3d q) { return area_pdf(plane(t, p), q - p); }
+double solid_angle_pdf(const Triangle& t, Vec3d p, Vec3d q) { return flat_pdf(t, p, q); }
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& q, Vec3d p, Vec2d u) {
-    return towards(plane(q, p), (Vec3d(q.corner) - p) + Vec3d(q.u) * u.x + Vec3d(q.v) * u.y);
+    const Plane plane = plane_of(q, p);
+    const std::array<Vec3d, 4> c = corners(q, p);
+    if (const auto seen = seen_near(plane, c)) return sample_seen(plane, *seen, u);
+    return sample_area(plane, c[0] + Vec3d(q.u) * u.x + Vec3d(q.v) * u.y);
 }
-double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q) { return area_pdf(plane(quad, p), q - p); }
+double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q) { return flat_pdf(quad, p, q); }
 
 std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p, Vec2d u) {
     const Vec3d to_center = Vec3d(sphere.center) - p;

@@ -14,10 +14,17 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// A hash of a state and one more number, to be chained: hash_combine(hash_combine(seed, x), y). The odd constant is
-/// SplitMix64's (2^64 over the golden ratio); it keeps zeros from staying zeros.
+/// 2^64 over the golden ratio: SplitMix64's step from state to state.
+inline constexpr std::uint64_t kGoldenStep = 0x9e3779b97f4a7c15u;
+
+/// Number i of the SplitMix64 stream that begins at a well mixed `state`: one mix, for inner loops.
+constexpr std::uint64_t stream_number(std::uint64_t state, std::uint64_t i) {
+    return mix_bits(state + (i + 1) * kGoldenStep);
+}
+
+/// A hash of a state and one more number of any form, to be chained: hash_combine(hash_combine(seed, x), y).
 constexpr std::uint64_t hash_combine(std::uint64_t state, std::uint64_t value) {
-    return mix_bits((state + 0x9e3779b97f4a7c15u) ^ mix_bits(value + 0xd1b54a32d192ed03u));
+    return mix_bits((state + kGoldenStep) ^ mix_bits(value + 0xd1b54a32d192ed03u));
 }
 
 constexpr std::uint32_t high_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
@@ -39,7 +46,7 @@ constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t 
     do { // each step is invertible modulo 2^bits: an odd multiple, a sum, and a shift that only looks at higher bits
         std::uint64_t round_key = key;
         for (int round = 0; round < 4; ++round) {
-            round_key = mix_bits(round_key + 0x9e3779b97f4a7c15u);
+            round_key = mix_bits(round_key + kGoldenStep);
             i = (i * (low_bits(round_key) | 1u)) & mask;
             i ^= i >> half;
             i = (i + high_bits(round_key)) & mask;

@@ -40,9 +40,9 @@ Vec2 sobol_2d(std::uint32_t index, std::uint64_t key) {
 
 float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
     const std::uint32_t round = index / count;
-    key = hash_combine(key, round);
+    key = stream_number(key, round);
     const std::uint32_t s = permute(index % count, count, key);
-    return stratum(s, unit_float(high_bits(hash_combine(key, s))), count);
+    return stratum(s, unit_float(high_bits(stream_number(key, s))), count);
 }
 
 /// Correlated multi-jittered points for any count: one in each of `count` rows, one in each of columns × rows_of_cells
@@ -50,13 +50,13 @@ float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key)
 /// §5).
 Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
     const std::uint32_t round = index / count; // beyond the promised number of samples: a fresh set
-    key = hash_combine(key, round);
+    key = stream_number(key, round);
     const auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
     const std::uint32_t rows_of_cells = (count + columns - 1) / columns;
     const std::uint32_t s = permute(index % count, count, key);
     const std::uint32_t column = permute(s % columns, columns, mix_bits(key + 1));
     const std::uint32_t row = permute(s / columns, rows_of_cells, mix_bits(key + 2));
-    const std::uint64_t jitter = hash_combine(key, s);
+    const std::uint64_t jitter = stream_number(key, s);
     const double fine = (row + static_cast<double>(unit_float(high_bits(jitter)))) / rows_of_cells;
     return {stratum(column, fine, columns), stratum(s, unit_float(low_bits(jitter)), count)};
 }
@@ -76,7 +76,7 @@ std::string_view sampler_name(SamplerKind kind) {
 }
 
 Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
-    : kind_(kind), seed_(mix_bits(seed + 0x9e3779b97f4a7c15u)),
+    : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
       samples_per_pixel_(static_cast<std::uint32_t>(std::max(samples_per_pixel, 1))) {}
 
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
@@ -89,12 +89,12 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
 }
 
 float Sampler::get_1d() {
-    const std::uint64_t key = hash_combine(pixel_hash_, dimension_++);
+    const std::uint64_t key = stream_number(pixel_hash_, dimension_++);
     switch (kind_) {
     case SamplerKind::kStratified:
         return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
     case SamplerKind::kIndependent:
-        return unit_float(high_bits(hash_combine(key, index_)));
+        return unit_float(high_bits(stream_number(key, index_)));
     case SamplerKind::kSobol:
     case SamplerKind::kCenter:
         break;
@@ -103,13 +103,13 @@ float Sampler::get_1d() {
 }
 
 Vec2 Sampler::get_2d() {
-    const std::uint64_t key = hash_combine(pixel_hash_, dimension_);
+    const std::uint64_t key = stream_number(pixel_hash_, dimension_);
     dimension_ += 2;
     switch (kind_) {
     case SamplerKind::kStratified:
         return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
     case SamplerKind::kIndependent: {
-        const std::uint64_t bits = hash_combine(key, index_);
+        const std::uint64_t bits = stream_number(key, index_);
         return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
     }
     case SamplerKind::kSobol:

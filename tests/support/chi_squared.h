@@ -19,14 +19,15 @@ double chi_squared_tail(double statistic, int degrees_of_freedom);
 double sidak(double alpha, int tests);
 
 struct ChiSquared {
-    double p_value = 0;  ///< the odds of counts at least this unlikely; 0 where a count is impossible
+    double p_value = 0;  ///< the odds of counts at least this unlikely
     std::string account; ///< statistic, degrees of freedom, worst bin: for the message of a failure
 };
-/// Bins of expectation below 5 are pooled. A count where nothing is expected (below 1e-6 of a sample) fails outright.
+/// Bins of expectation below 5 are pooled, with those where nothing is expected.
 ChiSquared chi_squared(const std::vector<double>& observed, const std::vector<double>& expected);
 
 /// Draws directions and compares them with a density by solid angle over cells of equal solid angle in a frame about
-/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own.
+/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own; if none did,
+/// the density is taken as it is up to a factor: check the integral, too.
 struct DirectionTest {
     Vec3 axis{0, 0, 1};
     int samples = 100'000;

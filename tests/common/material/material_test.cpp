@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 using namespace duet;
@@ -22,7 +23,7 @@ Vec3 direction(float z, float phi) {
 }
 
 struct Named {
-    const char* name;
+    std::string name;
     Bsdf bsdf;
 };
 std::vector<Named> rough_materials() {

@@ -1,0 +1,109 @@
+// Spherical triangles, and lights sampled near and far at any slant.
+#include "common/light/solid_angle.h"
+#include "common/light/spherical_triangle.h"
+#include "common/sampling/hash.h"
+#include "tests/support/chi_squared.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace duet;
+
+namespace {
+
+/// Number i of a fixed stream, in [0, 1).
+double number(std::uint64_t i) { return static_cast<double>(unit_float(high_bits(stream_number(99, i)))); }
+Vec3d vector(std::uint64_t i) { return {2 * number(3 * i) - 1, 2 * number(3 * i + 1) - 1, 2 * number(3 * i + 2) - 1}; }
+
+/// Inside, up to rounding: on the same side of the planes of all edges.
+bool contains(const SphericalTriangle& t, Vec3d w) {
+    const double side = dot(t.a, cross(t.b, t.c)) > 0 ? 1 : -1, bound = -1e-7;
+    return side * dot(w, cross(t.a, t.b)) > bound && side * dot(w, cross(t.b, t.c)) > bound &&
+           side * dot(w, cross(t.c, t.a)) > bound;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+    TEST_CASE("solid angles: an octant, tiny, needle-shaped and nearly a hemisphere") {
+        CHECK(SphericalTriangle{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}.solid_angle() ==
+              doctest::Approx(kPiDouble / 2).epsilon(1e-15));
+        for (const double size : {1e-2, 1e-5, 1e-8}) {
+            const SphericalTriangle t{{0, 0, 1}, normalize(Vec3d(size, 0, 1)), normalize(Vec3d(0, size, 1))};
+            CHECK(t.solid_angle() == doctest::Approx(size * size / 2).epsilon(size * size * 2 + 1e-7));
+        }
+        const auto ring = [](double angle, double lift) {
+            return normalize(Vec3d(std::cos(angle), std::sin(angle), lift));
+        };
+        const SphericalTriangle wide{ring(0, 1e-9), ring(2.1, 1e-9), ring(4.2, 1e-9)};
+        CHECK(wide.solid_angle() == doctest::Approx(2 * kPiDouble).epsilon(1e-7));
+        CHECK(SphericalTriangle{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}}.solid_angle() == 0);
+    }
+
+    TEST_CASE("samples lie in their triangle, also at the corners of the square") {
+        int tested = 0;
+        for (std::uint64_t i = 0; i < 3000; ++i) {
+            const SphericalTriangle t{normalize(vector(3 * i)), normalize(vector(3 * i + 1)),
+                                      normalize(vector(3 * i + 2))};
+            const double omega = t.solid_angle();
+            if (omega < 1e-4 || omega > 6.2) continue;
+            ++tested;
+            for (const double x : {0.0, 0.3, static_cast<double>(kOneMinusEpsilon), 1.0})
+                for (const double y : {0.0, 0.6, static_cast<double>(kOneMinusEpsilon)}) {
+                    const Vec3d w = t.sample(omega, {x, y});
+                    REQUIRE(std::abs(length(w) - 1) < 1e-9);
+                    REQUIRE(contains(t, w));
+                }
+        }
+        CHECK(tested > 2500);
+    }
+
+    TEST_CASE(
+        "lights at any place, near or far, edge-on or full: what is drawn is finite, in reach, with its own density") {
+        int drawn = 0;
+        for (std::uint64_t i = 0; i < 20'000; ++i) {
+            const double reach = std::pow(10.0, 6 * number(i + 1'000'000) - 3); // 1e-3 to 1e3 extents away
+            const Vec3 p(vector(5 * i) * reach + Vec3d(0.3, 0.2, 0));
+            const SurfaceLight::Triangle triangle{Vec3(vector(5 * i + 1)), Vec3(vector(5 * i + 2)),
+                                                  Vec3(vector(5 * i + 3))};
+            const Quad quad{triangle.a, triangle.b - triangle.a, triangle.c - triangle.a};
+            const Vec2d u{number(2 * i + 2'000'000), number(2 * i + 2'000'001)};
+            const auto check = [&](const auto& shape) {
+                const auto s = sample_solid_angle(shape, Vec3d(p), u);
+                if (!s) return;
+                ++drawn;
+                REQUIRE(std::abs(length(s->wi) - 1) < 1e-12);
+                REQUIRE((s->distance > 0 && s->distance < 10 * (1 + reach)));
+                REQUIRE((s->pdf > 0 && std::isfinite(s->pdf)));
+                const Vec3d q = Vec3d(p) + s->wi * s->distance;
+                REQUIRE(solid_angle_pdf(shape, Vec3d(p), q) == doctest::Approx(s->pdf).epsilon(1e-6));
+            };
+            check(triangle);
+            check(quad);
+        }
+        CHECK(drawn > 39'900);
+    }
+}
+
+TEST_SUITE("statistical") {
+    TEST_CASE("directions are uniform over spherical triangles") { // odds of a false alarm 1e-4 for all together
+        const SphericalTriangle triangles[] = {
+            {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+            {normalize(Vec3d(1, 0.1, 0)), normalize(Vec3d(-1, 1, 0.1)), normalize(Vec3d(-0.7, -1, 0.4))},
+            {normalize(Vec3d(1, 0, 0.5)), normalize(Vec3d(0.8, 0.6, 0.4)), normalize(Vec3d(-0.1, 0.2, 1))}};
+        for (const SphericalTriangle& t : triangles) {
+            const double omega = t.solid_angle();
+            test::DirectionTest setup;
+            setup.axis = Vec3(normalize(t.a + t.b + t.c));
+            setup.subdivisions = 20; // edges cut through cells
+            const auto result = test::test_directions(
+                setup, [&](Vec2 u) { return Vec3(t.sample(omega, Vec2d(u))); },
+                [&](Vec3 w) { return contains(t, Vec3d(w)) ? 1 / omega : 0.0; });
+            CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
+            CHECK_MESSAGE(result.chi_squared.p_value > test::sidak(1e-4, 3), result.chi_squared.account);
+        }
+    }
+}
