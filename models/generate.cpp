@@ -8,6 +8,10 @@ std::span<const Model> all_models() {
     using enum Model::Kind;
     static const std::vector<Model> models{
         {"amphora", kCommitted, {"meshes/amphora.obj", "textures/amphora.png"}, write_amphora},
+        {"bowl", kCommitted, {"meshes/bowl.obj"}, write_bowl},
+        {"pear", kCommitted, {"meshes/pear.obj", "meshes/pear.mtl", "textures/pear.png"}, write_pear},
+        {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},
+        {"sky", kCommitted, {"textures/sky.hdr"}, write_sky},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},

@@ -29,8 +29,12 @@ std::span<const Model> all_models();
 
 // One function a model, each in the file of its name.
 void write_amphora(const std::filesystem::path& folder);
+void write_bowl(const std::filesystem::path& folder);
 void write_octopus(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);
+void write_pear(const std::filesystem::path& folder);
+void write_plinth(const std::filesystem::path& folder);
+void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -101,6 +101,24 @@ void add_sheet(MeshBuilder& mesh, const Sheet& sheet) {
     }
 }
 
+void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int columns,
+                    const std::function<double(std::size_t row)>& v_of) {
+    Sheet sheet;
+    sheet.columns = columns;
+    sheet.rows = static_cast<int>(profile.size()) - 1;
+    sheet.closed_s = true;
+    sheet.pole_low = profile.front().x == 0;
+    sheet.pole_high = profile.back().x == 0;
+    const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t * sheet.rows)); };
+    sheet.point = [&](double s, double t) {
+        const double angle = 2 * kPiDouble * s;
+        const Vec2d p = profile[row(t)];
+        return Vec3d(p.x * std::sin(angle), p.y, p.x * std::cos(angle));
+    };
+    sheet.uv = [&](double s, double t) { return Vec2d(s, v_of(row(t))); };
+    add_sheet(mesh, sheet);
+}
+
 void add_tube(MeshBuilder& mesh, const Tube& tube) {
     // The first and last `kDome` of t round off the ends: there the radius falls to zero along a quarter of an ellipse.
     constexpr double kDome = 0.06;

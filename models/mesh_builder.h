@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,12 @@ struct Sheet {
 
 /// Adds a sheet: two triangles a cell, one where a pole is. Vertices at closed sides and poles are shared.
 void add_sheet(MeshBuilder& mesh, const Sheet& sheet);
+
+/// Adds the surface of revolution about the y axis of a profile of (radius, height), upwards along the outside. Where
+/// its ends lie on the axis (radius 0) the surface is closed there. u runs once around, to the right seen from outside;
+/// v is v_of(row).
+void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int columns,
+                    const std::function<double(std::size_t row)>& v_of);
 
 /// A tube along a curve, its ends closed by domes: for handles, rims and branches. `center` and `radii` (across: along
 /// the frame's two axes) are functions of t in [0, 1]; the frame's first axis stays perpendicular to `plane_normal`. uv

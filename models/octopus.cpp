@@ -5,8 +5,7 @@
 #include "models/field.h"
 #include "models/generate.h"
 #include "models/implicit.h"
-
-#include <memory>
+#include "models/profile.h"
 
 namespace duet::models {
 namespace {
@@ -98,11 +97,7 @@ Arm ground_arm(const ArmPlan& plan) {
 Vec3d spline(std::span<const Vec3d> points, double t) {
     const double x = t * static_cast<double>(points.size() - 3);
     const auto i = std::min(static_cast<std::size_t>(x), points.size() - 4);
-    const double f = x - static_cast<double>(i);
-    const Vec3d a = points[i], b = points[i + 1], c = points[i + 2], d = points[i + 3];
-    return (b * 2.0 + (c - a) * f + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (f * f) +
-            (b * 3.0 - a - c * 3.0 + d) * (f * f * f)) *
-           0.5;
+    return catmull_rom(points[i], points[i + 1], points[i + 2], points[i + 3], x - static_cast<double>(i));
 }
 
 /// The arm that reaches out to the ball and winds around it, from below upwards.

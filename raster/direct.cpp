@@ -1,9 +1,9 @@
 #include "raster/direct.h"
 
 #include "common/light/lambert.h"
-#include "common/vec/frame.h"
 
 #include <array>
+#include <cmath>
 
 namespace duet::raster {
 namespace {
@@ -74,18 +74,32 @@ std::optional<Incident> from_center(const SurfaceLight& light, Vec3 p) {
     return Incident{wi, surface_light_irradiance(light, p, wi)};
 }
 
-template <typename BsdfType>
-Rgb reflected(const BsdfType& bsdf, const ShadingPoint& point, const Frame& frame, const Incident& light) {
+template <typename BsdfType> Rgb reflected(const BsdfType& bsdf, const ShadingPoint& point, const Incident& light) {
     if (!point.receives(light.wi)) return {};
-    const Vec3 wi = frame.to_local(light.wi);
-    return bsdf.eval(frame.to_local(point.wo), wi, TransportMode::kRadiance) * abs_cos_theta(wi) * light.irradiance;
+    const Vec3 wi = point.frame.to_local(light.wi);
+    return bsdf.eval(point.wo, wi, TransportMode::kRadiance) * abs_cos_theta(wi) * light.irradiance;
+}
+
+/// Near silhouettes interpolated normals turn away from the viewer. There the direction to him is lifted just above the
+/// shading normal's horizon, or the material would show its other side.
+Vec3 lifted(Vec3 wo, float side) {
+    constexpr float kLowest = 1e-4f;
+    if (wo.z * side >= kLowest) return wo;
+    const float flat = std::sqrt(wo.x * wo.x + wo.y * wo.y);
+    if (flat == 0) return {0, 0, side};
+    const float scale = std::sqrt(1 - kLowest * kLowest) / flat;
+    return {wo.x * scale, wo.y * scale, kLowest * side};
 }
 
 } // namespace
 
 ShadingPoint::ShadingPoint(const SurfacePoint& point, Vec3 to_viewer)
-    : surface(point), wo(to_viewer), ng(dot(point.ng, to_viewer) < 0 ? -point.ng : point.ng),
-      ns(dot(point.ns, to_viewer) < 0 ? -point.ns : point.ns) {}
+    : surface(point), frame(frame_from_normal(point.ns)) {
+    const float side = dot(point.ng, to_viewer) < 0 ? -1.0f : 1.0f;
+    ng = point.ng * side;
+    ns = point.ns * side;
+    wo = lifted(frame.to_local(to_viewer), side);
+}
 
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
     if (is_own(light, point.surface)) return {};
@@ -95,26 +109,24 @@ Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
 
 Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point) {
     if (is_black(bsdf.albedo)) return {};
-    const Frame frame = frame_from_normal(point.ns);
     Rgb sum;
     for (const Light& light : lights) {
         if (const auto* surface = std::get_if<SurfaceLight>(&light))
             sum += bsdf.albedo * kInvPi * irradiance(*surface, point);
         else if (const auto incident = delta_light(light, point.surface.p))
-            sum += reflected(bsdf, point, frame, *incident);
+            sum += reflected(bsdf, point, *incident);
     }
     return sum;
 }
 
 Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point) {
     if (bsdf.smooth()) return {};
-    const Frame frame = frame_from_normal(point.ns);
     Rgb sum;
     for (const Light& light : lights) {
         const auto* surface = std::get_if<SurfaceLight>(&light);
         if (surface != nullptr && is_own(*surface, point.surface)) continue;
         const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(light, point.surface.p);
-        if (incident) sum += reflected(bsdf, point, frame, *incident);
+        if (incident) sum += reflected(bsdf, point, *incident);
     }
     return sum;
 }

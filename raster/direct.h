@@ -5,20 +5,23 @@
 #include "common/light/light.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/vec/frame.h"
 
 #include <span>
 
 namespace duet::raster {
 
-/// A point on a surface as its viewer sees it.
+/// A point on a surface as its viewer sees it. The side that is seen is the geometric one.
 struct ShadingPoint {
     const SurfacePoint& surface;
-    Vec3 wo; ///< unit, to the viewer
-    Vec3 ng; ///< geometric normal, on the viewer's side: light from its other side doesn't arrive
-    Vec3 ns; ///< shading normal, on the viewer's side
+    Vec3 ng;     ///< geometric normal, on the viewer's side: light from its other side doesn't arrive
+    Vec3 ns;     ///< shading normal, in the hemisphere of ng
+    Frame frame; ///< about the surface's own shading normal (+z is the outside), in which materials work
+    Vec3 wo;     ///< to the viewer, unit, in that frame; always on the side that is seen
 
+    /// to_viewer: unit, in the world.
     ShadingPoint(const SurfacePoint& point, Vec3 to_viewer);
-    /// Whether light from w arrives on the side of the geometric surface that is seen.
+    /// Whether light from w (in the world) arrives on the side of the geometric surface that is seen.
     bool receives(Vec3 w) const { return dot(ng, w) > 0; }
 };
 

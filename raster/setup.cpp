@@ -33,11 +33,27 @@ Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const P
     if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
 }
 
+// A sample may lie outside, where only the snapped outline covers it: by less than 1/256 pixel. It is mirrored at the
+// edge to a point as far inside, not just moved onto the edge: two faces that meet at a silhouette edge have the same
+// depth on it, but a common point inside of both tells which one is in front.
+Vec2d Interpolation::mirrored_inside(Vec2d p) const {
+    for (const Vec3d& edge : e) {
+        const double value = edge.x * p.x + edge.y * p.y + edge.z, steepness = edge.x * edge.x + edge.y * edge.y;
+        constexpr double kReach = 1.0 / 128; // farther only for a sliver, whose edge says nothing
+        if (value < 0 && value * value < kReach * kReach / 4 * steepness)
+            p = p - Vec2d(edge.x, edge.y) * (2 * value / steepness);
+    }
+    return p;
+}
+
 Interpolated Interpolation::at(Vec2d pixel) const {
-    const double x = pixel.x - origin_x, y = pixel.y - origin_y;
-    // A sample that only the snapped outline covers, or that rounding put outside, belongs to the triangle's border.
-    const auto inside = [&](std::size_t i) { return std::max(0.0, e[i].x * x + e[i].y * y + e[i].z); };
-    Interpolated result{inside(0), inside(1), inside(2), 0, 0};
+    Vec2d p(pixel.x - origin_x, pixel.y - origin_y);
+    const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
+    Interpolated result{value(0), value(1), value(2), 0, 0};
+    if (result.b0 < 0 || result.b1 < 0 || result.b2 < 0) {
+        p = mirrored_inside(p);
+        result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
+    }
     result.sum = result.b0 + result.b1 + result.b2;
     if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // seen exactly edge-on: any of its points will do
     result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;

@@ -36,7 +36,8 @@ enum class Piece : std::uint8_t {
     kQuadSecond, ///< corner, +u+v, +v
 };
 
-/// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle; clamped to it.
+/// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle; a sample outside it is taken to a point
+/// inside.
 struct Interpolated {
     double b0, b1, b2; ///< >= 0; in proportion to the barycentrics, not normalized
     double sum;        ///< of the three, > 0
@@ -55,6 +56,9 @@ struct Interpolation {
     Interpolation() = default;
     Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside);
     Interpolated at(Vec2d pixel) const;
+
+private:
+    Vec2d mirrored_inside(Vec2d p) const;
 };
 
 /// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is

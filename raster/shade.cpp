@@ -2,8 +2,6 @@
 
 #include "raster/direct.h"
 
-#include "common/vec/frame.h"
-
 namespace duet::raster {
 namespace {
 
@@ -27,13 +25,11 @@ public:
 
 private:
     template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted) const {
-        // Not turned to the viewer: a dielectric must know which side is its outside.
-        const Frame frame = frame_from_normal(point_.surface.ns);
         // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
         const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
-        const auto sample = bsdf.sample(frame.to_local(point_.wo), lobe, {0.5f, 0.5f}, TransportMode::kImportance);
+        const auto sample = bsdf.sample(point_.wo, lobe, {0.5f, 0.5f}, TransportMode::kImportance);
         if (!sample || sample->transmitted != transmitted) return {};
-        const Vec3 wi = frame.to_world(sample->wi);
+        const Vec3 wi = point_.frame.to_world(sample->wi);
         if (point_.receives(wi) == transmitted) return {}; // the two normals disagree
         const Rgb crossings = transmitted ? sample->weight * sample->weight : sample->weight;
         return radiance(data_.scene.environment, normalize(wi)) * crossings * sample->pdf;
@@ -52,17 +48,21 @@ struct DirectLight {
     Rgb operator()(const DielectricBsdf&) const { return {}; }
 };
 
-Rgb lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point) {
+Rgb lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, Vec3 to_viewer) {
     const Scene& scene = data.scene;
     const Material& material = scene.materials[point.surface.material];
     const Bsdf bsdf = bsdf_at(material, scene.textures, point.surface);
-    Rgb sum = emitted(material, point.surface, point.wo);
+    Rgb sum = emitted(material, point.surface, to_viewer);
     sum += std::visit(DirectLight{scene.lights, point}, bsdf);
     if (settings.environment && scene.needs.environment) sum += std::visit(EnvironmentLight(data, point), bsdf);
     return sum;
 }
 
-Rgb as_color(Vec3 n) { return {0.5f * n.x + 0.5f, 0.5f * n.y + 0.5f, 0.5f * n.z + 0.5f}; }
+Rgb as_color(Vec3 n) {
+    // Rounding takes a unit vector's component beyond 1 by an ulp: no colour is negative.
+    const auto channel = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
+    return {channel(n.x), channel(n.y), channel(n.z)};
+}
 
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
     if (settings.shading != Shading::kLit || !settings.environment || !data.scene.needs.environment) return {};
@@ -82,7 +82,7 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
     switch (settings.shading) {
     case Shading::kLit:
-        result.radiance = lit(data, settings, point);
+        result.radiance = lit(data, settings, point, -ray.direction);
         break;
     case Shading::kNormal:
         result.radiance = as_color(point.ns);

@@ -165,6 +165,25 @@ void check_png(const ImageBytes& file) {
     check_claim(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
 }
 
+// JPEG: marker segments, of which the frame's header holds the size (ITU-T T.81, Annex B). stb's own words for a size
+// it refuses are «unknown image type».
+Size jpeg_size(const ImageBytes& file) {
+    for (std::size_t at = 2; at + 9 <= file.bytes.size();) {
+        const std::uint32_t marker = byte_at(file.bytes, at + 1);
+        if (byte_at(file.bytes, at) != 0xff || marker == 0xff || (marker >= 0xd0 && marker <= 0xd9)) {
+            ++at; // padding, or markers without a segment
+            continue;
+        }
+        const auto pair_at = [&](std::size_t i) {
+            return static_cast<int>(byte_at(file.bytes, i) << 8 | byte_at(file.bytes, i + 1));
+        };
+        const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+        if (frame) return {pair_at(at + 7), pair_at(at + 5), 0};
+        at += 2 + static_cast<std::size_t>(pair_at(at + 2));
+    }
+    throw Error(message(file.name, ": truncated: a JPEG picture without a frame"));
+}
+
 // The least bytes of a TGA's pixels: whole, or in runs of up to 128 (Truevision TGA, Version 2.0, «Data Types»).
 double least_tga_bytes(const ImageBytes& file, const Size& size) {
     const double pixels = static_cast<double>(size.width) * size.height;
@@ -198,6 +217,8 @@ PixelFile decode_png(const ImageBytes& file) {
 }
 
 PixelFile decode_jpeg(const ImageBytes& file) {
+    const Size framed = jpeg_size(file);
+    check_image_size(file.name, framed.width, framed.height);
     const Size size = stb_size(file, "JPEG");
     // A block of 8 x 8 values takes a bit at least, and stands for 16 blocks at most where all channels are subsampled.
     const double pixels = static_cast<double>(size.width) * size.height;

@@ -18,16 +18,19 @@ namespace {
 class Words {
 public:
     explicit Words(std::string_view line) : rest_(line) {}
-    /// The next word, empty at the line's end.
+    /// The next word, empty at the line's end. (By hand: find_first_of calls memchr for each byte.)
     std::string_view next() {
-        rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
-        const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t"));
-        rest_.remove_prefix(word.size());
+        std::size_t begin = 0, end = 0;
+        while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
+        for (end = begin; end < rest_.size() && !is_blank(rest_[end]);) ++end;
+        const std::string_view word = rest_.substr(begin, end - begin);
+        rest_.remove_prefix(end);
         return word;
     }
     std::string_view rest() const { return rest_; }
 
 private:
+    static bool is_blank(char c) { return c == ' ' || c == '\t'; }
     std::string_view rest_;
 };
 
@@ -37,7 +40,8 @@ public:
     explicit Lines(std::string_view text) : rest_(text) {}
     bool next(std::string_view& line) {
         if (rest_.empty()) return false;
-        const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+        std::size_t end = 0;
+        while (end < rest_.size() && rest_[end] != '\n' && rest_[end] != '\r') ++end;
         line = rest_.substr(0, end);
         rest_.remove_prefix(end);
         if (rest_.starts_with("\r\n"))
@@ -63,11 +67,11 @@ void check_number(const std::filesystem::path& path, std::size_t line, std::stri
     const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument ||
-        digits.find_first_of("nN") != digits.npos)
+    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument || std::isnan(value))
         fail(path, line, "found " + in_quotes(word) + ", expected a number");
     // Out of range is said of numbers too small for a double, too: those are 0 for tinyobjloader, and for us.
-    const bool tiny = error == std::errc::result_out_of_range && digits.find("e-") != digits.npos;
+    const bool tiny = error == std::errc::result_out_of_range &&
+                      (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos);
     if ((error == std::errc::result_out_of_range && !tiny) || !(std::abs(value) <= kMaxMeshNumber))
         fail(path, line, "found " + in_quotes(word) + ", expected a number between -1e18 and 1e18");
 }
@@ -94,7 +98,7 @@ public:
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
             fail(*path_, line, "found " + in_quotes(text) + ", expected a " + what_ + " index");
-        if (error == std::errc::result_out_of_range || index == 0 || -index > static_cast<std::int64_t>(count))
+        if (error == std::errc::result_out_of_range || index == 0 || index < -static_cast<std::int64_t>(count))
             refuse(text, count, line);
         if (index > largest_) {
             largest_ = index;
@@ -183,6 +187,8 @@ std::string join_continued(const std::string& text) {
 
 std::string read_obj_text(const std::filesystem::path& path) {
     std::string text = read_file(path);
+    if (text.starts_with("\xEF\xBB\xBF"))
+        text.replace(0, 3, "   "); // a byte order mark would hide the first line's key
     if (text.find('\0') != std::string::npos) throw Error(path.string() + ": holds a NUL byte, expected text");
     const bool continued = text.find("\\\n") != std::string::npos || text.find("\\\r\n") != std::string::npos;
     return continued ? join_continued(text) : text;

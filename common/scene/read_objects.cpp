@@ -20,10 +20,12 @@ using GroupIndex = std::unordered_map<std::string, const SceneNode*>;
 void index_groups(const Scene& scene, const std::vector<SceneNode>& nodes, GroupIndex& groups) {
     for (const SceneNode& node : nodes) {
         if (node.shape || !node.instance_of.empty()) continue;
-        const auto [entry, added] = groups.try_emplace(node.name, &node);
-        if (!added)
-            fail_at(scene, node,
-                    "a second group of the name " + in_quotes(node.name) + "; the first is " + entry->second->path);
+        if (node.named) {
+            const auto [entry, added] = groups.try_emplace(node.name, &node);
+            if (!added)
+                fail_at(scene, node,
+                        "a second group of the name " + in_quotes(node.name) + "; the first is " + entry->second->path);
+        }
         index_groups(scene, node.members, groups);
     }
 }

@@ -42,7 +42,6 @@ std::vector<SceneNode> SceneNodeReader::read(const JsonValue& objects, std::size
     std::vector<SceneNode> nodes;
     for (const JsonValue& value : objects.elements()) {
         nodes.push_back(read_node(value, depth));
-        // A name for messages and reports where the file gives none: "sphere-3", the fourth entry of its list.
         if (nodes.back().name.empty()) nodes.back().name = message(value.at("type").string(), "-", nodes.size() - 1);
     }
     return nodes;
@@ -53,7 +52,8 @@ SceneNode SceneNodeReader::read_node(const JsonValue& value, std::size_t depth) 
     value.check_keys(scene_keys(node_types()[type]));
     SceneNode node;
     node.path = value.path();
-    if (value.has("name")) node.name = value.at("name").string();
+    node.named = value.has("name");
+    if (node.named) node.name = value.at("name").string();
     node.motion = read_motion(value);
     switch (type) {
     case 0:
@@ -72,7 +72,7 @@ SceneNode SceneNodeReader::read_node(const JsonValue& value, std::size_t depth) 
         break;
     case 4:
         node.hidden = value.boolean_or("hidden", false);
-        if (node.hidden && node.name.empty()) value.fail("a hidden group needs a \"name\", or no instance can show it");
+        if (node.hidden && !node.named) value.fail("a hidden group needs a \"name\", or no instance can show it");
         node.members = read(value.at("objects"), depth + 1);
         break;
     default:

@@ -16,8 +16,9 @@ namespace duet {
 
 /// One entry of "objects": a shape with its materials, a group of members, or an instance of a group.
 struct SceneNode {
-    std::string name;
-    std::string path; ///< JSON path, for messages
+    std::string name;   ///< the file's, or one made up for messages and reports: "sphere-3"
+    bool named = false; ///< by the file: a group that instances may show
+    std::string path;   ///< JSON path, for messages
     MotionTransform motion;
     bool hidden = false;                  ///< a group that is only a definition
     std::optional<std::uint32_t> shape;   ///< index into Scene::shapes

@@ -1,60 +1,69 @@
 #include "common/texture/noise.h"
 
-#include "common/sampling/hash.h"
-
+#include <array>
 #include <cmath>
-#include <cstdint>
 
 namespace duet {
 
 namespace {
 
-// A lattice coordinate modulo 2^32, and the position in the cell.
-struct Cell {
-    std::uint32_t index;
-    double fraction;
-};
-Cell cell(double x) {
-    constexpr double kPeriod = 4294967296.0;
-    const double wrapped = x - kPeriod * std::floor(x / kPeriod); // in [0, 2^32]; the upper end by rounding only
-    const double low = std::floor(wrapped);
-    return {static_cast<std::uint32_t>(static_cast<std::uint64_t>(low)), wrapped - low};
+// The lattice coordinate modulo 2^32: exact in double, and no conversion overflows however far away p is (0 for NaN).
+std::uint32_t lattice_index(double floor_of_p) {
+    constexpr double kPeriod = 0x1p32;
+    const double index = floor_of_p - kPeriod * std::floor(floor_of_p / kPeriod);
+    return index >= 0 && index < kPeriod ? static_cast<std::uint32_t>(index) : 0u;
 }
 
-// The dot product with one of the twelve gradients to the middles of a cube's edges, four of them twice.
-double gradient_dot(std::uint32_t x, std::uint32_t y, std::uint32_t z, Vec3d d) {
-    const std::uint64_t key = hash_combine((static_cast<std::uint64_t>(x) << 32) | y, z);
-    const auto h = static_cast<unsigned>(mix_bits(key) >> 60);
-    const double u = h < 8 ? d.x : d.y;
-    const double v = h < 4 ? d.y : h == 12 || h == 14 ? d.x : d.z;
-    return ((h & 1) != 0 ? -u : u) + ((h & 2) != 0 ? -v : v);
+// One round of mixing a word into a hash: a bijection of the hash for each word. Multiplier and shifts are those of the
+// 64-bit finalizer of Stafford 2011, «Better Bit Mixing», variant 13.
+std::uint64_t mix(std::uint64_t hash, std::uint32_t word) {
+    hash = (hash ^ word) * 0xbf58476d1ce4e5b9ull;
+    hash ^= hash >> 27;
+    hash *= 0x94d049bb133111ebull;
+    return hash ^ hash >> 31;
 }
 
-// 6t⁵ − 15t⁴ + 10t³: first and second derivative vanish at both ends.
+// The component of d along one of the twelve directions to the middles of a cube's edges.
+double along_gradient(std::uint64_t hash, Vec3d d) {
+    const auto edge = static_cast<unsigned>((hash >> 32) * 12 >> 32);
+    const double a = edge < 8 ? d.x : d.y, b = edge < 4 ? d.y : d.z;
+    return ((edge & 1) == 0 ? a : -a) + ((edge & 2) == 0 ? b : -b);
+}
+
 double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
 } // namespace
 
-double gradient_noise(Vec3d p) {
-    const Cell x = cell(p.x), y = cell(p.y), z = cell(p.z);
-    const auto corner = [&](unsigned i, unsigned j, unsigned k) {
-        return gradient_dot(x.index + i, y.index + j, z.index + k, {x.fraction - i, y.fraction - j, z.fraction - k});
-    };
-    const double u = fade(x.fraction), v = fade(y.fraction), w = fade(z.fraction);
-    const auto along_x = [&](unsigned j, unsigned k) { return lerp(corner(0, j, k), corner(1, j, k), u); };
-    const auto plane = [&](unsigned k) { return lerp(along_x(0, k), along_x(1, k), v); };
-    return lerp(plane(0), plane(1), w);
+double gradient_noise(Vec3d p, std::uint32_t seed) {
+    const Vec3d corner{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
+    const Vec3d d = p - corner; // in [0, 1]; 1 where a tiny negative p rounds to it
+    const std::uint32_t x = lattice_index(corner.x), y = lattice_index(corner.y), z = lattice_index(corner.z);
+    std::array<double, 8> value{};
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const std::uint64_t hash_x = mix(0x9e3779b97f4a7c15ull + seed, x + i);
+        for (std::uint32_t j = 0; j < 2; ++j) {
+            const std::uint64_t hash_xy = mix(hash_x, y + j);
+            for (std::uint32_t k = 0; k < 2; ++k)
+                value[4 * i + 2 * j + k] = along_gradient(mix(hash_xy, z + k), d - Vec3d(i, j, k));
+        }
+    }
+    const double u = fade(d.x), v = fade(d.y), w = fade(d.z);
+    const auto along_z = [&](std::size_t i) { return lerp(value[i], value[i + 1], w); };
+    // The largest value: by maximising the sum of each corner's weight times its largest possible component.
+    constexpr double kLargest = 1.0363538112118;
+    return lerp(lerp(along_z(0), along_z(2), v), lerp(along_z(4), along_z(6), v), u) / kLargest;
 }
 
 double fractal_noise(Vec3d p, int octaves) {
-    double sum = 0, amplitude = 1;
-    for (int i = 0; i < octaves; ++i, amplitude /= 2, p = p * 2.0) sum += amplitude * gradient_noise(p);
-    return sum;
-}
-
-double turbulence(Vec3d p, int octaves) {
-    double sum = 0, amplitude = 1;
-    for (int i = 0; i < octaves; ++i, amplitude /= 2, p = p * 2.0) sum += amplitude * std::abs(gradient_noise(p));
+    // Fractions of the golden ratio's powers: no two octaves' lattices meet within reach.
+    constexpr Vec3d kShift{0.618033988749895, 0.381966011250105, 0.236067977499790};
+    double sum = 0, amplitude = 1, frequency = 1;
+    for (int i = 0; i < octaves; ++i) {
+        sum +=
+            amplitude * gradient_noise(p * frequency + kShift * static_cast<double>(i), static_cast<std::uint32_t>(i));
+        amplitude /= 2;
+        frequency *= 2;
+    }
     return sum;
 }
 

@@ -7,17 +7,40 @@ namespace duet::compare {
 
 namespace {
 
-/// The ray's t on triangle abc, edges and vertices included. The signs of the volumes that the ray spans with each edge
-/// decide; those of a shared edge are exact negatives of each other, so no ray slips between two triangles.
+/// Points as the ray sees them: sheared along its largest axis so that it runs through (0, 0), the plane across it
+/// kept.
+struct AcrossRay {
+    Vec3d origin;
+    std::size_t kx, ky, kz;
+    double sx, sy;
+
+    explicit AcrossRay(const Rayd& ray) : origin(ray.origin), kz(longest_axis(abs(ray.direction))) {
+        kx = (kz + 1) % 3;
+        ky = (kz + 2) % 3;
+        sx = ray.direction[kx] / ray.direction[kz];
+        sy = ray.direction[ky] / ray.direction[kz];
+    }
+    Vec2d operator()(Vec3d p) const {
+        const Vec3d o = p - origin;
+        return {o[kx] - sx * o[kz], o[ky] - sy * o[kz]};
+    }
+};
+
+/// On which side of the edge ab the ray passes: exact in sign, or 0, because rounding keeps the order of the two
+/// products.
+double side(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
+
+/// The ray's t on triangle abc, edges and vertices included; no ray slips between two triangles of common vertices
+/// (Woop, Benthin and Wald 2013, §3, in double precision).
 std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
+    const AcrossRay across(ray);
+    const Vec2d pa = across(a), pb = across(b), pc = across(c);
+    const double sa = side(pb, pc), sb = side(pc, pa), sc = side(pa, pb);
+    if (!((sa >= 0 && sb >= 0 && sc >= 0) || (sa <= 0 && sb <= 0 && sc <= 0))) return {};
     const Vec3d n = cross(b - a, c - a);
-    const Vec3d oa = a - ray.origin, ob = b - ray.origin, oc = c - ray.origin;
-    const double wa = dot(ray.direction, cross(ob, oc)), wb = dot(ray.direction, cross(oc, oa)),
-                 wc = dot(ray.direction, cross(oa, ob));
-    if (!((wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0))) return {};
     const double slope = dot(n, ray.direction);
     if (slope == 0) return {}; // seen edge-on, or no area
-    const double t = dot(n, oa) / slope;
+    const double t = dot(n, a - ray.origin) / slope;
     if (!(t > ray.t_min && t <= ray.t_max)) return {};
     return t;
 }

@@ -11,6 +11,7 @@
 #include "common/geometry/triangle.h"
 #include "raytrace/acceleration/bvh.h"
 
+#include <bit>
 #include <cmath>
 
 namespace duet::raytrace {
@@ -77,6 +78,24 @@ inline bool traceable(const Ray& ray) {
     return is_finite(ray.origin) && is_finite(ray.direction) && max_component(abs(ray.direction)) > 0;
 }
 
+/// A child that waits to be visited: where the ray enters its box, and which it is. In one number, so that a stack of
+/// them is written and sorted at least cost: distances that are not negative are ordered like their bits.
+class Waiting {
+public:
+    Waiting() = default; // without a value: nobody should clear a stack of these for each ray
+    Waiting(float entry, std::uint32_t node, std::uint32_t child)
+        : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | (node * kWidth + child)) {}
+
+    float entry() const { return std::bit_cast<float>(static_cast<std::uint32_t>(bits_ >> 32)); }
+    std::uint32_t node() const { return static_cast<std::uint32_t>(bits_) / kWidth; }
+    std::uint32_t child() const { return static_cast<std::uint32_t>(bits_) % kWidth; }
+    bool nearer_than(Waiting other) const { return bits_ < other.bits_; }
+
+private:
+    static constexpr std::uint32_t kWidth = BvhNode::kWidth;
+    std::uint64_t bits_;
+};
+
 /// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
 /// of the ray. With kAny it stops at the first that comes before `best` and is not best's own primitive: a shadow ray
 /// to a light passes the light itself as `best`. Returns whether there was one. `object` stands for the objects of the
@@ -135,37 +154,36 @@ bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, I
         return false;
     };
 
-    struct Entry {
-        BvhRef ref;
-        float t;
-    };
+    if (bvh.root.leaf()) return test_leaf(bvh.root) || found;
     // Each step down leaves at most kWidth − 1 children waiting; the last kWidth are those of the node at hand.
-    std::array<Entry, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + BvhNode::kWidth + 1> stack;
+    std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + BvhNode::kWidth + 1> stack;
     std::size_t size = 0;
-    stack[size++] = {bvh.root, ray.t_min};
-    while (size > 0) {
-        const Entry at = stack[--size];
-        if (at.t > best.t) continue;
-        if (at.ref.leaf()) {
-            if (test_leaf(at.ref)) return true;
-            continue;
-        }
-        const BvhNode& node = bvh.nodes[at.ref.first];
+    const auto enter = [&](std::uint32_t index) {
         BvhNode::Lanes entry;
         std::array<std::uint32_t, BvhNode::kWidth> entered;
-        slabs.enter(node, ray.t_min, best.t, entry, entered);
+        slabs.enter(bvh.nodes[index], ray.t_min, best.t, entry, entered);
         const std::size_t bottom = size;
-        for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
-            stack[size] = {node.children[i], entry[i]};
+        for (std::uint32_t i = 0; i < BvhNode::kWidth; ++i) { // without a branch: what is not entered is overwritten
+            stack[size] = Waiting(entry[i], index, i);
             size += entered[i];
         }
         if (!kAny) // the nearest on top
             for (std::size_t i = bottom + 1; i < size; ++i) {
-                const Entry moving = stack[i];
+                const Waiting moving = stack[i];
                 std::size_t j = i;
-                for (; j > bottom && stack[j - 1].t < moving.t; --j) stack[j] = stack[j - 1];
+                for (; j > bottom && stack[j - 1].nearer_than(moving); --j) stack[j] = stack[j - 1];
                 stack[j] = moving;
             }
+    };
+    enter(bvh.root.first);
+    while (size > 0) {
+        const Waiting next = stack[--size];
+        if (next.entry() > best.t) continue;
+        const BvhRef& child = bvh.nodes[next.node()].children[next.child()];
+        if (!child.leaf())
+            enter(child.first);
+        else if (test_leaf(child))
+            return true;
     }
     return found;
 }

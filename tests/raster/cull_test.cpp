@@ -38,7 +38,7 @@ Scene tori() {
     add(scene, torus(60, 30));
     add_instance(scene, 0, Mat4(translation(Vec3(1.2f, 0.5f, 0)) * rotation(Vec3(1, 0, 0), 1.2f)));
     add_instance(scene, 0, Mat4(translation(Vec3(-1, 0.2f, 0.5f)) * scaling(Vec3(-0.7f, 0.7f, 0.7f)))); // mirrored
-    add_instance(scene, 0, Mat4(translation(Vec3(80, 0, 0))));                                          // out of sight
+    add_instance(scene, 0, Mat4(translation(Vec3(0, 80, 0))));                                          // out of sight
     finish_scene(scene);
     return scene;
 }

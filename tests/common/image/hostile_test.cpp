@@ -1,0 +1,352 @@
+// Pictures that lie about themselves, end early, or are none: one Error each, before memory is taken for what isn't
+// there.
+#include "common/image/image_file.h"
+#include "common/image/srgb.h"
+#include "tests/common/image/exr_bytes.h"
+#include "tests/common/image/scratch.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace duet;
+using duet::test::Containing;
+using duet::test::error_of;
+using duet::test::ExrBytes;
+
+namespace {
+
+std::string error_of_bytes(const std::filesystem::path& path, const std::string& bytes) {
+    write_file(path, bytes);
+    const std::string error = error_of([&] { read_pixel_file(path); });
+    if (error != "no Error") {
+        CHECK(error.starts_with("2: " + path.string() + ": "));
+        CHECK(error.find('\n') == std::string::npos); // one line
+    }
+    return error;
+}
+
+std::string big_endian(std::uint32_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 255u);
+    return text;
+}
+
+std::string png_chunk(const std::string& type_and_data) {
+    std::uint32_t crc = 0xffffffffu;
+    for (const char c : type_and_data) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
+    }
+    return big_endian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + big_endian(~crc);
+}
+
+const std::string kPngSignature = "\x89PNG\r\n\x1a\n";
+
+// Pixels as zlib's stored blocks (RFC 1950, 1951); its own checksum is left wrong, no reader of ours looks at it.
+std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour_type, const std::string& pixels) {
+    const auto size = static_cast<unsigned>(pixels.size());
+    std::string data = "IDAT\x78\x01\x01";
+    for (const unsigned part : {size & 255u, size >> 8, ~size & 255u, ~size >> 8 & 255u})
+        data += static_cast<char>(part);
+    const std::string header = "IHDR" + big_endian(width) + big_endian(height) + static_cast<char>(depth) +
+                               static_cast<char>(colour_type) + std::string(3, '\0');
+    return kPngSignature + png_chunk(header) + png_chunk(data + pixels + big_endian(0)) + png_chunk("IEND");
+}
+
+std::string hdr(const std::string& size, const std::string& pixels) {
+    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n" + pixels;
+}
+
+std::string tga(int type, int width, int height, int bits, const std::string& pixels) {
+    std::string file(18, '\0');
+    file[2] = static_cast<char>(type);
+    file[12] = static_cast<char>(width & 255);
+    file[13] = static_cast<char>(width >> 8);
+    file[14] = static_cast<char>(height & 255);
+    file[15] = static_cast<char>(height >> 8);
+    file[16] = static_cast<char>(bits);
+    return file + pixels;
+}
+
+ImageRgb some_picture() {
+    std::mt19937 random(5);
+    ImageRgb image(61, 40);
+    for (std::size_t i = 0; i < image.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) image[i][c] = srgb_decode_8bit(static_cast<std::uint8_t>(random() & 255u));
+    return image;
+}
+
+constexpr const char* kEndings[] = {"png", "jpg", "tga", "ppm", "pfm", "hdr", "exr"};
+
+} // namespace
+
+TEST_SUITE("unit") {
+    TEST_CASE("what is no file, and files that are no picture") {
+        const auto folder = test::scratch_folder("hostile_none");
+        CHECK(error_of([&] { read_image(folder / "none.png"); }) == Containing("none.png: no such file"));
+        CHECK(error_of([&] { read_image(folder); }) == Containing("not a regular file"));
+        CHECK(error_of([&] { read_exr(folder); }) == Containing("not a regular file"));
+        CHECK(error_of_bytes(folder / "empty.png", "") == Containing("empty file"));
+        CHECK(error_of_bytes(folder / "empty.tga", "") == Containing("empty file"));
+        CHECK(error_of_bytes(folder / "text.png", "hello, world\n") == Containing("unknown format, expected a PNG"));
+        CHECK(error_of_bytes(folder / "gif.png", "GIF89a\1\0\1\0") == Containing("unknown format"));
+        CHECK(error_of_bytes(folder / "text.tga", "hello, world\n") == Containing("TGA"));
+        CHECK(error_of([&] { read_exr(folder / "text.png"); }) == Containing("not an EXR"));
+    }
+
+    TEST_CASE("a file cut off anywhere is an Error") {
+        const auto folder = test::scratch_folder("hostile_truncated");
+        for (const char* ending : kEndings) {
+            CAPTURE(ending);
+            const auto path = folder / message("a.", ending);
+            write_image(path, some_picture());
+            const std::string bytes = read_file(path);
+            std::vector<std::size_t> sizes{bytes.size() - 1, bytes.size() - 2, bytes.size() - 3};
+            for (std::size_t i = 1; i < 60; ++i) sizes.push_back(i * bytes.size() / 60);
+            for (std::size_t i = 1; i < 30 && i < bytes.size(); ++i) sizes.push_back(i);
+            for (const std::size_t size : sizes) {
+                CAPTURE(size);
+                // A TGA whose runs end early is noticed; one cut within its footer has lost no pixel.
+                CHECK(error_of_bytes(path, bytes.substr(0, size)) != "no Error");
+            }
+        }
+    }
+
+    TEST_CASE("changed bytes never crash the readers") {
+        const auto folder = test::scratch_folder("hostile_changed");
+        std::mt19937 random(11);
+        for (const char* ending : kEndings) {
+            CAPTURE(ending);
+            const auto path = folder / message("a.", ending);
+            write_image(path, some_picture());
+            const std::string bytes = read_file(path);
+            for (int trial = 0; trial < 150; ++trial) {
+                std::string changed = bytes;
+                const std::size_t reach = trial % 2 == 0 ? 400 : changed.size(); // headers more often
+                for (int i = 0; i <= trial % 4; ++i)
+                    changed[random() % std::min(reach, changed.size())] = static_cast<char>(random() & 255u);
+                const std::string error = error_of_bytes(path, changed);
+                // A checksum covers each byte.
+                if (std::string(ending) == "png" && changed != bytes) CHECK(error != "no Error");
+            }
+        }
+    }
+
+    TEST_CASE("PNG: sizes that cannot be") {
+        const auto folder = test::scratch_folder("hostile_png");
+        const std::string claim = error_of_bytes(folder / "claim.png", png(100000, 100000, 8, 2, "abc"));
+        CHECK(claim == Containing("a picture of 100000 x 100000 pixels, expected 1 to 32768 a side"));
+        CHECK(error_of_bytes(folder / "a.png", png(30000, 30000, 8, 2, "abc")) ==
+              Containing("at most 90000000 in all"));
+        CHECK(error_of_bytes(folder / "b.png", png(30000, 3000, 8, 2, "abc")) == Containing("cannot be in its"));
+        CHECK(error_of_bytes(folder / "c.png", png(0, 1, 8, 2, "abc")) == Containing("a picture of 0 x 1"));
+        CHECK(error_of_bytes(folder / "d.png", png(2, 2, 8, 2, std::string(7, '\0'))) ==
+              Containing("not a readable PNG"));
+        CHECK(error_of_bytes(folder / "e.png", kPngSignature) == Containing("truncated"));
+        CHECK(error_of_bytes(folder / "f.png", kPngSignature + png_chunk("IEND")) == Containing("header (IHDR)"));
+        CHECK(error_of_bytes(folder / "g.png", kPngSignature + big_endian(0xfffffff0u) + "IHDR    ") ==
+              Containing("truncated"));
+    }
+
+    TEST_CASE("PNG: 16 bits are read with 16 bits; grey and alpha") {
+        const auto folder = test::scratch_folder("hostile_png16");
+        // Two grey pixels of 16 bits: 0x1234 and 0xffff.
+        write_file(folder / "grey.png", png(2, 1, 16, 0, std::string("\0\x12\x34\xff\xff", 5)));
+        const PixelFile grey = read_pixel_file(folder / "grey.png");
+        CHECK(grey.channels == 1);
+        CHECK(grey.encoding == PixelFile::Encoding::kEncoded);
+        CHECK(grey.values == std::vector{0x1234 / 65535.0f, 1.0f});
+        CHECK(to_linear(grey)[0].g == srgb_decode(0x1234 / 65535.0f));
+        write_file(folder / "rgba.png", png(1, 1, 8, 6, std::string("\0\x33\x66\xff\x80", 5)));
+        const PixelFile rgba = read_pixel_file(folder / "rgba.png");
+        CHECK(rgba.values == std::vector{0x33 / 255.0f, 0x66 / 255.0f, 1.0f, 0x80 / 255.0f});
+    }
+
+    TEST_CASE("JPEG: a size out of proportion to the file") {
+        const auto folder = test::scratch_folder("hostile_jpeg");
+        write_image(folder / "a.jpg", some_picture());
+        const std::string bytes = read_file(folder / "a.jpg");
+        const std::size_t frame = bytes.find("\xff\xc0");
+        REQUIRE(frame != std::string::npos);
+        const auto claim = [&](unsigned width, unsigned height) {
+            std::string changed = bytes;
+            const unsigned parts[] = {height >> 8, height & 255u, width >> 8, width & 255u};
+            for (std::size_t i = 0; i < 4; ++i) changed[frame + 5 + i] = static_cast<char>(parts[i]);
+            return error_of_bytes(folder / "claim.jpg", changed);
+        };
+        CHECK(claim(65500, 65500) == Containing("a picture of 65500 x 65500"));
+        CHECK(claim(30000, 30000) == Containing("at most 90000000 in all"));
+        CHECK(claim(30000, 3000) == Containing("cannot be in its"));
+        CHECK(claim(0, 40) == Containing("a picture of 0 x 40"));
+        CHECK(error_of_bytes(folder / "short.jpg", bytes.substr(0, frame + 6)) == Containing("truncated"));
+    }
+
+    TEST_CASE("TGA: sizes beyond the file") {
+        const auto folder = test::scratch_folder("hostile_tga");
+        CHECK(error_of_bytes(folder / "a.tga", tga(2, 30000, 3000, 24, "abc")) == Containing("cannot be in its"));
+        CHECK(error_of_bytes(folder / "b.tga", tga(10, 30000, 3000, 24, "abc")) == Containing("cannot be in its"));
+        CHECK(error_of_bytes(folder / "c.tga", tga(2, 65535, 65535, 24, "abc")) ==
+              Containing("a picture of 65535 x 65535"));
+        CHECK(error_of_bytes(folder / "d.tga", tga(2, 2, 2, 24, std::string(11, 'a'))) ==
+              Containing("cannot be in its"));
+        CHECK(error_of_bytes(folder / "e.tga", tga(10, 2, 2, 24, std::string("\1abcdef\1abc", 11))) ==
+              Containing("truncated"));
+        CHECK(error_of_bytes(folder / "f.tga", tga(2, 2, 2, 24, std::string(12, 'a'))) == "no Error");
+        CHECK(error_of_bytes(folder / "g.tga", tga(10, 2, 2, 24, std::string("\1abcdef\1abcdef", 14))) == "no Error");
+        // A colour map that reaches beyond the file.
+        std::string mapped = tga(1, 2, 2, 8, std::string(4, '\0'));
+        mapped[1] = 1;
+        mapped[5] = static_cast<char>(255);
+        mapped[7] = 24;
+        CHECK(error_of_bytes(folder / "h.tga", mapped) == Containing("TGA"));
+    }
+
+    TEST_CASE("HDR: sizes, formats and runs that cannot be") {
+        const auto folder = test::scratch_folder("hostile_hdr");
+        const auto error = [&](const std::string& bytes) { return error_of_bytes(folder / "a.hdr", bytes); };
+        CHECK(error(hdr("-Y 100000 +X 100000", "")) == Containing("a picture of 100000 x 100000"));
+        CHECK(error(hdr("-Y 3000 +X 30000", "abcd")) == Containing("cannot be in its"));
+        CHECK(error(hdr("-Y -5 +X 5", "abcd")) == Containing("a picture of 5 x -5"));
+        CHECK(error(hdr("-Y 99999999999999 +X 5", "abcd")) == Containing("no size"));
+        CHECK(error(hdr("+Y 5 +X 5", "abcd")) == Containing("-Y height +X width"));
+        CHECK(error("#?RADIANCE\n\n-Y 1 +X 1\nabcd") == Containing("no line FORMAT"));
+        CHECK(error("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd") == Containing("other than"));
+        CHECK(error("#?RADIANCE\nFORMAT=32-bit_rle_rgbe") == Containing("within its header"));
+        CHECK(error(hdr("-Y 1 +X 2", "abcd")) == Containing("truncated"));
+        const std::string start("\2\2\0\x08", 4), run("\x88"
+                                                      "a");
+        CHECK(error(hdr("-Y 1 +X 8", start + run + run + run + run)) == "no Error");
+        CHECK(error(hdr("-Y 1 +X 8", start + run + run + run + "\x88")) == Containing("truncated"));
+        CHECK(error(hdr("-Y 1 +X 8", start + run + run + run +
+                                         "\x89"
+                                         "a")) == Containing("beyond its scanline"));
+        // A run of none: stb_image 2.27 never returns from it.
+        CHECK(error(hdr("-Y 1 +X 8", start + run + run + run + std::string("\0\0", 2))) ==
+              Containing("beyond its scanline"));
+        CHECK(error(hdr("-Y 1 +X 9", start + run + run + run + run)) == Containing("another length"));
+        // The older runs: a pixel, then (1, 1, 1, count).
+        CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\x2b\1\1\1\1", 12))) == "no Error");
+        CHECK(read_pixel_file(folder / "a.hdr").values[3 * 299] == 1.0f);
+        CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\xff\1\1\1\1", 12))) ==
+              Containing("beyond its scanline"));
+        CHECK(error(hdr("-Y 1 +X 4", std::string("\1\1\1\2\x80\1\2\x81", 8))) == Containing("beyond its scanline"));
+    }
+
+    TEST_CASE("PPM and PFM: headers") {
+        const auto folder = test::scratch_folder("hostile_portable");
+        const auto error = [&](const std::string& bytes) { return error_of_bytes(folder / "a.ppm", bytes); };
+        const auto values = [&](const std::string& bytes) {
+            write_file(folder / "a.ppm", bytes);
+            return read_pixel_file(folder / "a.ppm").values;
+        };
+        CHECK(values("P3 # a comment\n#another\n 1 # width\n1\t255\r\n255 0\n51") == std::vector{1.0f, 0.0f, 0.2f});
+        CHECK(values("P3 1 1 1023 1023 0 341 # end") == std::vector{1.0f, 0.0f, 341 / 1023.0f});
+        CHECK(values("P6#c\n1 1 255\n\xff\x20#") == std::vector{1.0f, 0x20 / 255.0f, '#' / 255.0f});
+        CHECK(values(std::string("P6 1 1 65535 \x12\x34\xff\xff\0\0", 19)) ==
+              std::vector{0x1234 / 65535.0f, 1.0f, 0.0f});
+        CHECK(values("P6 1 1 100 dd\1") == std::vector{1.0f, 1.0f, 0.01f});
+
+        CHECK(error("P6 100000 100000 255 abc") == Containing("a picture of 100000 x 100000"));
+        CHECK(error("P6 9999 9000 255 abc") == Containing("cannot be in its"));
+        CHECK(error("P3 9999 9000 255 1 2 3") == Containing("cannot be in its"));
+        CHECK(error("P6 99999999999999999999 1 255 abc") == Containing("expected the width"));
+        CHECK(error("P6 -1 1 255 abc") == Containing("a picture of -1 x 1"));
+        CHECK(error("P6 1 1 65536 abcabc") == Containing("expected 1 to 65535"));
+        CHECK(error("P6 1 1 0 abcabc") == Containing("expected 1 to 65535"));
+        CHECK(error("P6 1 1 99 ddd") == Containing("a value of 100, expected 0 to 99"));
+        CHECK(error("P3 1 1 99 1 2 100") == Containing("a value of 100, expected 0 to 99"));
+        CHECK(error("P3 1 1 99 1 2 -3") == Containing("a value of -3"));
+        CHECK(error("P3 1 1 99 1 x 3") == Containing("found \"x\", expected a pixel's value"));
+        CHECK(error("P3 2 1 99 1 2 3 44 5   ") == Containing("truncated: the file ends, expected a pixel's value"));
+        CHECK(error("P3 2 1 99 1 2 3 44444") == Containing("a value of 44444"));
+        CHECK(error("P6 1 1 255 ab") == Containing("cannot be in its"));
+        CHECK(error("P6 1 1") == Containing("expected the largest value"));
+        CHECK(error("P6 1 1 255") == Containing("within its header"));
+        CHECK(error("P3 # no end") == Containing("expected the width"));
+        CHECK(error("P5 1 1 255 a") == Containing("unknown format"));
+
+        // Both byte orders, grey, the unit, rows from the bottom.
+        CHECK(values(std::string("Pf\n1 2\n1\n\x3f\x80\0\0\x40\0\0\0", 17)) == std::vector{2.0f, 1.0f});
+        CHECK(values(std::string("Pf\n1 2\n-1.0\n\0\0\x80\x3f\0\0\0\x40", 20)) == std::vector{2.0f, 1.0f});
+        CHECK(values(std::string("PF\n1 1\n-2e0\n\0\0\x80\x3f\0\0\0\x40\0\0\0\0", 24)) ==
+              std::vector{2.0f, 4.0f, 0.0f});
+        CHECK(error("PF 100000 100000 -1 abcd") == Containing("a picture of 100000 x 100000"));
+        CHECK(error("PF 9999 9000 -1 abcd") == Containing("cannot be in its"));
+        CHECK(error("PF 1 1 0 abcdabcdabcd") == Containing("a scale of 0"));
+        CHECK(error("PF 1 1 nan abcdabcdabcd") == Containing("a scale of nan"));
+        CHECK(error("PF 1 1 -1 abcdabcdabc") == Containing("cannot be in its"));
+    }
+
+    TEST_CASE("EXR: half floats, any data window, tiles") {
+        const auto folder = test::scratch_folder("exr_kinds");
+        // Halves: 0x3c00 is 1, its exponent in bits 10 to 14.
+        const auto value = [](std::size_t c, int x, int y) {
+            return (static_cast<unsigned>(x + 3 * y) + 10) << 10 | static_cast<unsigned>(c) << 8;
+        };
+        const auto expected = [](std::size_t c, int x, int y) {
+            return std::ldexp(1.0f + static_cast<float>(c) / 4, x + 3 * y + 10 - 15);
+        };
+        ExrBytes flat, tiled;
+        tiled.version |= 0x200;
+        tiled.tile_width = 2;
+        tiled.tile_height = 1;
+        for (const ExrBytes& kind : {flat, tiled}) {
+            write_file(folder / "a.exr", kind.build(value));
+            const ImageRgb image = read_image(folder / "a.exr");
+            const ExrFile file = read_exr(folder / "a.exr");
+            REQUIRE(image.width() == 3);
+            REQUIRE(image.height() == 2);
+            REQUIRE(file.channels.size() == 3);
+            for (int y = 0; y < 2; ++y)
+                for (int x = 0; x < 3; ++x) {
+                    CHECK(image(x, y) == Rgb(expected(2, x, y), expected(1, x, y), expected(0, x, y)));
+                    CHECK(file.channels[0].floats[static_cast<std::size_t>(x + 3 * y)] == expected(0, x, y));
+                }
+        }
+    }
+
+    TEST_CASE("EXR: what is absurd or not read") {
+        const auto folder = test::scratch_folder("hostile_exr");
+        const auto error = [&](auto change) {
+            ExrBytes file;
+            change(file);
+            const std::string text = error_of_bytes(folder / "a.exr", file.header() + std::string(200000, '\0'));
+            CHECK(error_of([&] { read_exr(folder / "a.exr"); }) != "no Error");
+            return text;
+        };
+        CHECK(error([](ExrBytes&) {}) == Containing("not a readable EXR"));
+        CHECK(error([](ExrBytes& f) { f.max_x = f.max_y = 99999; }) ==
+              Containing("pixels, expected 1 to 32768 a side"));
+        CHECK(error([](ExrBytes& f) {
+                  f.min_x = f.min_y = -2147483647;
+                  f.max_x = f.max_y = 2147483647;
+              }) == Containing("expected 1 to 32768"));
+        CHECK(error([](ExrBytes& f) { f.max_x = -100; }) == Containing("expected 1 to 32768"));
+        CHECK(error([](ExrBytes& f) {
+                  f.max_x = 29999;
+                  f.max_y = 2900;
+                  f.compression = 3;
+              }) == Containing("cannot be in its"));
+        CHECK(error([](ExrBytes& f) {
+                  f.max_x = 29999;
+                  f.extra_channels = 3000;
+                  f.compression = 3;
+              }) == Containing("bytes a pixel"));
+        CHECK(error([](ExrBytes& f) { f.sampling = 2; }) == Containing("subsampled"));
+        CHECK(error([](ExrBytes& f) { f.type = 7; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) { f.compression = 99; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x800; }) == Containing("deep"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x1000; }) == Containing("several parts"));
+        CHECK(error([](ExrBytes& f) {
+                  f.version |= 0x200;
+                  f.tile_width = f.tile_height = 0x7fffffff;
+              }) == Containing("tiles of"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x200; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) {
+                  f.channels = {"R", "Z"};
+              }) == Containing("channels R Z, expected R, G and B, or Y"));
+        CHECK(error([](ExrBytes& f) { f.channels = {}; }) == Containing("EXR"));
+        CHECK(error_of_bytes(folder / "a.exr", "\x76\x2f\x31\x01") == Containing("ends early"));
+    }
+}

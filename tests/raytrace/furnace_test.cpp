@@ -1,0 +1,140 @@
+// White furnaces: where nothing absorbs light and light comes from everywhere, nothing can be seen.
+#include "tests/raytrace/estimates.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+struct Case {
+    std::string name;
+    Shape shape;
+    Material material;
+    bool diffuse;
+};
+
+std::vector<Case> lossless_cases() {
+    const Diffuse white{{Rgb(1.0f)}};
+    const Metal mirror{{Rgb(1.0f)}, 0};
+    const Dielectric glass{1.5f, {Rgb(1.0f)}};
+    const Shape sphere = Sphere{{0, 0, 0}, 1}, box = box_quads({-0.7f, -0.7f, -0.7f}, {0.7f, 0.7f, 0.7f}),
+                mesh = icosphere(2);
+    return {{"white sphere", sphere, white, true},  {"mirror sphere", sphere, mirror, false},
+            {"glass sphere", sphere, glass, false}, {"white box", box, white, true},
+            {"mirror box", box, mirror, false},     {"glass box", box, glass, false},
+            {"white mesh", mesh, white, true},      {"mirror mesh", mesh, mirror, false},
+            {"glass mesh", mesh, glass, false}};
+}
+
+Scene furnace(const Case& c) {
+    SceneBuilder builder;
+    builder.add(c.shape, builder.material(c.material));
+    builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
+    builder.scene.camera.eye = {1.5, 1, 4};
+    return builder.finish();
+}
+
+double largest_deviation(const ImageRgb& image, Rgb expected) {
+    double largest = 0;
+    for (const Rgb& pixel : image)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            largest = std::max(largest, std::abs(static_cast<double>(pixel[channel] - expected[channel])));
+    return largest;
+}
+
+// The inside of a sphere that emits E and reflects the fraction a of light: every point sees the same radiance L, and
+// after d scattering events L = E (1 + a + … + a^d), whatever the directions.
+Scene glowing_cavity(float albedo) {
+    SceneBuilder builder;
+    builder.add(Sphere{{0, 0, 0}, 2}, builder.material(Emissive{Rgb(1.0f), true, {Rgb(albedo)}}));
+    builder.scene.camera.eye = {0.5, 0.3, 1};
+    return builder.finish();
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    // Each sample is exactly what it should be but for rounding, once it is out again: between the facets of a mesh of
+    // glass total reflection keeps some for hundreds of events.
+    TEST_CASE("naive path tracing of lossless surfaces in a constant environment: 1 without variance") {
+        for (const Case& c : lossless_cases()) {
+            CAPTURE(c.name);
+            Settings settings;
+            settings.integrator = Integrator::kNaive;
+            settings.russian_roulette = false;
+            settings.max_depth = 100000;
+            settings.samples_per_pixel = 4;
+            const Rendering rendering = render_scene(furnace(c), 32, settings);
+            CHECK(largest_deviation(rendering.radiance, Rgb(1.0f)) < 1e-5);
+            CHECK(rendering.statistics.invalid_samples == 0);
+        }
+    }
+
+    TEST_CASE("path tracing of mirrors and glass in a constant environment: 1 without variance, too") {
+        for (const Case& c : lossless_cases()) {
+            if (c.diffuse) continue;
+            CAPTURE(c.name);
+            Settings settings;
+            settings.samples_per_pixel = 4;
+            settings.max_depth = 100000;
+            settings.russian_roulette = false;
+            CHECK(largest_deviation(render_scene(furnace(c), 32, settings).radiance, Rgb(1.0f)) < 1e-5);
+        }
+    }
+
+    TEST_CASE("in a glowing cavity each scattering event adds its power of the albedo: the depth limit counts them") {
+        const Scene scene = glowing_cavity(0.5f);
+        Settings settings;
+        settings.integrator = Integrator::kNaive;
+        settings.russian_roulette = false;
+        settings.samples_per_pixel = 2;
+        double expected = 0;
+        for (int depth = 0; depth <= 6; ++depth) {
+            CAPTURE(depth);
+            expected += std::pow(0.5, depth);
+            settings.max_depth = depth;
+            const Rendering rendering = render_scene(scene, 16, settings);
+            CHECK(largest_deviation(rendering.radiance, Rgb(static_cast<float>(expected))) < 1e-5);
+            CHECK(rendering.statistics.indirect_rays == depth * rendering.statistics.camera_rays);
+            CHECK(rendering.statistics.shadow_rays == 0);
+        }
+    }
+}
+
+TEST_SUITE("statistical") {
+
+    // 32 x 32 pixels of 64 samples; the standard error of the mean, measured over seeds, is below 1.5e-4 in all cases:
+    // the bound is more than ten of them.
+    TEST_CASE("path tracing of white surfaces in a constant environment: 1 ± 0.002") {
+        for (const Case& c : lossless_cases()) {
+            if (!c.diffuse) continue;
+            CAPTURE(c.name);
+            Settings settings;
+            settings.samples_per_pixel = 64;
+            const Rgbd mean = mean_of(render_scene(furnace(c), 32, settings).radiance);
+            CHECK(mean.g == doctest::Approx(1).epsilon(0.002));
+        }
+    }
+
+    // Six standard errors over ten seeds: exceeded by chance once in 5,000 times.
+    TEST_CASE("in a glowing cavity light sampling adds up to the same sums") {
+        const Scene scene = glowing_cavity(0.5f);
+        for (const auto& [integrator, depth, expected] :
+             {std::tuple(Integrator::kPath, 0, 1.0), std::tuple(Integrator::kPath, 1, 1.5),
+              std::tuple(Integrator::kPath, 2, 1.75), std::tuple(Integrator::kPath, 3, 1.875),
+              std::tuple(Integrator::kPath, 64, 2.0), std::tuple(Integrator::kDirect, 64, 1.5)}) {
+            CAPTURE(depth);
+            Settings settings;
+            settings.integrator = integrator;
+            settings.max_depth = depth;
+            settings.samples_per_pixel = 16;
+            const Estimate e = estimate(scene, 16, settings);
+            CHECK(std::abs(e.mean - expected) <= 6 * e.error + 1e-6);
+            CHECK(e.error < 0.01);
+        }
+    }
+}
