@@ -18,7 +18,12 @@ using namespace duet::models;
 
 namespace {
 
-const std::filesystem::path kScratch = std::filesystem::path(DUET_BINARY_DIR) / "tests/scratch/models";
+/// A folder for what the tests write.
+std::filesystem::path scratch() {
+    const std::filesystem::path folder = std::filesystem::path(DUET_BINARY_DIR) / "tests/scratch/models";
+    std::filesystem::create_directories(folder);
+    return folder;
+}
 
 /// Vertices − edges + triangles of a closed mesh: 2 for each ball, 0 for a torus.
 std::ptrdiff_t euler_characteristic(const MeshBuilder& mesh) {
@@ -42,11 +47,11 @@ TEST_SUITE("unit") {
     TEST_CASE("the committed models are what the generator writes, byte for byte") {
         for (const Model& model : all_models()) {
             if (model.kind != Model::Kind::kCommitted) continue;
-            make(model, kScratch);
+            make(model, scratch());
             for (const std::string& file : model.files) {
                 CAPTURE(file);
                 const std::string committed = read_file(std::filesystem::path(DUET_SOURCE_DIR) / "models" / file);
-                const bool equal = read_file(kScratch / file) == committed;
+                const bool equal = read_file(scratch() / file) == committed;
                 CHECK_MESSAGE(equal, "models/" << file << " is stale: run `generate models " << model.name << "`");
                 CHECK(committed.size() < 1'000'000);
             }
@@ -101,8 +106,8 @@ TEST_SUITE("unit") {
                         image(x, y) = x < 13 * (y - 60) ? Rgb8{9, 9, 9} : Rgb8{200, 0, 1};
                 }
             }
-            write_png(kScratch / "test.png", image);
-            const PixelFile file = read_pixel_file(kScratch / "test.png");
+            write_png(scratch() / "test.png", image);
+            const PixelFile file = read_pixel_file(scratch() / "test.png");
             REQUIRE(file.width == width);
             REQUIRE(file.height == 97);
             REQUIRE(file.channels == 3);
@@ -125,8 +130,8 @@ TEST_SUITE("unit") {
             pixel = Rgb(part(), part(), part());
         }
         image(0, 0) = Rgb();
-        write_hdr(kScratch / "test.hdr", image);
-        const ImageRgb read = read_image(kScratch / "test.hdr");
+        write_hdr(scratch() / "test.hdr", image);
+        const ImageRgb read = read_image(scratch() / "test.hdr");
         REQUIRE(read.width() == 300);
         REQUIRE(read.height() == 5);
         for (std::size_t i = 0; i < image.size(); ++i) {
