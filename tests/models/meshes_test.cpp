@@ -36,8 +36,7 @@ std::size_t coinciding_positions(const ObjText& obj) {
     std::vector<std::array<double, 3>> sorted;
     for (const Vec3d& p : obj.positions) sorted.push_back({p.x, p.y, p.z});
     std::ranges::sort(sorted);
-    const auto rest = std::ranges::unique(sorted);
-    return rest.size();
+    return static_cast<std::size_t>(sorted.end() - std::unique(sorted.begin(), sorted.end()));
 }
 
 void check_mesh(const std::string& file, std::size_t fewest, std::size_t most, bool has_uvs) {
