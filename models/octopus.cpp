@@ -215,7 +215,7 @@ void write_octopus_mesh(const std::filesystem::path& path, double cell) {
 
 void write_octopus(const std::filesystem::path& folder) { write_octopus_mesh(folder / kOctopusFile, 0.029); }
 void write_octopus_million(const std::filesystem::path& folder) {
-    write_octopus_mesh(folder / kOctopusMillionFile, 0.0075);
+    write_octopus_mesh(folder / kOctopusMillionFile, 0.013);
 }
 
 } // namespace duet::models
