@@ -95,9 +95,9 @@ struct LightOnObject {
 
 TEST_SUITE("statistical") {
 
-    // The path tracer's means have a standard error of some 0.01 % here (checked below: at most a ninth of the
-    // tolerance), the closed form none: a false alarm is an event of nine standard errors, odds below 10^-18 for all
-    // objects and channels. A bias of 0.2 % is found with certainty; one of 0.25 % too.
+    // The path tracer's means have a standard error of some 1e-6 here (checked below to be at most a ninth of the
+    // tolerance), the closed form none. So a false alarm is an event of nine standard errors: odds below 10^-17 for all
+    // objects and channels together; and a bias of 0.25 % would go unnoticed with odds below 2 %, in practice never.
     TEST_CASE("Cornell box: direct light in closed form equals light sampling without visibility") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         const View view{scene.camera, 96, 96};

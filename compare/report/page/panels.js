@@ -93,7 +93,7 @@ function showMetrics() {
     row("PSNR", "peak signal to noise; the peak is 1", m.psnr === null ? "∞" : `${m.psnr.toFixed(2)} dB`),
     row("relMSE", "mean of squared difference / (reference² + 0.01)", figure(m.relmse)),
     row("Mean signed error", "red, green, blue; positive: the rasterizer is brighter",
-      m.mean_signed_error.map(v => v === null ? "none" : (v > 0 ? "+" : "") + figure(v)).join("  ")),
+      make("span", { class: "triple" }, ...m.mean_signed_error.map(v => make("span", {}, v === null ? "none" : (v > 0 ? "+" : "") + figure(v))))),
   ];
   if (m.worst_pixel) {
     const link = make("a", { href: "#stage" }, `${m.worst_pixel[0]}, ${m.worst_pixel[1]}`);
