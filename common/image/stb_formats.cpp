@@ -161,6 +161,9 @@ PixelFile decode_jpeg(const ImageBytes& file) {
 }
 
 PixelFile decode_tga(const ImageBytes& file) {
+    // A colour map type other than 0 and 1 is no TGA, and may be what stb takes for a JPEG, unchecked.
+    if (file.bytes.size() < 18 || byte_at(file.bytes, 1) > 1)
+        throw Error(message(file.name, ": not a readable TGA picture: no TGA header"));
     const Size size = stb_size(file, "TGA");
     check_claim(file, size.width, size.height, least_tga_bytes(file, size),
                 static_cast<double>(file.bytes.size() - 18));

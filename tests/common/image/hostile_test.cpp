@@ -228,6 +228,9 @@ TEST_SUITE("unit") {
               Containing("truncated"));
         CHECK(error_of_bytes(folder / "f.tga", tga(2, 2, 2, 24, std::string(12, 'a'))) == "no Error");
         CHECK(error_of_bytes(folder / "g.tga", tga(10, 2, 2, 24, std::string("\1abcdef\1abcdef", 14))) == "no Error");
+        // Found by fuzzing: 0xff before a JPEG's start is allowed, and led stb to decode as a TGA what is a JPEG.
+        write_image(folder / "a.jpg", some_picture());
+        CHECK(error_of_bytes(folder / "i.tga", "\xff" + read_file(folder / "a.jpg")) == Containing("no TGA header"));
         // A colour map that reaches beyond the file.
         std::string mapped = tga(1, 2, 2, 8, std::string(4, '\0'));
         mapped[1] = 1;

@@ -54,11 +54,11 @@ bool same_bits(const ImageRgb& a, const ImageRgb& b) {
 TEST_SUITE("unit") {
     TEST_CASE("8-bit files keep each code: PNG, TGA, PPM in bytes and in text") {
         const auto folder = test::scratch_folder("image_8bit");
-        for (const auto& [width, height] : {std::pair{37, 23}, {1, 1}, {300, 2}, {1, 129}}) {
-            ImageRgb image = encoded_picture(width, height);
+        for (const auto& size : {std::pair{37, 23}, {1, 1}, {300, 2}, {1, 129}}) {
+            const ImageRgb image = encoded_picture(size.first, size.second);
             for (const char* name : {"a.png", "a.tga", "a.ppm", "A.PNG"}) {
                 CAPTURE(name);
-                CAPTURE(width);
+                CAPTURE(size.first);
                 write_image(folder / name, image);
                 CHECK(same_bits(read_image(folder / name), image));
             }
@@ -82,8 +82,8 @@ TEST_SUITE("unit") {
 
     TEST_CASE("PFM and EXR keep every bit: infinity, NaN, negative zero") {
         const auto folder = test::scratch_folder("image_float");
-        for (const auto& [width, height] : {std::pair{37, 23}, {2, 1}, {300, 40}}) {
-            const ImageRgb image = radiance_picture(width, height);
+        for (const auto& size : {std::pair{37, 23}, {2, 1}, {300, 40}}) {
+            const ImageRgb image = radiance_picture(size.first, size.second);
             for (const char* name : {"a.pfm", "a.exr"}) {
                 CAPTURE(name);
                 write_image(folder / name, image);

@@ -11,9 +11,15 @@
 
 namespace duet::test {
 
+#if defined(DUET_BINARY_DIR)
+constexpr const char* kBinaryFolder = DUET_BINARY_DIR;
+#else
+constexpr const char* kBinaryFolder = "."; // where a header is compiled alone
+#endif
+
 /// A fresh folder under the build folder, of that name.
 inline std::filesystem::path scratch_folder(const std::string& name) {
-    const std::filesystem::path folder = std::filesystem::path(DUET_BINARY_DIR) / "tests/scratch" / name;
+    const std::filesystem::path folder = std::filesystem::path(kBinaryFolder) / "tests/scratch" / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder;
