@@ -2,6 +2,7 @@
 // OpenEXR takes memory for what a header claims.
 #include "common/image/formats.h"
 #include "common/system/file.h"
+#include "common/system/parallel.h"
 
 #include <Iex.h>
 #include <ImfChannelList.h>
@@ -12,6 +13,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfVersion.h>
 
 #include <algorithm>
@@ -55,6 +57,23 @@ template <typename Read> auto reading(const ImageBytes& file, Read read) {
     } catch (const std::exception& error) {
         throw Error(message(file.name, ": not a readable EXR picture: ", error.what()));
     }
+}
+
+// How many threads OpenEXR compresses that many values with: its own, started when first a large picture comes.
+int threads_for(double values) {
+#if defined(DUET_PLAIN_THREADS)
+    // As in common/system/parallel.cpp: the thread sanitizer doesn't see the locks of a library that isn't
+    // instrumented.
+    constexpr double kFewest = kInfinity;
+#else
+    constexpr double kFewest = 500'000;
+#endif
+    if (values < kFewest || available_threads() == 1) return 0;
+    static const int threads = [] {
+        Imf::setGlobalThreadCount(available_threads());
+        return available_threads();
+    }();
+    return threads;
 }
 
 struct Window {
@@ -128,7 +147,7 @@ Imf::Slice slice(Imf::PixelType type, const void* values, const Imath::Box2i& wi
 
 void read_pixels(const ImageBytes& file, const Imf::FrameBuffer& frame, const Window& window) {
     MemoryStream stream(file);
-    Imf::InputFile input(stream, 0);
+    Imf::InputFile input(stream, threads_for(static_cast<double>(window.width * window.height)));
     input.setFrameBuffer(frame);
     input.readPixels(window.box.min.y, window.box.max.y);
 }
@@ -232,7 +251,7 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
         if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
         {
             Imf::StdOFStream stream(out, path.string().c_str());
-            Imf::OutputFile output(stream, header, 0);
+            Imf::OutputFile output(stream, header, threads_for(static_cast<double>(count * channels.size())));
             output.setFrameBuffer(frame);
             output.writePixels(height);
         }

@@ -18,16 +18,16 @@ float round_up(double x) {
 } // namespace
 
 SrgbEncoder::SrgbEncoder() {
-    for (std::size_t k = 0; k < 255; ++k) change_[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
-    change_[255] = std::numeric_limits<float>::infinity();
-    std::uint8_t code = 0;
-    for (std::uint32_t i = 0; i < kIntervals; ++i) {
-        const float lower = std::bit_cast<float>(kSmallestBits + (i << kShift));
-        while (lower >= change_[code]) ++code;
-        first_code_[i] = code;
+    std::array<float, 256> change{}; // [k]: the smallest float of code k + 1
+    for (std::size_t k = 0; k < 255; ++k) change[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
+    change[255] = std::numeric_limits<float>::infinity();
+    std::uint32_t code = 0, bits = kSmallestBits;
+    for (Interval& interval : intervals_) {
+        while (std::bit_cast<float>(bits) >= change[code]) ++code;
+        interval = {code, change[code]};
+        bits += 1u << kShift;
         // What the class promises: no second change within the interval.
-        const float upper = std::bit_cast<float>(kSmallestBits + ((i + 1) << kShift));
-        DUET_CHECK(code >= 254 || change_[static_cast<std::size_t>(code) + 1] >= upper);
+        DUET_CHECK(code >= 254 || change[code + 1] >= std::bit_cast<float>(bits));
     }
 }
 

@@ -39,21 +39,23 @@ public:
     SrgbEncoder();
 
     std::uint8_t operator()(float linear) const {
-        if (!(linear > kSmallest)) return 0; // NaN too
-        if (linear >= 1) return 255;
-        const std::uint32_t interval = (std::bit_cast<std::uint32_t>(linear) - kSmallestBits) >> kShift;
-        const std::uint8_t code = first_code_[interval];
-        return static_cast<std::uint8_t>(code + (linear >= change_[code] ? 1 : 0));
+        // Written so that NaN becomes the smallest; both ends have the code of all that lies beyond.
+        const float clamped = linear > kSmallest ? linear : kSmallest;
+        const float x = clamped < kOneMinusEpsilon ? clamped : kOneMinusEpsilon;
+        const Interval& interval = intervals_[(std::bit_cast<std::uint32_t>(x) - kSmallestBits) >> kShift];
+        return static_cast<std::uint8_t>(interval.code + (x >= interval.change ? 1u : 0u));
     }
 
 private:
     static constexpr int kShift = 16; ///< 23 bits of fraction, of which 7 are kept
     static constexpr float kSmallest = 0x1p-13f;
     static constexpr std::uint32_t kSmallestBits = std::bit_cast<std::uint32_t>(kSmallest);
-    static constexpr std::size_t kIntervals = std::size_t{13} << (23 - kShift);
 
-    std::array<std::uint8_t, kIntervals> first_code_{}; ///< of the interval's lower end
-    std::array<float, 256> change_{};                   ///< [k]: the smallest float of code k + 1; [255]: infinity
+    struct Interval {
+        std::uint32_t code = 0; ///< of its lower end
+        float change = 0;       ///< the smallest float of the next code, within the interval or above
+    };
+    std::array<Interval, (std::size_t{13} << (23 - kShift))> intervals_{};
 };
 
 /// One value, by a table made on first use. Loops take `srgb_encoder()` once, outside.

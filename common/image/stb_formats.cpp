@@ -1,8 +1,15 @@
-// PNG, JPEG and TGA through stb. What stb leaves unchecked is checked here: it takes a file that ends early for one
-// that goes on with zeros, ignores PNG's checksums, and takes memory for any size that a header claims.
+// PNG, JPEG and TGA through stb, after the checks that it lacks (container_checks.h).
+#include "common/image/container_checks.h"
 #include "common/image/formats.h"
 #include "common/image/srgb.h"
 
+#include <cstdlib>
+
+// stb reads tables that a JPEG never defined, and leaves pixels unwritten whose data are missing: both are zero, not
+// what lay in memory before.
+#define STBI_MALLOC(size) std::calloc(1, size)
+#define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
+#define STBI_FREE(pointer) std::free(pointer)
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
@@ -34,9 +41,6 @@ namespace {
 static_assert(STBI_MAX_DIMENSIONS == kMaxImageSide);
 
 std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
-std::uint32_t big_endian_at(std::string_view bytes, std::size_t i) {
-    return byte_at(bytes, i) << 24 | byte_at(bytes, i + 1) << 16 | byte_at(bytes, i + 2) << 8 | byte_at(bytes, i + 3);
-}
 
 // Decoding -----------------------------------------------------------------------------------------------------------
 
@@ -118,72 +122,6 @@ template <typename Sample, typename Load> PixelFile decode_with(Load load, const
     return picture;
 }
 
-// PNG: chunks, each with a checksum (ISO/IEC 15948, §5; the checksum: Annex D).
-
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-        std::uint32_t c = i;
-        for (int bit = 0; bit < 8; ++bit) c = (c & 1) != 0 ? 0xedb88320u ^ c >> 1 : c >> 1;
-        table[i] = c;
-    }
-    return table;
-}();
-
-std::uint32_t crc32(std::string_view bytes) {
-    std::uint32_t c = 0xffffffffu;
-    for (const char byte : bytes) c = kCrcTable[(c ^ static_cast<unsigned char>(byte)) & 255] ^ c >> 8;
-    return ~c;
-}
-
-// Throws Error unless the chunks are whole up to the last and the picture's size may be true: deflate shrinks no more
-// than 1032 to 1.
-void check_png(const ImageBytes& file) {
-    constexpr std::size_t kSignature = 8, kFrame = 12; // length, type, checksum
-    std::size_t pixel_bytes = 0;
-    std::string_view type;
-    for (std::size_t at = kSignature; type != "IEND";) {
-        const std::size_t left = file.bytes.size() - at;
-        const std::size_t length = left < kFrame ? 0 : big_endian_at(file.bytes, at);
-        if (left < kFrame || length > left - kFrame)
-            throw Error(message(file.name, ": truncated: the file ends before its last chunk (IEND)"));
-        type = file.bytes.substr(at + 4, 4);
-        if (crc32(file.bytes.substr(at + 4, length + 4)) != big_endian_at(file.bytes, at + 8 + length))
-            throw Error(message(file.name, ": corrupt: wrong checksum in the chunk at byte ", at));
-        const bool first = at == kSignature;
-        if (first != (type == "IHDR") || (first && length != 13))
-            throw Error(message(file.name, ": corrupt: the header (IHDR) is not where it belongs"));
-        if (type == "IDAT") pixel_bytes += length;
-        at += kFrame + length;
-    }
-    const std::string_view header = file.bytes.substr(kSignature + 8, 13);
-    const long long width = big_endian_at(header, 0), height = big_endian_at(header, 4);
-    check_image_size(file.name, width, height);
-    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by colour type
-    const double channels = byte_at(header, 9) < kChannels.size() ? kChannels[byte_at(header, 9)] : 0;
-    const double bytes = static_cast<double>(width * height) * channels * byte_at(header, 8) / 8;
-    check_claim(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
-}
-
-// JPEG: marker segments, of which the frame's header holds the size (ITU-T T.81, Annex B). stb's own words for a size
-// it refuses are «unknown image type».
-Size jpeg_size(const ImageBytes& file) {
-    for (std::size_t at = 2; at + 9 <= file.bytes.size();) {
-        const std::uint32_t marker = byte_at(file.bytes, at + 1);
-        if (byte_at(file.bytes, at) != 0xff || marker == 0xff || (marker >= 0xd0 && marker <= 0xd9)) {
-            ++at; // padding, or markers without a segment
-            continue;
-        }
-        const auto pair_at = [&](std::size_t i) {
-            return static_cast<int>(byte_at(file.bytes, i) << 8 | byte_at(file.bytes, i + 1));
-        };
-        const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (frame) return {pair_at(at + 7), pair_at(at + 5), 0};
-        at += 2 + static_cast<std::size_t>(pair_at(at + 2));
-    }
-    throw Error(message(file.name, ": truncated: a JPEG picture without a frame"));
-}
-
 // The least bytes of a TGA's pixels: whole, or in runs of up to 128 (Truevision TGA, Version 2.0, «Data Types»).
 double least_tga_bytes(const ImageBytes& file, const Size& size) {
     const double pixels = static_cast<double>(size.width) * size.height;
@@ -217,12 +155,8 @@ PixelFile decode_png(const ImageBytes& file) {
 }
 
 PixelFile decode_jpeg(const ImageBytes& file) {
-    const Size framed = jpeg_size(file);
-    check_image_size(file.name, framed.width, framed.height);
-    const Size size = stb_size(file, "JPEG");
-    // A block of 8 x 8 values takes a bit at least, and stands for 16 blocks at most where all channels are subsampled.
-    const double pixels = static_cast<double>(size.width) * size.height;
-    check_claim(file, size.width, size.height, pixels / (64 * 16 * 8), static_cast<double>(file.bytes.size()));
+    check_jpeg(file);
+    stb_size(file, "JPEG");
     return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "JPEG");
 }
 

@@ -182,6 +182,40 @@ TEST_SUITE("unit") {
         CHECK(error_of_bytes(folder / "short.jpg", bytes.substr(0, frame + 6)) == Containing("truncated"));
     }
 
+    TEST_CASE("JPEG: segments that are not whole, and tables that would not fit") {
+        const auto folder = test::scratch_folder("hostile_jpeg_segments");
+        write_image(folder / "a.jpg", some_picture());
+        const std::string bytes = read_file(folder / "a.jpg");
+        const auto error = [&](const std::string& changed) { return error_of_bytes(folder / "b.jpg", changed); };
+        const std::size_t table = bytes.find("\xff\xc4"), frame = bytes.find("\xff\xc0");
+        REQUIRE(table != std::string::npos);
+        // Found by fuzzing: stb writes beyond its table.
+        CHECK(error(std::string(bytes).replace(table + 5, 16, std::string(16, '\xff'))) ==
+              Containing("a Huffman table of 4080 codes"));
+        CHECK(error(std::string(bytes).replace(table + 2, 2, std::string(2, '\0'))) ==
+              Containing("a segment of 0 bytes"));
+        CHECK(error(std::string(bytes).replace(table + 2, 2, "\xff\xff")) == Containing("truncated"));
+        CHECK(error(bytes.substr(0, bytes.size() - 2)) == Containing("before its end marker (EOI)"));
+        CHECK(error(bytes.substr(0, frame) + "\xff\xd9") == Containing("before its frame (SOF)"));
+        // No tables at all, or no scan: whatever comes of it, the same each time.
+        const std::size_t scan = bytes.find("\xff\xda");
+        for (const std::string& part :
+             {bytes.substr(0, table) + bytes.substr(scan), bytes.substr(0, scan) + "\xff\xd9"}) {
+            write_file(folder / "c.jpg", part);
+            std::vector<float> first;
+            for (int i = 0; i < 3; ++i) {
+                const std::vector<char> dirt(100000, static_cast<char>(i + 65));
+                std::vector<float> values;
+                try {
+                    values = read_pixel_file(folder / "c.jpg").values;
+                } catch (const Error&) {
+                }
+                if (i == 0) first = values;
+                CHECK(values == first);
+            }
+        }
+    }
+
     TEST_CASE("TGA: sizes beyond the file") {
         const auto folder = test::scratch_folder("hostile_tga");
         CHECK(error_of_bytes(folder / "a.tga", tga(2, 30000, 3000, 24, "abc")) == Containing("cannot be in its"));
