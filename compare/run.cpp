@@ -39,6 +39,13 @@ fs::path output_folder(const fs::path& folder) {
     return folder;
 }
 
+/// Found out before a long render, not after.
+void check_stats(const std::string& stats) {
+    if (stats.empty() || stats == "-") return;
+    const fs::path folder = fs::absolute(stats).parent_path();
+    if (!fs::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
+}
+
 /// Renders the picture, then the hits. Empty where a signal came.
 std::optional<Side> render_side(const Pipeline& pipeline, const View& view, const RunOptions& options,
                                 const InterruptFlag& interrupt) {
@@ -88,6 +95,7 @@ void print_summary(const fs::path& page, const Side& raster, const Side& raytrac
 } // namespace
 
 int run(const RunOptions& options) {
+    check_stats(options.stats);
     const InterruptFlag interrupt;
     Stopwatch watch;
     const Scene scene = load_scene(options.scene);

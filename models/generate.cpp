@@ -19,4 +19,9 @@ std::span<const Model> all_models() {
     return models;
 }
 
+void make(const Model& model, const std::filesystem::path& folder) {
+    for (const std::string& file : model.files) std::filesystem::create_directories((folder / file).parent_path());
+    model.write(folder);
+}
+
 } // namespace duet::models

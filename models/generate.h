@@ -27,6 +27,9 @@ struct Model {
 /// All models, in the order in which they are made.
 std::span<const Model> all_models();
 
+/// Makes one model's files, and the folders they lie in, below the folder.
+void make(const Model& model, const std::filesystem::path& folder);
+
 // One function a model, each in the file of its name.
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);

@@ -3,7 +3,6 @@
 #include "models/generate.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
 namespace {
@@ -32,11 +31,6 @@ const Model& model_named(const std::string& name) {
     const auto found = std::ranges::find(models, name, &Model::name);
     if (found == models.end()) throw duet::Error("\"" + name + "\" is no model; generate --help lists them");
     return *found;
-}
-
-void make(const Model& model, const std::filesystem::path& folder) {
-    for (const std::string& file : model.files) std::filesystem::create_directories((folder / file).parent_path());
-    model.write(folder);
 }
 
 int run(const std::vector<std::string>& arguments) {

@@ -1,4 +1,4 @@
-// octopus.obj: an octopus on the ground, one arm wound around a ball: an implicit surface, made a mesh of some 150,000
+// octopus.obj: an octopus on the ground, one arm wound around a ball: an implicit surface, made a mesh of some 200,000
 // triangles (or a million). The scene's eyes and ball stand where the constants of octopus.h say.
 #include "models/octopus.h"
 
@@ -79,7 +79,7 @@ Arm ground_arm(const ArmPlan& plan) {
         elevation = lerp(elevation, clamp(landing, -1.0, 0.6), 0.12);
         const double rise = elevation * (1 - plan.lift * tip) + std::abs(curled) * plan.lift;
         const Vec3d ahead(std::cos(azimuth) * std::cos(rise), std::sin(rise), std::sin(azimuth) * std::cos(rise));
-        // Suckers face the ground, and along the tip the inside of its curl... or, where it stands, upwards and back.
+        // Suckers face the ground, and along the tip the inside of its curl or, where it stands, upwards and back.
         const double turn = plan.curl > 0 ? 1 : -1;
         const Vec3d inwards = Vec3d(-std::sin(azimuth), 0, std::cos(azimuth)) * turn;
         const Vec3d standing(-std::cos(azimuth) * std::sin(rise), std::cos(rise), -std::sin(azimuth) * std::sin(rise));
@@ -215,7 +215,7 @@ void write_octopus_mesh(const std::filesystem::path& path, double cell) {
 
 void write_octopus(const std::filesystem::path& folder) { write_octopus_mesh(folder / kOctopusFile, 0.029); }
 void write_octopus_million(const std::filesystem::path& folder) {
-    write_octopus_mesh(folder / kOctopusMillionFile, 0.0075);
+    write_octopus_mesh(folder / kOctopusMillionFile, 0.013);
 }
 
 } // namespace duet::models

@@ -10,14 +10,14 @@ const Vec3d kSun = normalize(Vec3d(-0.75, 0.42, 0.5));
 
 Rgbd sky(Vec3d w) {
     const double height = max(w.y, 0.0), sun = max(dot(w, kSun), 0.0);
-    const Rgbd zenith(0.16, 0.32, 0.75), horizon(0.95, 0.78, 0.62);
-    Rgbd color = lerp(horizon, zenith, std::pow(smooth_step(0.0, 0.9, height), 0.55));
+    const Rgbd zenith(0.13, 0.30, 0.78), horizon(0.84, 0.76, 0.70);
+    Rgbd color = lerp(horizon, zenith, std::pow(smooth_step(0.0, 0.65, height), 0.5));
     // Clouds lie in a plane overhead and thin out towards the horizon.
     const Vec3d plane = w * (1.6 / max(w.y, 0.05));
     double cloud = 0, weight = 0.6;
     for (double frequency = 1; frequency < 12; frequency *= 2.1, weight *= 0.5)
         cloud += weight * gradient_noise({plane.x * frequency, 3.7 * frequency, plane.z * frequency});
-    const double cover = smooth_step(-0.05, 0.35, cloud) * smooth_step(0.03, 0.25, height);
+    const double cover = smooth_step(-0.05, 0.35, cloud) * smooth_step(0.05, 0.3, height);
     const Rgbd lit = Rgbd(1.1, 1.02, 0.95) + Rgbd(2.2, 1.5, 0.9) * std::pow(sun, 6.0);
     color = lerp(color, lit, 0.75 * cover);
     return color + Rgbd(1.6, 1.0, 0.5) * std::pow(sun, 5.0) + Rgbd(60, 46, 30) * std::pow(sun, 400.0);

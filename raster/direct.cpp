@@ -80,17 +80,6 @@ template <typename BsdfType> Rgb reflected(const BsdfType& bsdf, const ShadingPo
     return bsdf.eval(point.wo, wi, TransportMode::kRadiance) * abs_cos_theta(wi) * light.irradiance;
 }
 
-/// Near silhouettes interpolated normals turn away from the viewer. There the direction to him is lifted just above the
-/// shading normal's horizon, or the material would show its other side.
-Vec3 lifted(Vec3 wo, float side) {
-    constexpr float kLowest = 1e-4f;
-    if (wo.z * side >= kLowest) return wo;
-    const float flat = std::sqrt(wo.x * wo.x + wo.y * wo.y);
-    if (flat == 0) return {0, 0, side};
-    const float scale = std::sqrt(1 - kLowest * kLowest) / flat;
-    return {wo.x * scale, wo.y * scale, kLowest * side};
-}
-
 } // namespace
 
 ShadingPoint::ShadingPoint(const SurfacePoint& point, Vec3 to_viewer)
@@ -98,7 +87,7 @@ ShadingPoint::ShadingPoint(const SurfacePoint& point, Vec3 to_viewer)
     const float side = dot(point.ng, to_viewer) < 0 ? -1.0f : 1.0f;
     ng = point.ng * side;
     ns = point.ns * side;
-    wo = lifted(frame.to_local(to_viewer), side);
+    wo = lifted_above_horizon(frame.to_local(to_viewer), side);
 }
 
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {

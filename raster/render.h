@@ -22,8 +22,9 @@ Shading shading(std::string_view name);
 
 struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
-    bool environment = true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
-    bool cull = true;        ///< leave out back faces of closed meshes and what is outside the frustum
+    bool environment =
+        true;         ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
+    bool cull = true; ///< leave out back faces of closed meshes and what is outside the frustum
 };
 
 struct PreparedData; // raster/prepare.h

@@ -8,6 +8,7 @@
 
 #include "common/image/rgb.h"
 
+#include <cmath>
 #include <optional>
 
 namespace duet {
@@ -27,5 +28,18 @@ struct BsdfSample {
 inline float cos_theta(Vec3 w) { return w.z; }
 inline float abs_cos_theta(Vec3 w) { return abs(w.z); }
 inline bool same_hemisphere(Vec3 a, Vec3 b) { return a.z * b.z > 0; }
+
+/// The direction to the viewer, in the shading frame, kept on the side that is really seen. Interpolated normals make
+/// surfaces near their silhouette face away though they are seen: there wo is lifted just above the shading horizon, or
+/// the material would show its other side, as a dark rim. `side` is the sign of the geometric normal's cosine with the
+/// viewer.
+inline Vec3 lifted_above_horizon(Vec3 wo, float side) {
+    constexpr float kLowest = 1e-4f;
+    if (wo.z * side >= kLowest) return wo;
+    const float flat = std::sqrt(wo.x * wo.x + wo.y * wo.y);
+    if (flat == 0) return {0, 0, side};
+    const float scale = std::sqrt(1 - kLowest * kLowest) / flat;
+    return {wo.x * scale, wo.y * scale, kLowest * side};
+}
 
 } // namespace duet

@@ -81,6 +81,7 @@ bool bake(Mesh& mesh, const Mat4& m, bool textured) {
     const bool mirrors = determinant3(m) < 0;
     if (mirrors && textured && mesh.uvs.empty()) return false;
     const Mat4d forward(m), inverse = inverse_affine(forward);
+    if (!mesh.normals.empty() && !similarity_scale(forward)) return false;
     for (Vec3& p : mesh.positions) p = point(forward, p);
     for (Vec3& n : mesh.normals) n = Vec3(normalize(transform_normal(inverse, Vec3d(n))));
     if (mirrors)

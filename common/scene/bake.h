@@ -12,6 +12,8 @@ namespace duet {
 /// nothing to be seen:
 /// - not where a texture is looked up in the object's space (noise, solid checkers);
 /// - a sphere only under a rotation, reflection and uniform scale, and a textured one under no rotation or reflection;
+/// - a mesh with normals only under the same: their lengths, and so the weights of their interpolation, would change at
+/// each vertex;
 /// - mirrored quads and triangles keep their front side by an exchange of edges or corners, so not where the texture
 /// coordinates would be
 ///   exchanged, too;

@@ -61,9 +61,10 @@ Scene scene_around_mesh(const std::filesystem::path& path) {
     scene.shapes.push_back(QuadList{{Quad{Vec3(Vec3d(center.x - reach, ground, center.z + reach)),
                                           Vec3(Vec3d(2 * reach, 0, 0)), Vec3(Vec3d(0, 0, -2 * reach))}}});
     scene.objects = {std::move(object), std::move(floor)};
-    // Together about π of irradiance on a surface that lies open: white is just white.
-    scene.lights.push_back(SunLight{Vec3(normalize(Vec3d(-0.55, -1, -0.6))), Rgb(2.2f, 2.1f, 1.9f)});
-    scene.environment = SkyEnvironment{Rgb(0.62f, 0.62f, 0.62f), Rgb(0.34f, 0.46f, 0.68f)};
+    // The sun stands to the camera's left, so that shapes show. Sun and sky together light open ground to about half of
+    // white.
+    scene.lights.push_back(SunLight{Vec3(normalize(Vec3d(1, -1.15, -0.45))), Rgb(2.7f, 2.5f, 2.2f)});
+    scene.environment = SkyEnvironment{Rgb(0.5f, 0.47f, 0.43f), Rgb(0.26f, 0.31f, 0.4f)};
     return scene;
 }
 

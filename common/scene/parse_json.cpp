@@ -20,6 +20,13 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
     return message("line ", line, ", column ", column);
 }
 
+/// At most 200 bytes, on one line.
+std::string printable(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+    return text.size() > 200 ? text.substr(0, 200) + " …" : text;
+}
+
 /// «[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while …» without what comes before
 /// «syntax».
 std::string reason(const std::string& what) {
@@ -28,10 +35,7 @@ std::string reason(const std::string& what) {
     if (text.starts_with("[json") && bracket != std::string::npos) text.erase(0, bracket + 2);
     const std::size_t colon = text.find(": ");
     if (text.starts_with("parse error at") && colon != std::string::npos) text.erase(0, colon + 2);
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
-    if (text.size() > 200) text = text.substr(0, 200) + " …";
-    return text;
+    return printable(text);
 }
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
@@ -52,7 +56,7 @@ public:
     bool end_array() override { return close(); }
     bool key(string_t& value) override {
         if (!seen_.back().insert(value).second)
-            throw Error(message(file_.string(), ": the key ", in_quotes(value), " is given twice in one object"));
+            throw Error(message(file_.string(), ": ", path(), ": the key ", in_quotes(value), " is given twice"));
         open_.back()->keys.push_back(std::move(value));
         return true;
     }
@@ -62,6 +66,14 @@ public:
     }
 
 private:
+    /// JSON path of the innermost open value.
+    std::string path() const {
+        std::string text = "$";
+        for (std::size_t i = 0; i + 1 < open_.size(); ++i)
+            text += open_[i]->kind == JsonNode::Kind::kObject ? "." + open_[i]->keys.back()
+                                                              : message("[", open_[i]->items.size() - 1, "]");
+        return printable(text);
+    }
     bool add_number(double value) { return add({.kind = JsonNode::Kind::kNumber, .number = value}); }
     /// Puts the value in its place; the pointers of open_ stay valid, as only the innermost open node grows.
     bool add(JsonNode&& node) {

@@ -41,26 +41,38 @@ const SceneNode& group_of(const Scene& scene, const SceneNode& instance, const G
                 suggestion(instance.instance_of, known));
 }
 
-/// Checks that no group holds itself and that nothing is nested too deep, over all groups, shown or not.
-class NestingCheck {
+/// Checks that no group holds itself, and that nothing is nested too deep or expands to too much, over all groups,
+/// shown or not. Each node is looked at once: thirty groups of two instances of the next each are a billion objects,
+/// but not a billion steps here.
+class ExtentCheck {
 public:
-    NestingCheck(const Scene& scene, const GroupIndex& groups) : scene_(&scene), groups_(&groups) {}
+    ExtentCheck(const Scene& scene, const GroupIndex& groups) : scene_(&scene), groups_(&groups) {}
 
-    /// The height of the tree under a node; `depth` nodes are above it.
-    std::size_t height(const SceneNode& node, std::size_t depth) {
-        if (node.shape) return 0;
+    /// The extent of the tree under a node, itself included; `depth` nodes are above it.
+    struct Extent {
+        std::size_t height = 0, nodes = 1;
+        bool open = false; ///< still being worked out
+    };
+    Extent check(const SceneNode& node, std::size_t depth) {
+        if (node.shape) return {};
         if (depth > kMaxGroupDepth) fail_depth(node);
-        const auto [entry, added] = height_.try_emplace(&node, kOpen);
-        if (!added && entry->second == kOpen)
+        const auto [entry, added] = extents_.try_emplace(&node, Extent{0, 1, true});
+        if (!added && entry->second.open)
             fail_at(*scene_, node, "the group " + in_quotes(node.name) + " is part of itself");
         if (!added) {
-            if (depth + entry->second > kMaxGroupDepth) fail_depth(node);
+            if (depth + entry->second.height > kMaxGroupDepth) fail_depth(node);
             return entry->second;
         }
-        std::size_t result = 0;
-        if (!node.instance_of.empty()) result = 1 + height(group_of(*scene_, node, *groups_), depth + 1);
-        for (const SceneNode& member : node.members) result = std::max(result, 1 + height(member, depth + 1));
-        return height_[&node] = result;
+        Extent extent;
+        const auto add = [&](const Extent& part) {
+            extent.height = std::max(extent.height, 1 + part.height);
+            extent.nodes += part.nodes;
+            if (extent.nodes > kMaxObjects)
+                fail_at(*scene_, node, message("groups and instances expand to more than ", kMaxObjects, " objects"));
+        };
+        if (!node.instance_of.empty()) add(check(group_of(*scene_, node, *groups_), depth + 1));
+        for (const SceneNode& member : node.members) add(check(member, depth + 1));
+        return extents_[&node] = extent;
     }
 
 private:
@@ -68,10 +80,9 @@ private:
         fail_at(*scene_, node, message("groups and instances are nested more than ", kMaxGroupDepth, " deep"));
     }
 
-    static constexpr std::size_t kOpen = ~std::size_t{0};
     const Scene* scene_;
     const GroupIndex* groups_;
-    std::unordered_map<const SceneNode*, std::size_t> height_;
+    std::unordered_map<const SceneNode*, Extent> extents_;
 };
 
 /// Walks the tree and appends an Object for each shape it comes by.
@@ -79,12 +90,8 @@ class Flattener {
 public:
     Flattener(const GroupIndex& groups, Scene& scene) : groups_(&groups), scene_(&scene) {}
 
-    void visit(const SceneNode& node, const MotionTransform& parent, const std::string& prefix, bool definition) {
-        // Counts groups, too: sixty nested groups of two empty instances each would otherwise take forever and yield
-        // nothing.
-        if (++visited_ > kMaxObjects)
-            fail_at(*scene_, node, message("groups and instances expand to more than ", kMaxObjects, " objects"));
-        if (node.hidden && !definition) return;
+    void visit(const SceneNode& node, const MotionTransform& parent, const std::string& prefix) {
+        if (node.hidden) return;
         const MotionTransform motion = parent * node.motion;
         const std::string name = prefix + node.name;
         if (node.shape) {
@@ -92,14 +99,14 @@ public:
         } else if (!node.instance_of.empty()) {
             show_group(group_of(*scene_, node, *groups_), motion, name);
         } else {
-            for (const SceneNode& member : node.members) visit(member, motion, name + "/", false);
+            for (const SceneNode& member : node.members) visit(member, motion, name + "/");
         }
     }
 
 private:
     /// An instance stands for the group with the group's own transform; its members carry the instance's name.
     void show_group(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
-        for (const SceneNode& member : group.members) visit(member, motion * group.motion, name + "/", false);
+        for (const SceneNode& member : group.members) visit(member, motion * group.motion, name + "/");
     }
 
     void place(const SceneNode& node, const MotionTransform& motion, const std::string& name) {
@@ -120,7 +127,6 @@ private:
 
     const GroupIndex* groups_;
     Scene* scene_;
-    std::size_t visited_ = 0;
 };
 
 } // namespace
@@ -129,10 +135,15 @@ void read_objects(const JsonValue& objects, const NameIndex& materials, ImageCac
     const std::vector<SceneNode> nodes = SceneNodeReader(materials, images, scene).read(objects);
     GroupIndex groups;
     index_groups(scene, nodes, groups);
-    NestingCheck nesting(scene, groups);
-    for (const SceneNode& node : nodes) nesting.height(node, 0);
+    ExtentCheck extents(scene, groups);
+    std::size_t total = 0;
+    for (const SceneNode& node : nodes) {
+        total += extents.check(node, 0).nodes;
+        if (total > kMaxObjects)
+            fail_at(scene, node, message("from here on there are more than ", kMaxObjects, " objects"));
+    }
     Flattener flattener(groups, scene);
-    for (const SceneNode& node : nodes) flattener.visit(node, {}, "", false);
+    for (const SceneNode& node : nodes) flattener.visit(node, {}, "");
 }
 
 std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, const ObjFile& obj, ImageCache& images,
@@ -140,7 +151,11 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
     std::vector<std::int32_t> textures;
     for (const ObjTexture& texture : obj.textures) {
         textures.push_back(static_cast<std::int32_t>(scene.textures.textures.size()));
-        scene.textures.textures.push_back(ImageTexture{images.load(texture.file), texture.scale, true});
+        try {
+            scene.textures.textures.push_back(ImageTexture{images.load(texture.file), texture.scale, true});
+        } catch (const Error& error) {
+            throw Error(message(file.string(), ": a map_Kd of its MTL file: ", error.what()));
+        }
     }
     const auto map_slot = [&](RgbSlot& slot) {
         if (slot.texture >= 0) slot.texture = textures[static_cast<std::size_t>(slot.texture)];

@@ -15,8 +15,13 @@ ObjectTransform object_transform(const Object& object, float time) {
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
-    const ObjectTransform transform = object_transform(object, ray.time);
-    SurfacePoint point = surface_point(shape, hit, ray, transform.to_world, transform.to_object, object.identity);
+    SurfacePoint point;
+    if (object.moving) {
+        const ObjectTransform moved = object_transform(object, ray.time);
+        point = surface_point(shape, hit, ray, moved.to_world, moved.to_object, false);
+    } else {
+        point = surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity);
+    }
     point.object = hit.object;
     point.material = material_index(scene, hit.object, hit.primitive);
     return point;

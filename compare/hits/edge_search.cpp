@@ -17,12 +17,23 @@ struct Search {
 
     /// Traces one displaced ray; true when both hits have been found.
     bool try_at(Vec2d p) {
-        if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) note(tracer.nearest(pinhole.ray(p)));
+        if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) trace(p);
         return result.both();
     }
-    void note(const ExactHit& hit) {
-        if (hit.same_as(a)) result.found_a = true;
-        if (hit.same_as(b)) result.found_b = true;
+    ExactHit trace(Vec2d p) {
+        const Rayd ray = pinhole.ray(p);
+        const ExactHit nearest = tracer.nearest(ray);
+        result.found_a = result.found_a || nearest.same_as(a);
+        result.found_b = result.found_b || nearest.same_as(b);
+        result.tied_a = result.tied_a || meets(ray, nearest, a);
+        result.tied_b = result.tied_b || meets(ray, nearest, b);
+        return nearest;
+    }
+    /// Whether the ray meets a pipeline's hit just where it meets its nearest.
+    bool meets(const Rayd& ray, const ExactHit& nearest, const Hit& hit) const {
+        if (!nearest.valid() || !hit.valid()) return false;
+        const ExactHit other = tracer.intersect(ray, hit.object, hit.primitive);
+        return other.valid() && distance_apart(tracer, ray, nearest, other) <= kMeetingTolerance;
     }
 };
 
@@ -103,8 +114,7 @@ bool try_primitive(Search& search, const Hit& hit) {
 
 EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
     Search search{tracer, pinhole, pixel, a, b, {}};
-    search.result.center = tracer.nearest(pinhole.ray(pixel));
-    search.note(search.result.center);
+    search.result.center = search.trace(pixel);
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));
     return search.result;

@@ -11,13 +11,19 @@ namespace duet::compare {
 /// distance.
 inline constexpr double kEdgeRadius = 1.0 / 128;
 
-/// Which of two pipelines' hits a ray within kEdgeRadius of the pixel's centre returns as its nearest, in double
-/// precision.
+/// At the edge where a hidden face meets the one before it, both lie at the same distance; rounding then decides which
+/// of the two a pipeline returns (equal distances: the lower primitive). This near, in |Δt|·|cos θ| / t, the hidden one
+/// is as good as seen: some ten roundings of a float.
+inline constexpr double kMeetingTolerance = 1e-6;
+
+/// What rays within kEdgeRadius of the pixel's centre see of two pipelines' hits, in double precision.
 struct EdgeSearch {
-    bool found_a = false, found_b = false;
-    ExactHit center; ///< what the undisplaced ray returns
+    bool found_a = false, found_b = false; ///< a ray returns it as its nearest hit
+    bool tied_a = false, tied_b = false;   ///< a ray meets it within kMeetingTolerance of its nearest hit
+    ExactHit center;                       ///< what the undisplaced ray returns
 
     bool both() const { return found_a && found_b; }
+    bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
 };
 
 /// Displaces the ray through `pixel` on circles, then into the parts of the two primitives that lie within reach

@@ -191,4 +191,10 @@ std::vector<Vec3d> ExactTracer::corners(std::uint32_t object, std::uint32_t prim
     return points;
 }
 
+double distance_apart(const ExactTracer& tracer, const Rayd& ray, const ExactHit& a, const ExactHit& b) {
+    const double cosine =
+        max(tracer.cosine(ray, a.object, a.primitive, a.t), tracer.cosine(ray, b.object, b.primitive, b.t));
+    return std::abs(a.t - b.t) * cosine / min(a.t, b.t);
+}
+
 } // namespace duet::compare

@@ -52,4 +52,9 @@ private:
     BoxTree object_tree_;
 };
 
+/// How far two hits of one ray are apart: |Δt|·|cos θ| / t, the steeper of the two surfaces and the nearer of the two
+/// distances taken. Measured along the surface's normal, or a grazing ray would be asked for more than its rounded
+/// direction can give.
+double distance_apart(const ExactTracer& tracer, const Rayd& ray, const ExactHit& a, const ExactHit& b);
+
 } // namespace duet::compare

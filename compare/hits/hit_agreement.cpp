@@ -16,21 +16,19 @@ struct Judge {
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
     static Vec2d center(int x, int y) { return {x + 0.5, y + 0.5}; }
 
-    /// Whether the ray meets both primitives at one distance; the steeper of the two surfaces sets the measure.
+    /// Whether the ray meets both primitives at one distance.
     bool depth_tie(const Rayd& r, const Hit& a, const Hit& b) const {
         if (!a.valid() || !b.valid()) return false;
         const ExactHit ea = tracer.intersect(r, a.object, a.primitive), eb = tracer.intersect(r, b.object, b.primitive);
-        if (!ea.valid() || !eb.valid()) return false;
-        const double cosine =
-            max(tracer.cosine(r, ea.object, ea.primitive, ea.t), tracer.cosine(r, eb.object, eb.primitive, eb.t));
-        return std::abs(ea.t - eb.t) * cosine <= kDepthTolerance * min(ea.t, eb.t);
+        return ea.valid() && eb.valid() && distance_apart(tracer, r, ea, eb) <= kDepthTolerance;
     }
 
     Verdict verdict(int x, int y, const Hit& a, const Hit& b, ExactHit& exact) const {
         const EdgeSearch search = search_edge(tracer, pinhole, center(x, y), a, b);
         exact = search.center;
         if (search.both()) return Verdict::kEdge;
-        return depth_tie(ray(x, y), a, b) ? Verdict::kDepthTie : Verdict::kUnexplained;
+        const bool tie = depth_tie(ray(x, y), a, b) || search.both_or_tied();
+        return tie ? Verdict::kDepthTie : Verdict::kUnexplained;
     }
 
     /// |Δt|·|cos θ| / t of two hits of one primitive; infinity where a distance is no positive number.

@@ -12,14 +12,15 @@
 namespace duet::compare {
 
 enum class Verdict : std::uint8_t {
-    kSame,       ///< same object and primitive, or nothing in both
-    kEdge,       ///< double-precision rays within 1/128 pixel of the centre return the one and the other
-    kDepthTie,   ///< the double-precision ray meets both at the same distance, within kDepthTolerance
+    kSame,     ///< same object and primitive, or nothing in both
+    kEdge,     ///< double-precision rays within 1/128 pixel of the centre return the one and the other
+    kDepthTie, ///< the double-precision ray meets both at the same distance, within kDepthTolerance; or as kEdge, but
+               ///< one of the two is met just where the other or a neighbour hides it (kMeetingTolerance in
+               ///< edge_search.h)
     kUnexplained ///< neither: one of the pipelines is wrong
 };
 
-/// Distances are equal where |Δt|·|cos θ| ≤ kDepthTolerance·t: measured along the surface's normal, or a grazing ray
-/// would be asked for more than its rounded direction can give.
+/// Distances are equal where |Δt|·|cos θ| ≤ kDepthTolerance·t.
 inline constexpr double kDepthTolerance = 1e-5;
 
 /// A pixel whose hits differ without explanation.

@@ -1,5 +1,7 @@
 #include "compare/report/false_color.h"
 
+#include "common/image/srgb.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +14,6 @@ namespace {
 constexpr std::array<Rgb, 9> kAnchors = {Rgb(8, 48, 107),    Rgb(33, 102, 172),  Rgb(82, 148, 206),
                                          Rgb(167, 205, 230), Rgb(246, 246, 244), Rgb(250, 203, 150),
                                          Rgb(233, 143, 53),  Rgb(190, 92, 8),    Rgb(115, 49, 6)};
-
-/// The true curve (IEC 61966-2-1), both ways being the business of image files; here a colour table becomes linear.
-float decode_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
 double luminance_difference(const ImageRgb& a, const ImageRgb& b, std::size_t i) {
     return luminance(Rgbd(a[i])) - luminance(Rgbd(b[i]));
@@ -33,7 +32,7 @@ ImageRgb difference_picture(const ImageRgb& a, const ImageRgb& b, double range) 
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const double difference = luminance_difference(a, b, i);
         const Rgb color = std::isfinite(difference) ? diverging_color(difference / range) : Rgb(1, 0, 1);
-        picture[i] = {decode_srgb(color.r), decode_srgb(color.g), decode_srgb(color.b)};
+        picture[i] = {srgb_decode(color.r), srgb_decode(color.g), srgb_decode(color.b)};
     }
     return picture;
 }

@@ -66,6 +66,13 @@ json stages(const Rendering& rendering) {
     return list;
 }
 
+/// What was left out, in order: [[what, why, count or −1], …].
+json skipped(const Rendering& rendering) {
+    json list = json::array();
+    for (const Skipped& s : rendering.statistics.skipped) list.push_back({s.what, s.why, s.count});
+    return list;
+}
+
 void replace_mark(std::string& text, const std::string& mark, std::string_view value) {
     const std::size_t at = text.find("{{" + mark + "}}");
     DUET_CHECK(at != std::string::npos);
@@ -114,6 +121,7 @@ std::string report_page(const ReportPage& page) {
                        {"raytrace", picture_planes(page.raytrace.radiance)},
                        {"hits", hit_planes(page)},
                        {"stages", {{"raster", stages(page.raster)}, {"raytrace", stages(page.raytrace)}}},
+                       {"skipped", {{"raster", skipped(page.raster)}, {"raytrace", skipped(page.raytrace)}}},
                        {"report", page.report}};
     std::string text(kReportHtml);
     replace_mark(text, "title", escape_html(title));

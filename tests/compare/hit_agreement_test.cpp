@@ -130,6 +130,22 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a hidden face counts where it meets the one before it, at the edge, and nowhere else") {
+        // A block's front and, seen through it from above, its bottom: they meet at y = 0.5 ± offset, z = 0.
+        for (const double offset : {-1e-4, 0.1}) {
+            Scene scene = test::empty_scene();
+            const float edge = static_cast<float>(0.5 - offset);
+            test::add(scene, QuadList{{facing(-20, 20, edge, 20, 0), Quad{{-20, edge, 0}, {40, 0, 0}, {0, 5, -5}}}});
+            const Image<Hit> raster = perfect_hits(scene, plain_view());
+            CAPTURE(offset);
+            REQUIRE(raster(20, 31).valid() == (offset > 0)); // pixel row 31 is centred at y = 0.5
+            Image<Hit> raytrace = raster;
+            set(raytrace, 20, 31, 0, 1);
+            const bool at_edge = offset < 0;
+            check_counts(compare_hits(scene, plain_view(), raster, raytrace), 0, at_edge, !at_edge);
+        }
+    }
+
     TEST_CASE("surfaces at one distance are a depth tie, surfaces further apart than the tolerance are not") {
         for (const float gap : {0.0f, 0.5e-4f, 2e-4f}) { // tolerance at t = 10: 1e-4
             Scene scene = test::empty_scene();

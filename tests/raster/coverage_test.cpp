@@ -105,8 +105,8 @@ TEST_SUITE("unit") {
         Random random(1);
         for (int i = 0; i < 1500; ++i) {
             // From sub-pixel ones over those about the picture to the largest that the guard band lets through.
-            const int reach =
-                std::array{200, 2000, kFull, 20 * kFull, static_cast<int>(kGuardBand) * kSubPixels}[i % 5u];
+            const int reach = std::array{200, 2000, kFull, 20 * kFull,
+                                         static_cast<int>(kGuardBand) * kSubPixels}[static_cast<std::size_t>(i) % 5];
             const FixedPoint near = random.point(0, kFull);
             const auto corner = [&] {
                 return FixedPoint{near.x + random.integer(-reach, reach), near.y + random.integer(-reach, reach)};

@@ -104,6 +104,14 @@ public:
         return nearest;
     }
 
+    /// The point of a triangle or quad at (u, v); far away for a sphere, where they say nothing.
+    Vec3d position(std::uint32_t object, std::uint32_t primitive, float u, float v) const {
+        for (const Facet& f : facets_)
+            if (f.object == object && f.primitive == primitive)
+                return f.p + f.a * static_cast<double>(u) + f.b * static_cast<double>(v);
+        return Vec3d(1e30, 1e30, 1e30);
+    }
+
 private:
     struct Facet {
         std::uint32_t object, primitive;
@@ -207,7 +215,13 @@ inline Agreement compare_hits(const Scene& scene, const View& view, const Image<
                 }
                 continue;
             }
+            // First where the hit itself says it is, which finds the thinnest sliver; then all around.
             bool edge = false;
+            if (hit.valid()) {
+                const Vec3d p = pinhole.project(oracle.position(hit.object, hit.primitive, hit.u, hit.v));
+                const bool close = std::hypot(p.x - x - 0.5, p.y - y - 0.5) <= 1.0 / 128;
+                edge = close && matches(oracle.trace(pinhole.ray({p.x, p.y})));
+            }
             for (int i = 0; i < 16 && !edge; ++i) {
                 const double angle = 2 * kPiDouble * i / 16, reach = 1.0 / 128;
                 edge = matches(

@@ -123,17 +123,21 @@ TEST_SUITE("statistical") {
     // Six standard errors over ten seeds: exceeded by chance once in 5,000 times.
     TEST_CASE("in a glowing cavity light sampling adds up to the same sums") {
         const Scene scene = glowing_cavity(0.5f);
-        for (const auto& [integrator, depth, expected] :
-             {std::tuple(Integrator::kPath, 0, 1.0), std::tuple(Integrator::kPath, 1, 1.5),
-              std::tuple(Integrator::kPath, 2, 1.75), std::tuple(Integrator::kPath, 3, 1.875),
-              std::tuple(Integrator::kPath, 64, 2.0), std::tuple(Integrator::kDirect, 64, 1.5)}) {
-            CAPTURE(depth);
+        struct Sum {
+            Integrator integrator;
+            int depth;
+            double expected;
+        };
+        for (const Sum& sum :
+             {Sum{Integrator::kPath, 0, 1.0}, Sum{Integrator::kPath, 1, 1.5}, Sum{Integrator::kPath, 2, 1.75},
+              Sum{Integrator::kPath, 3, 1.875}, Sum{Integrator::kPath, 64, 2.0}, Sum{Integrator::kDirect, 64, 1.5}}) {
+            CAPTURE(sum.depth);
             Settings settings;
-            settings.integrator = integrator;
-            settings.max_depth = depth;
+            settings.integrator = sum.integrator;
+            settings.max_depth = sum.depth;
             settings.samples_per_pixel = 16;
             const Estimate e = estimate(scene, 16, settings);
-            CHECK(std::abs(e.mean - expected) <= 6 * e.error + 1e-6);
+            CHECK(std::abs(e.mean - sum.expected) <= 6 * e.error + 1e-6);
             CHECK(e.error < 0.01);
         }
     }

@@ -47,8 +47,9 @@ function setMode(mode) {
 }
 
 function captionHits() {
+  element("steps").hidden = !disagreeing.length;
   element("caption").textContent = disagreeing.length
-    ? "Marked: pixels where the two see different primitives. N goes to the next one."
+    ? "Marked: pixels where the two see different primitives."
     : "Both pipelines see the same primitive in every pixel.";
 }
 
@@ -126,6 +127,8 @@ function wire() {
   element("palette").addEventListener("change", event => { state.palette = event.target.value; updateDifference(); changed(); });
   element("flicker-play").addEventListener("click", () => { state.play = !state.play; updateFlicker(); writeAddress(); });
   element("flicker-swap").addEventListener("click", swapByHand);
+  element("next").addEventListener("click", () => nextDisagreement(1));
+  element("previous").addEventListener("click", () => nextDisagreement(-1));
   element("period").addEventListener("input", event => { state.period = Number(event.target.value); updateFlicker(); writeAddress(); });
   element("theme").addEventListener("click", () => { state.theme = { auto: "light", light: "dark", dark: "auto" }[state.theme]; applyTheme(); writeAddress(); });
   fill("marks", ...[1, 2, 3].map(kind => {

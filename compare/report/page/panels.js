@@ -59,20 +59,7 @@ function row(name, explanation, value, options = {}) {
     make("td", { class: "number" }, value, ...(options.below ? [make("small", {}, options.below)] : [])));
 }
 
-function symbolOf(kind) {
-  const { key, shape } = verdicts[kind];
-  const ns = "http://www.w3.org/2000/svg";
-  const svg = document.createElementNS(ns, "svg");
-  svg.setAttribute("width", "16");
-  svg.setAttribute("height", "16");
-  svg.setAttribute("viewBox", "0 0 16 16");
-  svg.setAttribute("class", `symbol ${key}`);
-  svg.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(ns, "path");
-  path.setAttribute("d", { circle: "M13 8A5 5 0 1 1 3 8A5 5 0 1 1 13 8Z", square: "M3 3H13V13H3Z", cross: "M3 3L13 13M13 3L3 13" }[shape]);
-  svg.append(path);
-  return svg;
-}
+const symbolOf = kind => element(`symbol-${verdicts[kind].key}`).content.firstElementChild.cloneNode(true);
 
 function showHits() {
   const h = report.hits, share = n => percentText(n / h.pixels);
@@ -106,7 +93,7 @@ function showMetrics() {
     row("PSNR", "peak signal to noise; the peak is 1", m.psnr === null ? "∞" : `${m.psnr.toFixed(2)} dB`),
     row("relMSE", "mean of squared difference / (reference² + 0.01)", figure(m.relmse)),
     row("Mean signed error", "red, green, blue; positive: the rasterizer is brighter",
-      m.mean_signed_error.map(v => v === null ? "none" : (v > 0 ? "+" : "") + figure(v)).join("  ")),
+      make("span", { class: "triple" }, ...m.mean_signed_error.map(v => make("span", {}, v === null ? "none" : (v > 0 ? "+" : "") + figure(v))))),
   ];
   if (m.worst_pixel) {
     const link = make("a", { href: "#stage" }, `${m.worst_pixel[0]}, ${m.worst_pixel[1]}`);
@@ -148,9 +135,9 @@ function showSkipped() {
   fill("approximations", list.length ? make("ul", { class: "plain" }, ...list.map(text => make("li", {}, text)))
     : make("p", {}, "Nothing: in this scene it computes what the path tracer computes."));
   fill("skipped", ...pipelines.map(p => {
-    const entries = Object.entries(report[p.key].skipped);
-    return make("div", {}, make("h3", {}, tag(p)), entries.length ? make("table", {}, make("tbody", {}, ...entries.map(([what, why]) =>
-      make("tr", {}, make("th", { scope: "row" }, what.replaceAll("_", " ")), make("td", {}, typeof why === "number" ? countText(why) : String(why))))))
+    const entries = data.skipped[p.key];
+    return make("div", {}, make("h3", {}, tag(p)), entries.length ? make("table", {}, make("tbody", {}, ...entries.map(([what, why, count]) =>
+      make("tr", {}, make("th", { scope: "row" }, what), make("td", {}, count < 0 ? why : countText(count), ...(count < 0 || !why ? [] : [make("small", {}, why)]))))))
       : make("p", {}, "Nothing."));
   }));
 }

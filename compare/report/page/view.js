@@ -10,6 +10,7 @@ const defaults = { ...state };
 const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 
 function readAddress() {
+  Object.assign(state, defaults); // what the address doesn't say is as at the start
   for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
     if (!(key in defaults)) continue;
     const kind = typeof defaults[key];

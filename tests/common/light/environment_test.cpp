@@ -33,15 +33,19 @@ ImageRgb picture(int width, int height) {
     return image;
 }
 
-std::vector<std::pair<std::string, Environment>> environments() {
-    std::vector<std::pair<std::string, Environment>> all;
-    all.emplace_back("constant", ConstantEnvironment{Rgb(1, 2, 3)});
-    all.emplace_back("sky", SkyEnvironment{});
-    all.emplace_back("sky, black below", SkyEnvironment{Rgb(0.0f), Rgb(0.1f, 0.2f, 5)});
-    all.emplace_back("sky, black above", SkyEnvironment{Rgb(3.0f), Rgb(0.0f)});
-    all.emplace_back("picture", make_image_environment(picture(32, 16), 2, 0));
-    all.emplace_back("picture, turned", make_image_environment(picture(24, 9), 0.5f, 1.1f));
-    all.emplace_back("one pixel", make_image_environment(ImageRgb(1, 1, Rgb(0.25f)), 4, 2));
+struct Named {
+    std::string name;
+    Environment environment;
+};
+std::vector<Named> environments() {
+    std::vector<Named> all;
+    all.push_back({"constant", ConstantEnvironment{Rgb(1, 2, 3)}});
+    all.push_back({"sky", SkyEnvironment{}});
+    all.push_back({"sky, black below", SkyEnvironment{Rgb(0.0f), Rgb(0.1f, 0.2f, 5)}});
+    all.push_back({"sky, black above", SkyEnvironment{Rgb(3.0f), Rgb(0.0f)}});
+    all.push_back({"picture", make_image_environment(picture(32, 16), 2, 0)});
+    all.push_back({"picture, turned", make_image_environment(picture(24, 9), 0.5f, 1.1f)});
+    all.push_back({"one pixel", make_image_environment(ImageRgb(1, 1, Rgb(0.25f)), 4, 2)});
     return all;
 }
 
@@ -59,14 +63,15 @@ template <typename F> void for_numbers(F f) {
 
 TEST_SUITE("unit") {
     TEST_CASE("a sample's radiance and density are those of its direction; corners of the square are safe") {
-        for (const auto& [name, e] : environments()) {
-            CAPTURE(name);
+        for (const Named& named : environments()) {
+            const Environment& e = named.environment;
+            CAPTURE(named.name);
             CHECK_FALSE(is_black(e));
             int mismatches = 0;
             for_numbers([&](Vec2 u, bool corner) {
                 const auto s = sample(e, u);
                 if (!s) { // the end of a sky that is black there
-                    REQUIRE((corner && name.starts_with("sky, black")));
+                    REQUIRE((corner && named.name.starts_with("sky, black")));
                     return;
                 }
                 REQUIRE(length(s->wi) == doctest::Approx(1).epsilon(1e-6));
@@ -80,8 +85,9 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the density is positive wherever there is light, also at the poles and around the seam") {
-        for (const auto& [name, e] : environments()) {
-            CAPTURE(name);
+        for (const Named& named : environments()) {
+            const Environment& e = named.environment;
+            CAPTURE(named.name);
             for (int i = 0; i < 200; ++i)
                 for (int j = 0; j <= 200; ++j) {
                     const Vec3 w = sphere_direction({static_cast<float>(i) / 200, static_cast<float>(j) / 200});
@@ -147,18 +153,18 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     TEST_CASE("directions are distributed as pdf says, which integrates to 1") {
         const auto all = environments();
-        for (const auto& [name, e] : all) { // 1e-4 for all together
+        for (const Named& named : all) { // 1e-4 for all together
             test::DirectionTest setup;
             setup.axis = {0, 1, 0};
             setup.subdivisions = 12; // a picture's density has steps within cells
             const auto result = test::test_directions(
                 setup,
-                [&, &environment = e](Vec2 u) -> std::optional<Vec3> {
-                    const auto s = sample(environment, u);
+                [&](Vec2 u) -> std::optional<Vec3> {
+                    const auto s = sample(named.environment, u);
                     return s ? std::optional<Vec3>(s->wi) : std::nullopt;
                 },
-                [&, &environment = e](Vec3 w) { return static_cast<double>(pdf(environment, w)); });
-            CAPTURE(name);
+                [&](Vec3 w) { return static_cast<double>(pdf(named.environment, w)); });
+            CAPTURE(named.name);
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
             CHECK_MESSAGE(result.chi_squared.p_value > test::sidak(1e-4, static_cast<int>(all.size())),
                           result.chi_squared.account);
@@ -167,9 +173,10 @@ TEST_SUITE("statistical") {
 
     TEST_CASE("irradiance and mean radiance agree with sampling") {
         // 4.5 standard errors: odds 7e-6 a comparison.
-        for (const auto& [name, e] : environments())
+        for (const Named& named : environments())
             for (const Vec3 n : {Vec3(0, 1, 0), normalize(Vec3(0.5f, -0.7f, 0.2f))}) {
-                CAPTURE(name);
+                const Environment& e = named.environment;
+                CAPTURE(named.name);
                 constexpr int kSamples = 100'000;
                 Sampler sampler(SamplerKind::kIndependent, 9, kSamples);
                 double sum = 0, squares = 0, mean = 0, mean_squares = 0, uniform = 0, uniform_squares = 0;

@@ -141,11 +141,11 @@ TEST_SUITE("unit") {
             {"v 0 0 " + std::string(1 << 20, '1') + "\n", "line 1: found \"11111"},
             {"f " + std::string(1 << 20, '/') + "\n", "line 1"},
         };
-        for (const auto& [text, part] : cases) {
-            const std::string error = refusal(text);
-            CAPTURE(text.substr(0, 100));
+        for (const auto& example : cases) {
+            const std::string error = refusal(example.text);
+            CAPTURE(example.text.substr(0, 100));
             CAPTURE(error);
-            CHECK(says(error, part));
+            CHECK(says(error, example.part));
             CHECK(error.size() < 400);
         }
     }

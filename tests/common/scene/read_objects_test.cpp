@@ -108,10 +108,10 @@ TEST_SUITE("unit") {
             {R"([{"type": "group", "hidden": true, "objects": []}])", "a hidden group needs a \"name\""},
             {"[" + kBall + R"(, {"type": "instance", "of": "ball"}])", "unknown group \"ball\""},
         };
-        for (const auto& [objects, part] : cases) {
-            const std::string error = refusal(objects);
+        for (const auto& example : cases) {
+            const std::string error = refusal(example.objects);
             CAPTURE(error);
-            CHECK(says(error, part));
+            CHECK(says(error, example.part));
         }
     }
 

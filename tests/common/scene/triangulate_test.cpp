@@ -42,7 +42,9 @@ void check_cover(const std::vector<Vec3>& polygon, const Triangles& triangles) {
     }
     CHECK(area == doctest::Approx(length(normal)).epsilon(1e-4));
     const auto n = static_cast<std::uint32_t>(polygon.size());
-    for (const auto& [edge, balance] : edges) {
+    for (const auto& entry : edges) {
+        const auto edge = entry.first;
+        const int balance = entry.second;
         const int expected = edge.second == edge.first + 1 ? 1 : edge.first == 0 && edge.second == n - 1 ? -1 : 0;
         CHECK_MESSAGE(balance == expected, "edge " << edge.first << "-" << edge.second);
     }

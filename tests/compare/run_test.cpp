@@ -1,0 +1,127 @@
+#include "compare/run.h"
+
+#include "common/image/image_file.h"
+#include "common/system/file.h"
+#include "compare/images.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <unistd.h>
+
+using namespace duet;
+using namespace duet::compare;
+using nlohmann::json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes when the test does.
+struct Scratch {
+    fs::path path = fs::temp_directory_path() / message("duet-run-test-", ::getpid());
+    Scratch() { fs::create_directories(path); }
+    ~Scratch() { fs::remove_all(path); }
+};
+
+RunOptions small_run(const fs::path& folder) {
+    RunOptions options;
+    options.scene = fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json";
+    options.folder = folder;
+    options.size = {24, 20};
+    options.settings.raster_spp = 1;
+    options.settings.raytrace_spp = 2;
+    options.quiet = true;
+    return options;
+}
+
+json without_times(json report) {
+    for (const char* const side : {"raster", "raytrace"}) {
+        report[side].erase("seconds");
+        report[side].erase("stages");
+        report[side].erase("threads");
+        report[side].erase("memory_bytes"); // threads have working memory of their own
+    }
+    return report;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a run writes its five files, report.json has the promised keys, --stats the same figures") {
+        const Scratch scratch;
+        RunOptions options = small_run(scratch.path / "deep" / "report");
+        options.stats = (scratch.path / "stats.json").string();
+        REQUIRE(run(options) == 0);
+        std::size_t files = 0;
+        for (const fs::directory_entry& entry : fs::directory_iterator(options.folder))
+            files += entry.is_regular_file() ? 1 : 0;
+        CHECK(files == 5);
+        for (const char* const name : {"raster.png", "raytrace.png", "difference.png"}) {
+            const ImageRgb picture = read_image(options.folder / name);
+            CHECK(picture.width() == 24);
+            CHECK(picture.height() == 20);
+        }
+        CHECK(read_file(options.folder / "index.html").find("cornell.json") != std::string::npos);
+        const json report = json::parse(read_file(options.folder / "report.json"));
+        CHECK(report == json::parse(read_file(options.stats)));
+        for (const char* const side : {"raster", "raytrace"})
+            for (const char* const key :
+                 {"program", "version", "scene", "width", "height", "threads", "samples_per_pixel", "seed", "seconds",
+                  "rays", "triangles", "approximations", "skipped"})
+                CHECK_MESSAGE(report[side].contains(key), side, " lacks ", key);
+        CHECK(report["raster"]["program"] == "raster");
+        CHECK(report["raytrace"]["samples_per_pixel"] == 2);
+        for (const char* const key : {"mse", "rmse", "mae", "psnr", "relmse", "mean_signed_error"})
+            CHECK(report["metrics"].contains(key));
+        const json& hits = report["hits"];
+        CHECK(hits["pixels"] == 24 * 20);
+        CHECK(hits["unexplained"] == 0);
+        CHECK(hits["same"].get<int>() + hits["edge"].get<int>() + hits["depth_tie"].get<int>() == 24 * 20);
+    }
+
+    TEST_CASE("the same figures for any number of threads") {
+        const Scratch scratch;
+        std::vector<json> reports;
+        for (const int threads : {1, 2, 7}) {
+            RunOptions options = small_run(scratch.path);
+            options.settings.threads = threads;
+            REQUIRE(run(options) == 0);
+            reports.push_back(without_times(json::parse(read_file(scratch.path / "report.json"))));
+        }
+        CHECK(reports[0] == reports[1]);
+        CHECK(reports[0] == reports[2]);
+    }
+
+    TEST_CASE("a folder that cannot be made is refused before anything is rendered") {
+        const Scratch scratch;
+        write_file(scratch.path / "file", "x");
+        CHECK_THROWS_AS(run(small_run(scratch.path / "file")), Error);
+        CHECK_THROWS_AS(run(small_run(scratch.path / "file" / "below")), Error);
+    }
+
+    TEST_CASE("compare images: limits decide the exit code") {
+        const Scratch scratch;
+        write_image(scratch.path / "a.pfm", ImageRgb(4, 4, Rgb(0.5f)));
+        write_image(scratch.path / "b.pfm", ImageRgb(4, 4, Rgb(0.25f)));
+        ImagesOptions options{
+            scratch.path / "a.pfm", scratch.path / "b.pfm", {}, (scratch.path / "m.json").string(), true};
+        CHECK(compare_images(options) == 0);
+        CHECK(json::parse(read_file(options.stats))["mse"].get<double>() == doctest::Approx(0.0625));
+        options.limits = {"rmse=0.26", "mae=0.25", "psnr=12"};
+        CHECK(compare_images(options) == 0);
+        options.limits = {"rmse=0.24"};
+        CHECK(compare_images(options) == 1);
+        options.limits = {"psnr=13"};
+        CHECK(compare_images(options) == 1);
+        for (const char* const bad : {"rmse", "rmse=", "rmse=x", "rmse=1x", "=1", "other=1", "rmse=nan"}) {
+            options.limits = {bad};
+            CAPTURE(bad);
+            CHECK_THROWS_AS(compare_images(options), Error);
+        }
+        options.limits.clear();
+        write_image(scratch.path / "b.pfm", ImageRgb(4, 3));
+        CHECK_THROWS_AS(compare_images(options), Error);
+    }
+}

@@ -1,0 +1,205 @@
+// The scenes of models/: they load, and hold what they promise.
+#include "common/scene/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace duet;
+
+namespace {
+
+Scene load(const std::string& name) { return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / name); }
+
+const Object& object_named(const Scene& scene, const std::string& name) {
+    const auto found = std::ranges::find(scene.objects, name, &Object::name);
+    REQUIRE_MESSAGE(found != scene.objects.end(), "no object \"" << name << "\"");
+    return *found;
+}
+
+const Material& material_of(const Scene& scene, const Object& object) {
+    return scene.materials[object.materials.at(0)];
+}
+
+template <typename Set, typename Kind> bool holds(const Set& set) {
+    return std::ranges::any_of(set, [](const auto& x) { return std::holds_alternative<Kind>(x); });
+}
+
+bool same(Vec3 a, Vec3d b) { return a == Vec3(b); }
+
+/// The corners of one of the published boxes: (x, z), counter-clockwise from above.
+using Footprint = std::array<Vec2d, 4>;
+
+/// Each vertex of the mesh is one of the box's eight corners, as exactly as floats are; each corner is there; it is
+/// closed.
+void check_box(const Scene& scene, const std::string& name, const Footprint& footprint, double height) {
+    CAPTURE(name);
+    const Object& object = object_named(scene, name);
+    REQUIRE(object.identity);
+    const Mesh& mesh = std::get<Mesh>(scene.shapes[object.shape]);
+    std::array<bool, 8> seen{};
+    for (const Vec3& p : mesh.positions) {
+        bool known = false;
+        for (std::size_t i = 0; i < 8; ++i) {
+            if (!same(p, {footprint[i % 4].x, i < 4 ? 0.0 : height, footprint[i % 4].y})) continue;
+            known = seen[i] = true;
+        }
+        CHECK_MESSAGE(known, "(" << p.x << ", " << p.y << ", " << p.z << ") is no corner");
+    }
+    CHECK(std::ranges::count(seen, true) == 8);
+    CHECK(mesh.triangles.size() == 12);
+    CHECK(mesh.closed);
+    CHECK(mesh.normals.empty());
+}
+
+/// The quad's corner and edges, exactly, and its normal: it faces into the box.
+void check_wall(const Scene& scene, const std::string& name, const std::array<Vec3d, 4>& corners, Vec3d normal) {
+    CAPTURE(name);
+    const Object& object = object_named(scene, name);
+    REQUIRE(object.identity);
+    const QuadList& list = std::get<QuadList>(scene.shapes[object.shape]);
+    REQUIRE(list.quads.size() == 1);
+    const Quad& q = list.quads[0];
+    for (const Vec3& p : {q.corner, q.corner + q.u, q.corner + q.u + q.v, q.corner + q.v}) {
+        const bool known = std::ranges::any_of(corners, [&](Vec3d c) { return length(Vec3d(p) - c) < 1e-7; });
+        CHECK_MESSAGE(known, "(" << p.x << ", " << p.y << ", " << p.z << ") is no corner");
+    }
+    CHECK(length(normalize(cross(Vec3d(q.u), Vec3d(q.v))) - normal) < 1e-6);
+}
+
+void check_albedo(const Scene& scene, const std::string& name, Rgb albedo) {
+    CAPTURE(name);
+    const auto& diffuse = std::get<Diffuse>(material_of(scene, object_named(scene, name)));
+    CHECK(diffuse.albedo.value == albedo);
+    CHECK(diffuse.albedo.texture < 0);
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+    // Bitterli's version of the box, as Mitsuba, Tungsten and pbrt know it (Rendering Resources, 2016).
+    TEST_CASE("cornell.json is the published box") {
+        const Scene scene = load("cornell.json");
+        CHECK(scene.camera.eye == Vec3d(0, 1, 6.8));
+        CHECK(scene.camera.look_at == Vec3d(0, 1, 0));
+        CHECK(scene.camera.up == Vec3d(0, 1, 0));
+        CHECK(scene.camera.fov_degrees == 19.5);
+        CHECK(scene.camera.aperture_radius == 0);
+        CHECK(scene.width == 512);
+        CHECK(scene.height == 512);
+        CHECK(scene.objects.size() == 8);
+        CHECK_FALSE(scene.needs.environment);
+
+        check_wall(scene, "floor", {{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}}, {0, 1, 0});
+        check_wall(scene, "ceiling", {{{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}}}, {0, -1, 0});
+        check_wall(scene, "back wall", {{{-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}}}, {0, 0, 1});
+        check_wall(scene, "left wall", {{{-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}, {-1, 0, 1}}}, {1, 0, 0});
+        check_wall(scene, "right wall", {{{1, 0, -1}, {1, 2, -1}, {1, 2, 1}, {1, 0, 1}}}, {-1, 0, 0});
+        check_wall(scene, "lamp",
+                   {{{-0.24, 1.98, -0.22}, {0.23, 1.98, -0.22}, {0.23, 1.98, 0.16}, {-0.24, 1.98, 0.16}}}, {0, -1, 0});
+        check_box(
+            scene, "short box",
+            {{{-0.04607511, 0.5730067}, {0.5330086, 0.7460793}, {0.7033371, 0.1761773}, {0.1242534, 0.003104655}}},
+            0.6);
+        check_box(
+            scene, "tall box",
+            {{{-0.7204437, -0.4738824}, {-0.5239855, 0.09064936}, {0.04956569, -0.1089476}, {-0.1468925, -0.6734794}}},
+            1.2);
+
+        for (const char* name : {"floor", "ceiling", "back wall", "short box", "tall box"})
+            check_albedo(scene, name, {0.725f, 0.71f, 0.68f});
+        check_albedo(scene, "left wall", {0.63f, 0.065f, 0.05f});
+        check_albedo(scene, "right wall", {0.14f, 0.45f, 0.091f});
+        const auto& lamp = std::get<Emissive>(material_of(scene, object_named(scene, "lamp")));
+        CHECK(lamp.radiance == Rgb(17, 12, 4));
+        CHECK_FALSE(lamp.two_sided);
+        CHECK(lamp.albedo.value == Rgb(0));
+        REQUIRE(scene.lights.size() == 1);
+    }
+
+    TEST_CASE("spheres.json is the cover scene of Ray Tracing in One Weekend") {
+        const Scene scene = load("spheres.json");
+        CHECK(scene.camera.eye == Vec3d(13, 2, 3));
+        CHECK(scene.camera.fov_degrees == 20);
+        CHECK(scene.camera.focus_distance == 10);
+        CHECK(scene.camera.aperture_radius == doctest::Approx(10 * std::tan(radians(0.3))).epsilon(1e-4));
+        CHECK(scene.width * 9 == scene.height * 16);
+        CHECK(scene.objects.size() > 470);
+        CHECK(scene.objects.size() <= 4 + 22 * 22);
+        std::size_t diffuse = 0, metal = 0, glass = 0;
+        for (const Object& object : scene.objects) {
+            REQUIRE(std::holds_alternative<Sphere>(scene.shapes[object.shape]));
+            diffuse += std::holds_alternative<Diffuse>(material_of(scene, object));
+            metal += std::holds_alternative<Metal>(material_of(scene, object));
+            glass += std::holds_alternative<Dielectric>(material_of(scene, object));
+        }
+        // 80, 15 and 5 % of the small ones, within four standard deviations of 480 draws (8.8, 7.8, 4.8).
+        CHECK(std::abs(static_cast<double>(diffuse) - 0.80 * 480) < 36);
+        CHECK(std::abs(static_cast<double>(metal) - 0.15 * 480) < 32);
+        CHECK(std::abs(static_cast<double>(glass) - 0.05 * 480) < 20);
+    }
+
+    TEST_CASE("furnace.json is white, closed and lit evenly") {
+        const Scene scene = load("furnace.json");
+        for (const char* name : {"sphere", "box"}) check_albedo(scene, name, Rgb(1));
+        const auto* environment = std::get_if<ConstantEnvironment>(&scene.environment);
+        REQUIRE(environment);
+        CHECK(environment->radiance == Rgb(1));
+        CHECK(scene.lights.empty());
+    }
+
+    TEST_CASE("everything.json uses every feature") {
+        const Scene scene = load("everything.json");
+        const SceneNeeds& needs = scene.needs;
+        CHECK(needs.textures);
+        CHECK(needs.image_textures);
+        CHECK(needs.motion);
+        CHECK(needs.lens);
+        CHECK(needs.environment);
+        CHECK(needs.delta_lights);
+        CHECK(needs.surface_lights);
+        CHECK(needs.glossy);
+        CHECK(needs.specular);
+        CHECK(needs.transmission);
+        CHECK(needs.meshes);
+        CHECK(needs.quads);
+        CHECK(needs.spheres);
+        CHECK(needs.smooth_normals);
+        CHECK(needs.instances);
+        CHECK(holds<std::vector<Material>, Diffuse>(scene.materials));
+        CHECK(holds<std::vector<Material>, Metal>(scene.materials));
+        CHECK(holds<std::vector<Material>, Dielectric>(scene.materials));
+        CHECK(holds<std::vector<Material>, Emissive>(scene.materials));
+        CHECK(holds<std::vector<Texture>, ImageTexture>(scene.textures.textures));
+        CHECK(holds<std::vector<Texture>, CheckerTexture>(scene.textures.textures));
+        CHECK(holds<std::vector<Light>, PointLight>(scene.lights));
+        CHECK(holds<std::vector<Light>, SpotLight>(scene.lights));
+        CHECK(holds<std::vector<Light>, SunLight>(scene.lights));
+        CHECK(holds<std::vector<Light>, SurfaceLight>(scene.lights));
+        CHECK(std::holds_alternative<ImageEnvironment>(scene.environment));
+        bool checker_uv = false, checker_solid = false, noise = false, marble = false;
+        for (const Texture& texture : scene.textures.textures) {
+            if (const auto* c = std::get_if<CheckerTexture>(&texture)) (c->solid ? checker_solid : checker_uv) = true;
+            if (const auto* n = std::get_if<NoiseTexture>(&texture)) (n->marble ? marble : noise) = true;
+        }
+        CHECK(checker_uv);
+        CHECK(checker_solid);
+        CHECK(noise);
+        CHECK(marble);
+        CHECK(std::ranges::any_of(scene.objects, [](const Object& o) { return o.materials.size() >= 3; })); // MTL
+    }
+
+    TEST_CASE("every scene loads, and something is seen in it") {
+        std::size_t count = 0;
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::filesystem::path(DUET_SOURCE_DIR) / "models")) {
+            const std::string name = entry.path().filename().string();
+            if (entry.path().extension() != ".json" || name == "scene.schema.json") continue;
+            CAPTURE(name);
+            const Scene scene = load(name);
+            CHECK(scene.objects.size() >= 2);
+            ++count;
+        }
+        CHECK(count >= 6);
+    }
+}

@@ -1,0 +1,146 @@
+// Estimators of the same light agree: with and without light sampling, with and without Russian roulette.
+#include "raytrace/integrator/light_sampling.h"
+#include "tests/raytrace/estimates.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+// A corner with a large lamp, a small bright one that moves (light samples cannot find it), a dim sky, and a material
+// of every kind.
+Scene corner(bool moving_lamp) {
+    SceneBuilder builder;
+    const std::uint32_t white = builder.material(Diffuse{{Rgb(0.8f)}});
+    const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f, 0.8f, 0.7f)}, 0.4f});
+    const std::uint32_t mirror = builder.material(Metal{{Rgb(0.9f)}, 0});
+    const std::uint32_t glass = builder.material(Dielectric{1.5f, {Rgb(0.95f)}});
+    const std::uint32_t lamp = builder.material(Emissive{Rgb(3.0f)});
+    const std::uint32_t glow = builder.material(Emissive{Rgb(8.0f), true, {Rgb(0.3f)}});
+    builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), white);
+    builder.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), brushed);
+    builder.add(quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}), white);
+    builder.add(quad({-1, 2.5f, -1.5f}, {2, 0, 0}, {0, 0, 2}), lamp);
+    builder.add(Sphere{{-1, 0.6f, -0.8f}, 0.6f}, mirror);
+    builder.add(Sphere{{0.8f, 0.5f, 0.2f}, 0.5f}, glass);
+    builder.add(icosphere(2, 0.5f, {-0.2f, 0.5f, 0.6f}, true), brushed);
+    if (moving_lamp) {
+        const std::uint32_t ball = builder.shape(Sphere{{0, 0, 0}, 0.3f});
+        builder.place_moving(ball, glow, translation(Vec3(1.2f, 1.5f, -1)), translation(Vec3(1.2f, 1.0f, -0.5f)));
+    } else {
+        builder.add(Sphere{{1.2f, 1.5f, -1}, 0.3f}, glow);
+    }
+    builder.scene.environment = SkyEnvironment{Rgb(0.1f), Rgb(0.2f, 0.3f, 0.5f)};
+    builder.scene.camera.eye = {0.5, 1.2, 5};
+    builder.scene.camera.look_at = {0, 0.9, 0};
+    builder.scene.camera.fov_degrees = 40;
+    return builder.finish();
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("weights of the two ways to one sample add up to 1, at all magnitudes") {
+        for (const float a : {1e-20f, 1e-3f, 1.0f, 3.0f, 1e20f})
+            for (const float b : {1e-20f, 1e-3f, 1.0f, 3.0f, 1e20f})
+                CHECK(mis_weight(a, b) + mis_weight(b, a) == doctest::Approx(1));
+        CHECK(mis_weight(1, 0) == 1);
+        CHECK(mis_weight(1, kInfinity) == 0);
+    }
+
+    TEST_CASE("the density of a light sample is what its hit is weighed with") {
+        const Scene scene = corner(false);
+        Settings settings;
+        const Prepared prepared = prepare(scene, settings);
+        const LightChooser& lights = prepared.data().lights;
+        Sampler sampler(SamplerKind::kIndependent, 1, 1);
+        int compared = 0;
+        for (std::uint32_t i = 0; i < 20000; ++i) {
+            sampler.start(0, 0, i);
+            const Vec3 p(0.5f, 0, 0.5f);
+            const float choice = sampler.get_1d();
+            const auto arrival = sample_arrival(scene, lights, p, choice, sampler.get_2d());
+            if (!arrival) continue;
+            if (arrival->light < 0) {
+                CHECK(arrival_pdf(scene.environment, lights, arrival->wi) ==
+                      doctest::Approx(arrival->pdf).epsilon(1e-3));
+                continue;
+            }
+            const Ray ray{p, arrival->wi};
+            const Hit hit = trace(prepared, ray);
+            if (!hit.valid() || hit.t < arrival->distance * 0.999f) continue;
+            CHECK(arrival_pdf(scene, lights, p, surface_point(scene, ray, hit)) ==
+                  doctest::Approx(arrival->pdf).epsilon(2e-2)); // a sphere's density changes quickly near its rim
+            ++compared;
+        }
+        CHECK(compared > 500);
+    }
+
+    TEST_CASE("rays are counted, and sent as far as the depth allows") {
+        const Scene scene = corner(false);
+        Settings settings;
+        settings.samples_per_pixel = 1;
+        settings.max_depth = 0;
+        RenderStatistics statistics = render_scene(scene, 16, settings).statistics;
+        CHECK(statistics.camera_rays == 256);
+        CHECK(statistics.indirect_rays == 0);
+        CHECK(statistics.shadow_rays == 0);
+        settings.max_depth = 1;
+        statistics = render_scene(scene, 16, settings).statistics;
+        CHECK(statistics.indirect_rays > 100);
+        CHECK(statistics.indirect_rays <= 256);
+        CHECK(statistics.shadow_rays > 10);
+        CHECK(statistics.shadow_rays <= 256);
+    }
+}
+
+TEST_SUITE("statistical") {
+
+    // Six standard errors of the difference over ten seeds each: exceeded by chance once in 90,000 times.
+    TEST_CASE("path tracing with light samples gives what it gives without, moving lamps included") {
+        for (const bool moving : {false, true}) {
+            CAPTURE(moving);
+            const Scene scene = corner(moving);
+            Settings settings;
+            settings.samples_per_pixel = 32;
+            settings.max_depth = 8;
+            const Estimate path = estimate(scene, 24, settings);
+            settings.integrator = Integrator::kNaive;
+            settings.samples_per_pixel = 128;
+            const Estimate naive = estimate(scene, 24, settings);
+            CHECK(path.mean > 0.1);
+            CHECK(deviations(path, naive) < 6);
+            CHECK(naive.error < 0.01 * naive.mean);
+        }
+    }
+
+    TEST_CASE("Russian roulette changes the cost, not the mean") {
+        const Scene scene = corner(false);
+        Settings settings;
+        settings.samples_per_pixel = 64;
+        const Estimate with = estimate(scene, 24, settings);
+        const auto rays_with = render_scene(scene, 24, settings).statistics.indirect_rays;
+        settings.russian_roulette = false;
+        const Estimate without = estimate(scene, 24, settings);
+        const auto rays_without = render_scene(scene, 24, settings).statistics.indirect_rays;
+        CHECK(deviations(with, without) < 6);
+        CHECK(with.error < 0.005 * with.mean);
+        CHECK(rays_with < rays_without);
+    }
+
+    TEST_CASE("all samplers estimate the same") {
+        const Scene scene = corner(false);
+        Settings settings;
+        settings.samples_per_pixel = 32;
+        settings.max_depth = 6;
+        const Estimate sobol = estimate(scene, 24, settings);
+        for (const SamplerKind kind : {SamplerKind::kStratified, SamplerKind::kIndependent}) {
+            settings.sampler = kind;
+            CHECK(deviations(sobol, estimate(scene, 24, settings)) < 6);
+        }
+    }
+}
