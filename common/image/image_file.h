@@ -27,8 +27,8 @@ inline constexpr int kMaxImageSide = 32768;
 inline constexpr long long kMaxImagePixels = 90'000'000;
 
 /// The whole file, by its content, not its ending (TGA, which has no signature: by its ending). An EXR's R, G, B (or Y)
-/// and A channels are read. Throws Error (path, what was found, what was expected) where the file is missing,
-/// truncated, malformed or over the limits.
+/// and A channels are read, of its data window (wherever that lies). Throws Error (path, what was found, what was
+/// expected) where the file is missing, truncated, malformed or over the limits.
 PixelFile read_pixel_file(const std::filesystem::path& path);
 
 /// The picture as linear RGB: encoded values are decoded by the sRGB curve, grey is spread, alpha is dropped.
@@ -61,7 +61,8 @@ struct ExrAttribute {
 /// Writes channels of equal size, lossless (ZIP), whole or absent. Throws Error (exit code 1) where writing fails.
 void write_exr(const std::filesystem::path& path, int width, int height, const std::vector<ExrChannel>& channels,
                const std::vector<ExrAttribute>& attributes = {});
-/// All channels of an EXR file, half floats widened.
+/// All channels of an EXR file's data window, half floats widened; of one part, flat, each channel with a value a
+/// pixel.
 struct ExrFile {
     int width = 0, height = 0;
     std::vector<ExrChannel> channels;
