@@ -44,12 +44,13 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
         if (applies) result.emplace_back(sentence);
     };
     const bool many = settings.samples_per_pixel > 1;
+    const bool moving = needs.motion && scene.camera.shutter_open != scene.camera.shutter_close;
     name(needs.lens && !many, "The lens is a pinhole at its centre: one sample a pixel sees no depth of field.");
     name(needs.lens && many,
          "Depth of field is the mean of one view a sample, through the same lens points in every pixel.");
-    name(needs.motion && !many,
+    name(moving && !many,
          "Moving objects stand where they are when the shutter opens: one sample a pixel sees no motion.");
-    name(needs.motion && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
+    name(moving && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
     if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
 
     const bool environment = settings.environment && needs.environment;
@@ -65,7 +66,7 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Rough metal sees each light surface as a distant light in its centre's direction.");
     name(needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
-    name(data.moving_emitters, "Moving light surfaces are seen, but light nothing.");
+    name(data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
     return result;
 }
 

@@ -1,5 +1,8 @@
 #include "raster/clip.h"
 
+#include <algorithm>
+#include <span>
+
 namespace duet::raster {
 namespace {
 
@@ -45,7 +48,17 @@ ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVerte
         {0, 1, kGuardBand, 0, 0},     {0, -1, bottom, 0, 0},
     };
     ClippedPolygon polygon{{a, b, c}, 3};
-    for (const Plane& plane : planes) polygon = clip(polygon, plane);
+    for (const Plane& plane : planes) {
+        polygon = clip(polygon, plane);
+        if (&plane != planes) continue;
+        // A corner cut on the near plane has just its depth; interpolated from ends far apart it could be anything
+        // near zero. Under perspective w is the depth.
+        for (PixelVertex& v : std::span(polygon.vertices).first(static_cast<std::size_t>(polygon.count))) {
+            const bool perspective = v.w == v.depth;
+            v.depth = std::max(v.depth, viewport.near);
+            if (perspective) v.w = v.depth;
+        }
+    }
     return polygon;
 }
 

@@ -18,8 +18,11 @@ Picture::Picture(const View& view, const Settings& settings) : settings_(setting
     if (settings.samples_per_pixel > 1) sums_ = Image<Rgbd>(w, h);
     added_ = Image<std::uint32_t>(w, h, 0);
     valid_ = Image<std::uint32_t>(w, h, 0);
-    if (needs_hit_counts(aovs)) hits_ = Image<std::uint32_t>(w, h, 0);
-    if (aovs.depth) rendering_.depth = ImageFloat(w, h, 0.0f);
+    if (needs_hit_counts(aovs)) {
+        hits_ = Image<std::uint32_t>(w, h, 0);
+        auxiliary_ = Image<Auxiliary>(w, h);
+    }
+    if (aovs.depth) rendering_.depth = ImageFloat(w, h, kInfinity);
     if (aovs.normal) rendering_.normal = Image<Vec3>(w, h);
     if (aovs.albedo) rendering_.albedo = ImageRgb(w, h);
     if (aovs.hit) rendering_.hit = Image<Hit>(w, h);
@@ -44,22 +47,24 @@ void Picture::add_auxiliary(const HitTile& tile, int x, int y, const Shaded& sha
     const Hit& hit = tile.hit(x, y);
     if (aovs.hit && added_(x, y) == 0) rendering_.hit(x, y) = hit;
     if (!hit.valid()) return;
-    if (!hits_.empty()) ++hits_(x, y);
-    if (aovs.depth) rendering_.depth(x, y) += static_cast<float>(tile.depth(x, y));
-    if (aovs.normal) rendering_.normal(x, y) += shaded.normal;
-    if (aovs.albedo) rendering_.albedo(x, y) += shaded.albedo;
+    if (hits_.empty()) return;
+    ++hits_(x, y);
+    Auxiliary& sums = auxiliary_(x, y);
+    sums.depth += static_cast<double>(tile.depth(x, y));
+    sums.normal += Vec3d(shaded.normal);
+    sums.albedo += Rgbd(shaded.albedo);
 }
 
 void Picture::finish_pixel(int x, int y) {
     const AovSet& aovs = settings_.aovs;
     if (!sums_.empty() && valid_(x, y) > 0)
         rendering_.radiance(x, y) = Rgb(sums_(x, y) * (1.0 / static_cast<double>(valid_(x, y))));
-    if (hits_.empty()) return;
-    const float hits = static_cast<float>(hits_(x, y));
-    if (aovs.depth) rendering_.depth(x, y) = hits > 0 ? rendering_.depth(x, y) / hits : kInfinity;
-    if (hits == 0) return;
-    if (aovs.normal) rendering_.normal(x, y) = rendering_.normal(x, y) / hits;
-    if (aovs.albedo) rendering_.albedo(x, y) = rendering_.albedo(x, y) / hits;
+    if (hits_.empty() || hits_(x, y) == 0) return;
+    const double hits = hits_(x, y);
+    const Auxiliary& sums = auxiliary_(x, y);
+    if (aovs.depth) rendering_.depth(x, y) = static_cast<float>(sums.depth / hits);
+    if (aovs.normal) rendering_.normal(x, y) = Vec3(sums.normal / hits);
+    if (aovs.albedo) rendering_.albedo(x, y) = Rgb(sums.albedo / hits);
 }
 
 Rendering Picture::finish(int threads) {
@@ -75,7 +80,7 @@ Rendering Picture::finish(int threads) {
 std::size_t Picture::memory_bytes() const {
     const auto bytes = [](const auto& image) { return image.size() * sizeof(image[0]); };
     return bytes(rendering_.radiance) + bytes(rendering_.depth) + bytes(rendering_.normal) + bytes(rendering_.albedo) +
-           bytes(rendering_.hit) + bytes(sums_) + bytes(added_) + bytes(valid_) + bytes(hits_);
+           bytes(rendering_.hit) + bytes(sums_) + bytes(added_) + bytes(valid_) + bytes(hits_) + bytes(auxiliary_);
 }
 
 } // namespace duet::raster

@@ -31,7 +31,13 @@ private:
     Rendering rendering_;
     Image<Rgbd> sums_;                   ///< of radiance; empty for a single sample, which needs none
     Image<std::uint32_t> added_, valid_; ///< samples a pixel, and those among them whose radiance counts
-    Image<std::uint32_t> hits_;          ///< samples that hit something; where depth, normal or albedo are asked for
+    struct Auxiliary {
+        double depth = 0;
+        Vec3d normal;
+        Rgbd albedo;
+    };
+    Image<Auxiliary> auxiliary_; ///< sums; where depth, normal or albedo are asked for
+    Image<std::uint32_t> hits_;  ///< samples that hit something; where depth, normal or albedo are asked for
     std::atomic<std::int64_t> invalid_ = 0;
 };
 

@@ -13,7 +13,8 @@ bool all_opaque(const Scene& scene, const Object& object) {
 
 bool any_emissive(const Scene& scene, const Object& object) {
     return std::any_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
-        return std::holds_alternative<Emissive>(scene.materials[material]);
+        const auto* emissive = std::get_if<Emissive>(&scene.materials[material]);
+        return emissive != nullptr && !is_black(emissive->radiance);
     });
 }
 
@@ -42,7 +43,9 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         data.objects.push_back(prepare_object(scene, object));
         (std::holds_alternative<Sphere>(shape) ? data.spheres : data.polygonal).push_back(i);
         data.primitives += primitive_count(shape);
-        data.moving_emitters = data.moving_emitters || (object.moving && any_emissive(scene, object));
+        const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
+        data.unsampled_emitters =
+            data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
     }
     data.memory_bytes = static_cast<std::int64_t>(sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));

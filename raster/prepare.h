@@ -22,7 +22,7 @@ struct PreparedData {
     std::vector<std::uint32_t> spheres;   ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
-    bool moving_emitters = false;         ///< surfaces that emit but are no lights, because they move
+    bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
 };
 

@@ -29,9 +29,9 @@ struct Viewport {
 };
 
 /// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of
-/// up to 2^16 pixels a side fixed-point coordinates stay below 2^25.6 and edge functions below 2^54: exact in 64 bits.
+/// up to kMaxPictureSide = 2^14 pixels a side fixed-point coordinates stay below 2^24.4 and edge functions below 2^52:
+/// exact in 64 bits.
 inline constexpr double kGuardBand = 65536;
-inline constexpr int kMaxPictureSide = 65536;
 
 /// On which outer sides of what a vertex lies; a primitive whose vertices share a frustum bit can't be seen.
 enum Outcode : std::uint8_t {

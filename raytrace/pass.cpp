@@ -19,7 +19,9 @@ std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t don
         const double expected = seconds / done * count;
         if (seconds + expected / 2 > settings.time_limit) return std::nullopt;
     }
-    if (settings.error_limit > 0) {
+    // A first few samples that all miss the lights look converged: the estimate is asked from kMinForError samples on.
+    constexpr std::uint32_t kMinForError = 16;
+    if (settings.error_limit > 0 && done >= kMinForError) {
         const double error = film.estimated_relmse();
         if (error >= 0 && error < settings.error_limit) return std::nullopt;
     }

@@ -1,5 +1,7 @@
 #include "raytrace/plan.h"
 
+#include "common/system/error.h"
+
 #include <algorithm>
 
 namespace duet::raytrace {
@@ -75,6 +77,9 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
     return list;
 }
 
+/// Paths of this many scatterings, the default of Settings::max_depth, count as whole.
+constexpr int kWholePath = 64;
+
 std::vector<std::string> approximations(const RenderPlan& plan, const Settings& settings) {
     std::vector<std::string> list;
     if (settings.integrator == Integrator::kNaive && plan.scene.needs.delta_lights)
@@ -82,6 +87,10 @@ std::vector<std::string> approximations(const RenderPlan& plan, const Settings& 
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");
+    const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive;
+    if (whole_paths && plan.max_depth < kWholePath)
+        list.emplace_back(
+            message("paths end after ", plan.max_depth, plan.max_depth == 1 ? " scattering" : " scatterings"));
     if (!settings.environment && plan.prepared.environment) list.emplace_back("the environment is left out");
     return list;
 }

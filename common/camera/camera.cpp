@@ -62,7 +62,8 @@ CameraModel::CameraModel(const View& view)
       shutter_open_(view.camera.shutter_open), shutter_close_(view.camera.shutter_close) {
     const Camera& camera = view.camera;
     const bool orthographic = camera.projection == Camera::Projection::kOrthographic;
-    const Vec3d forward = normalize(camera.look_at - camera.eye);
+    const Vec3d eye = rounded(camera.eye);
+    const Vec3d forward = normalize(camera.look_at - eye);
     right_ = normalize(cross(forward, usable_up(forward, camera.up)));
     up_ = cross(right_, forward);
 
@@ -74,7 +75,6 @@ CameraModel::CameraModel(const View& view)
 
     center_.forward = forward;
     center_.near = camera.near_distance();
-    const Vec3d eye = rounded(camera.eye);
     if (orthographic) {
         center_.origin = rounded(eye + corner);
         center_.origin_dx = dx;

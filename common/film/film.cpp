@@ -62,13 +62,15 @@ std::int64_t Film::invalid_samples() const {
 
 double Film::estimated_relmse() const {
     double sum = 0;
+    std::size_t known = 0;
     for (int y = 0; y < height(); ++y)
         for (int x = 0; x < width(); ++x) {
             const Rgbd m = mean(x, y), v = variance(x, y);
-            if (!is_finite(v)) return -1;
+            if (!is_finite(v)) continue;
+            ++known;
             for (std::size_t channel = 0; channel < 3; ++channel) sum += v[channel] / (sqr(m[channel]) + 0.01);
         }
-    return sum / (3.0 * static_cast<double>(pixels_.size()));
+    return 2 * known >= pixels_.size() ? sum / (3.0 * static_cast<double>(known)) : -1;
 }
 
 } // namespace duet

@@ -33,7 +33,8 @@ public:
     ImageRgb variance_image() const;
     Image<std::uint32_t> samples_image() const;
     std::int64_t invalid_samples() const;
-    /// Mean over pixels and channels of variance / (mean² + 0.01); −1 where a pixel's variance is unknown.
+    /// Mean of variance / (mean² + 0.01) over channels and the pixels whose variance is known; −1 where that is fewer
+    /// than half.
     double estimated_relmse() const;
 
 private:

@@ -77,19 +77,30 @@ bool is_closed_outwards(const Mesh& mesh) {
     for (std::size_t i = 0; i < order.size(); ++i)
         merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];
 
+    // Each connected part must enclose a positive volume: an inside-out part is seen from what it calls its back.
+    std::vector<std::uint32_t> parent = merged;
+    const auto part = [&](std::uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges, reversed;
     edges.reserve(mesh.triangles.size() * 3);
-    double volume = 0; // six times the enclosed volume, by the divergence theorem, about a vertex of the mesh
-    const Vec3d origin(mesh.positions[mesh.triangles[0][0]]);
-    for (const auto& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t from = merged[t[i]], to = merged[t[(i + 1) % 3]];
-            if (from != to) edges.emplace_back(from, to);
+            if (from == to) continue;
+            edges.emplace_back(from, to);
+            parent[part(from)] = part(to);
         }
+    std::vector<double> volume(mesh.positions.size(), 0.0); // six times the volume of a part, by the divergence theorem
+    for (const auto& t : mesh.triangles) {
+        const std::uint32_t whole = part(merged[t[0]]);
+        const Vec3d origin(mesh.positions[whole]); // a vertex of the part: no cancellation far from the world's origin
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
-        volume += dot(corner(0), cross(corner(1), corner(2)));
+        volume[whole] += dot(corner(0), cross(corner(1), corner(2)));
     }
-    if (!(volume > 0)) return false;
+    for (const auto& [from, to] : edges)
+        if (!(volume[part(from)] > 0)) return false;
     std::sort(edges.begin(), edges.end());
     if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
     reversed.reserve(edges.size());

@@ -39,7 +39,7 @@ struct Mesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::uint16_t> material_slots; ///< one a triangle, or empty: all 0
     bool closed = false; ///< each edge, by position, is shared by two triangles that run it in opposite directions,
-                         ///< and the enclosed volume is positive: it is oriented outwards
+                         ///< and each connected part encloses a positive volume: it is oriented outwards
 };
 
 using Shape = std::variant<Sphere, QuadList, Mesh>;

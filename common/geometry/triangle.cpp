@@ -8,7 +8,8 @@
 
 namespace duet {
 
-ShearedRay::ShearedRay(const Ray& ray) : origin(ray.origin), t_min(ray.t_min), t_max(ray.t_max) {
+ShearedRay::ShearedRay(const Ray& ray)
+    : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
     kz = longest_axis(abs(ray.direction));
     kx = (kz + 1) % 3;
     ky = (kx + 1) % 3;
@@ -20,8 +21,8 @@ ShearedRay::ShearedRay(const Ray& ray) : origin(ray.origin), t_min(ray.t_min), t
 
 namespace {
 
-// The bound on the error of the distance t = T / det, after Pharr, Jakob and Humphreys 2023, §6.8.7. A hit nearer than
-// this could be the very triangle the ray starts from.
+// The bound on the error of the distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products ordered
+// so that they stay in range wherever the edge functions do.
 float distance_error(const Vec3& at, const Vec3& bt, const Vec3& ct, float e0, float e1, float e2, float inv_det) {
     const float max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
     const float delta_z = gamma_bound(3) * max_z;
@@ -29,9 +30,17 @@ float distance_error(const Vec3& at, const Vec3& bt, const Vec3& ct, float e0, f
     const float max_y = max(max(abs(at.y), abs(bt.y)), abs(ct.y));
     const float delta_x = gamma_bound(5) * (max_x + max_z);
     const float delta_y = gamma_bound(5) * (max_y + max_z);
-    const float delta_e = 2 * (gamma_bound(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
-    const float max_e = max(max(abs(e0), abs(e1)), abs(e2));
-    return 3 * (gamma_bound(3) * max_e * max_z + delta_e * max_z + delta_z * max_e) * abs(inv_det);
+    const float delta_e = 2 * (gamma_bound(2) * max_x * max_y + delta_y * max_x + delta_x * max_y) * abs(inv_det);
+    const float max_e = max(max(abs(e0), abs(e1)), abs(e2)) * abs(inv_det);
+    return 3 * (gamma_bound(3) * max_e * max_z + delta_e * max_z + delta_z * max_e);
+}
+
+// The distance to the triangle's plane in double, from the unrounded differences: its sign is right even for an origin
+// that is one float away from the plane of a triangle a million times as wide.
+double plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3d pa(a);
+    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
+    return dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction));
 }
 
 } // namespace
@@ -60,10 +69,14 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     const float det = e0 + e1 + e2;
     if (!(det != 0)) return std::nullopt;
     const float inv_det = 1 / det;
-    const float t = (e0 * at.z + e1 * bt.z + e2 * ct.z) * inv_det;
+    const float u = e1 * inv_det, v = e2 * inv_det;
+    float t = e0 * inv_det * at.z + u * bt.z + v * ct.z;
+    // Within its error of the ray's origin (or out of range) t says nothing: is this the surface the ray has just left,
+    // or one that touches it?
+    if (!(abs(t) > distance_error(at, bt, ct, e0, e1, e2, inv_det)))
+        t = static_cast<float>(plane_distance(ray, a, b, c));
     if (!(t > ray.t_min && t <= ray.t_max)) return std::nullopt;
-    if (t <= distance_error(at, bt, ct, e0, e1, e2, inv_det)) return std::nullopt;
-    return TriangleHit{t, e1 * inv_det, e2 * inv_det};
+    return TriangleHit{t, u, v};
 }
 
 } // namespace duet

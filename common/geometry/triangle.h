@@ -16,7 +16,7 @@ struct TriangleHit {
 /// A ray prepared for watertight tests: its largest axis becomes z, and a shear takes its direction to (0, 0, 1)
 /// (Woop, Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
 struct ShearedRay {
-    Vec3 origin;
+    Vec3 origin, direction;
     std::size_t kx, ky, kz;
     float sx, sy, sz;
     float t_min, t_max;

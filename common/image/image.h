@@ -8,6 +8,9 @@
 
 namespace duet {
 
+/// The largest width or height of a picture that is rendered.
+inline constexpr int kMaxPictureSide = 16384;
+
 /// width × height pixels of any type; (0, 0) is the upper left one.
 template <typename Pixel> class Image {
 public:

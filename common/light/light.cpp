@@ -98,7 +98,7 @@ bool emits_towards(const SurfaceLight& light, Vec3 p) {
         }
     } const side{Vec3d(p)};
     const double front = std::visit(side, light.shape);
-    return front != 0 && (light.two_sided || (front > 0) != light.flipped);
+    return front != 0 && (light.two_sided || front > 0);
 }
 
 std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u) {

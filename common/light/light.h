@@ -33,7 +33,6 @@ struct SurfaceLight {
         Vec3 a, b, c;
     };
     std::variant<Triangle, Quad, Sphere> shape; ///< front sides as in the scene: (b − a) × (c − a); u × v; outwards
-    bool flipped = false;                       ///< a sphere under a mirroring transform emits inwards
     bool two_sided = false;
     Rgb radiance; ///< W/(m² sr)
     std::uint32_t object = 0, primitive = 0;

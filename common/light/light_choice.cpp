@@ -13,6 +13,13 @@ LightChooser::LightChooser(const std::vector<Light>& lights, float environment_p
     // A power may exceed float's range at extreme scales: such a light takes (nearly) all samples.
     for (double& power : powers)
         power = power > 0 ? std::min(power, static_cast<double>(std::numeric_limits<float>::max())) : 0.0;
+    // Power says little of what reaches a point: the sun and the sky of a scene a kilometre wide would starve the lamp
+    // on the table. Half of the samples are shared evenly, so no light's probability is below 1/2n.
+    double total = 0;
+    for (const double power : powers) total += power;
+    const auto lit = static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0; }));
+    if (total > 0)
+        for (double& power : powers) power = power > 0 ? 0.5 / lit + 0.5 * (power / total) : 0.0;
     distribution_ = Distribution1D(powers);
 }
 

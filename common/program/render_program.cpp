@@ -63,6 +63,8 @@ void check_output(const Options& options) {
         throw Error(
             message("--orbit: the output's name must hold %04d for the frame's number, found ", options.output));
     check_writable_image(options.output);
+    if (options.ascii && std::filesystem::path(options.output).extension() != ".ppm")
+        throw Error(message("--ascii: only a .ppm can be written as text, found ", options.output));
     if (!options.stats.empty() && options.stats != "-") {
         const std::filesystem::path folder = std::filesystem::absolute(options.stats).parent_path();
         if (!std::filesystem::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
@@ -104,11 +106,11 @@ int render_all(const RenderProgram& program, const Options& options) {
     const InterruptFlag interrupt;
     const int frames = options.orbit > 0 ? options.orbit : 1;
     nlohmann::json all_statistics = nlohmann::json::array();
+    ProgressBar bar(program.name, options.quiet);
     for (int frame = 0; frame < frames && !interrupt.raised(); ++frame) {
         const View view{options.orbit > 0 ? orbited(scene.camera, frame, frames) : scene.camera, context.width,
                         context.height};
         const std::string output = options.orbit > 0 ? frame_path(options.output, frame) : options.output;
-        ProgressBar bar(program.name, options.quiet);
         Control control{&interrupt.flag(), [&](double fraction) { bar.update((frame + fraction) / frames); }};
         watch.restart();
         const Rendering rendering = render(view, control);
@@ -159,11 +161,13 @@ PictureSize parse_picture_size(std::string_view text) {
     const auto good = [&] {
         if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
         const auto height = std::from_chars(width.ptr + 1, end, size.height);
-        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= 16384 &&
-               size.height >= 1 && size.height <= 16384;
+        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxPictureSide &&
+               size.height >= 1 && size.height <= kMaxPictureSide &&
+               static_cast<long long>(size.width) * size.height <= kMaxImagePixels;
     };
     if (!good())
-        throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to 16384"));
+        throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to ",
+                            kMaxPictureSide, ", and at most ", kMaxImagePixels, " pixels"));
     return size;
 }
 

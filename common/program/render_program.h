@@ -40,7 +40,7 @@ struct ParsedCommandLine {
 };
 ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv);
 
-/// "640x480" → width and height, each in [1, 16384]; throws Error.
+/// "640x480" → width and height, each in [1, kMaxPictureSide], at most kMaxImagePixels together; throws Error.
 struct PictureSize {
     int width, height;
 };

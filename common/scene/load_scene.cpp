@@ -1,3 +1,4 @@
+#include "common/image/image_file.h"
 #include "common/scene/bare_mesh.h"
 #include "common/scene/json_reader.h"
 #include "common/scene/read_lights.h"
@@ -14,13 +15,16 @@ namespace duet {
 
 namespace {
 
-/// A scene file is text that people and scripts write: 1 GiB is far more than kMaxObjects need.
-constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 30;
+/// A scene file is text that people and scripts write, meshes and pictures beside it. Its tree takes up to fifty times
+/// its bytes of memory.
+constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
 
 void read_image_size(const JsonValue& image, Scene& scene) {
     image.check_keys(scene_keys("image"));
     if (image.has("width")) scene.width = image.at("width").integer(1, kMaxPictureSide);
     if (image.has("height")) scene.height = image.at("height").integer(1, kMaxPictureSide);
+    const long long pixels = static_cast<long long>(scene.width) * scene.height;
+    if (pixels > kMaxImagePixels) image.fail(message("found ", pixels, " pixels, expected at most ", kMaxImagePixels));
 }
 
 Scene read_scene(const std::filesystem::path& path) {

@@ -6,8 +6,6 @@
 
 namespace duet {
 
-inline constexpr int kMaxPictureSide = 16384;
-
 Camera read_camera(const JsonValue& camera);
 /// One of "lights".
 Light read_light(const JsonValue& light);

@@ -19,26 +19,27 @@ namespace duet {
 /// still and are placed once are baked: their shape is in world space and their transform the identity.
 struct Object {
     std::string name;
-    std::uint32_t shape = 0;              ///< index into Scene::shapes
-    std::vector<std::uint32_t> materials; ///< index into Scene::materials, one a material slot of the shape; at least one
-    bool identity = true;                 ///< to_world is the identity, at all times
-    bool moving = false;                  ///< to_world_end differs from to_world
-    Mat4 to_world, to_object;             ///< at the start of the motion (time 0)
-    Mat4 to_world_end;                    ///< at its end (time 1); in between entries are interpolated
+    std::uint32_t shape = 0; ///< index into Scene::shapes
+    std::vector<std::uint32_t>
+        materials;            ///< index into Scene::materials, one a material slot of the shape; at least one
+    bool identity = true;     ///< to_world is the identity, at all times
+    bool moving = false;      ///< to_world_end differs from to_world
+    Mat4 to_world, to_object; ///< at the start of the motion (time 0)
+    Mat4 to_world_end;        ///< at its end (time 1); in between entries are interpolated
 };
 
 /// What the scene asks for: pipelines decide once, from this, what to leave out.
 struct SceneNeeds {
     bool textures = false, image_textures = false;
     bool motion = false, lens = false;
-    bool environment = false;      ///< it is not black
+    bool environment = false; ///< it is not black
     bool delta_lights = false, surface_lights = false;
-    bool glossy = false;           ///< rough metal
-    bool specular = false;         ///< mirrors and glass
-    bool transmission = false;     ///< glass
+    bool glossy = false;       ///< rough metal
+    bool specular = false;     ///< mirrors and glass
+    bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;
     bool smooth_normals = false;
-    bool instances = false;        ///< an object whose transform is not the identity
+    bool instances = false; ///< an object whose transform is not the identity
 };
 
 struct Scene {
@@ -52,14 +53,15 @@ struct Scene {
     std::vector<Shape> shapes;
     std::vector<Object> objects;
     std::vector<Light> lights; ///< as described, then one SurfaceLight for each emissive primitive that stands still
-    std::size_t first_surface_light = 0; ///< lights[first_surface_light …] are SurfaceLights, sorted by (object, primitive)
+    std::size_t first_surface_light =
+        0; ///< lights[first_surface_light …] are SurfaceLights, sorted by (object, primitive)
     Environment environment;
     Box3 bounds; ///< of all objects over all their motion
     SceneNeeds needs;
 };
 
-/// Fills in what follows from the rest: surface lights, bounds, needs, closedness of meshes; bakes single, still objects. The last
-/// step of every loader, and of tests that build scenes by hand.
+/// Fills in what follows from the rest: surface lights, bounds, needs, closedness of meshes; bakes single, still
+/// objects. The last step of every loader, and of tests that build scenes by hand.
 void finish_scene(Scene& scene);
 
 /// An object's transform and its inverse at a time in [0, 1] of the motion.
@@ -74,8 +76,8 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
 /// The index in Scene::lights of the SurfaceLight of a primitive, or −1 where it emits nothing or moves.
 std::int64_t surface_light_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
-/// The corners of a triangle or quad in its object's space: 3 or 4 points, in order (quad: corner, +u, +u+v, +v). Of a baked
-/// object these are world space.
+/// The corners of a triangle or quad in its object's space: 3 or 4 points, in order (quad: corner, +u, +u+v, +v). Of a
+/// baked object these are world space.
 struct Corners {
     std::array<Vec3, 4> p;
     int count = 0;

@@ -1,6 +1,7 @@
 #include "raytrace/integrator/light_sampling.h"
 
 #include "common/geometry/quad.h"
+#include "common/vec/robust.h"
 
 namespace duet::raytrace {
 
@@ -37,7 +38,9 @@ float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
 bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
     const Ray ray = spawn_ray(vertex, arrival.wi);
     Hit end;
-    end.t = arrival.distance;
+    // A lamp at a point may lie in a surface, which then does not hide it: the way ends a rounding error before it.
+    end.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - vertex.point.p)
+                          : arrival.distance;
     if (arrival.light >= 0) {
         if (const auto* light =
                 std::get_if<SurfaceLight>(&plan.scene.lights[static_cast<std::size_t>(arrival.light)])) {
