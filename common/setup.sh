@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then builds a preset.
-# Sourced or called by compare/demo.sh and tests/run.sh.
+# Called by compare/demo.sh and tests/run.sh.
 # usage: common/setup.sh [PRESET]        (default: release)
 set -eu
 cd "$(dirname "$0")/.."

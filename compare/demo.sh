@@ -2,9 +2,11 @@
 # Installs what is missing, builds, renders a mesh scene with both pipelines and says where the report is.
 # usage: sh compare/demo.sh [SCENE [ARGUMENTS OF compare run…]]
 set -eu
+here=$PWD
 cd "$(dirname "$0")/.."
-scene=${1:-models/demo.json}
+scene=${1:-$PWD/models/demo.json}
 [ $# -gt 0 ] && shift
+case $scene in /*) ;; *) scene=$here/$scene ;; esac
 sh common/setup.sh release
 out="out/$(basename "${scene%.*}")"
 mkdir -p "$out"

@@ -4,6 +4,7 @@
 #include "compare/report/encode.h"
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace duet::compare {
@@ -73,10 +74,18 @@ json skipped(const Rendering& rendering) {
     return list;
 }
 
-void replace_mark(std::string& text, const std::string& mark, std::string_view value) {
-    const std::size_t at = text.find("{{" + mark + "}}");
-    DUET_CHECK(at != std::string::npos);
-    text.replace(at, mark.size() + 4, value);
+/// The page's template with each {{mark}} replaced by its value, in one pass: what a value holds is no mark.
+std::string fill_in(std::string_view page, const std::map<std::string_view, std::string_view>& values) {
+    std::string text;
+    for (std::size_t at = 0;;) {
+        const std::size_t open = page.find("{{", at);
+        text += page.substr(at, open - at);
+        if (open == std::string_view::npos) return text;
+        const std::size_t close = page.find("}}", open);
+        DUET_CHECK(close != std::string_view::npos);
+        text += values.at(page.substr(open + 2, close - open - 2));
+        at = close + 2;
+    }
 }
 
 std::string escape_html(const std::string& text) {
@@ -123,12 +132,8 @@ std::string report_page(const ReportPage& page) {
                        {"stages", {{"raster", stages(page.raster)}, {"raytrace", stages(page.raytrace)}}},
                        {"skipped", {{"raster", skipped(page.raster)}, {"raytrace", skipped(page.raytrace)}}},
                        {"report", page.report}};
-    std::string text(kReportHtml);
-    replace_mark(text, "title", escape_html(title));
-    replace_mark(text, "css", kReportCss);
-    replace_mark(text, "data", script_json(data));
-    replace_mark(text, "js", kReportJs);
-    return text;
+    const std::string escaped_title = escape_html(title), embedded = script_json(data);
+    return fill_in(kReportHtml, {{"title", escaped_title}, {"css", kReportCss}, {"data", embedded}, {"js", kReportJs}});
 }
 
 } // namespace duet::compare

@@ -3,6 +3,7 @@
 . "$(dirname "$0")/support.sh"
 
 for program in raster raytrace; do
+    rm -f "$scratch"/a.*
     for ending in png jpg tga ppm pfm hdr exr; do
         expect 0 "$bin/$program" models/cornell.json -o "$scratch/a.$ending" --size 24x16 --spp 2 --quiet
         [ -s "$scratch/a.$ending" ] || fail "$program wrote no .$ending"

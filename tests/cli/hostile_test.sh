@@ -30,7 +30,7 @@ printf '' >"$in/empty.json"; refuse empty.json empty.json
 printf '{"camera": {' >"$in/truncated.json"; refuse truncated.json truncated.json
 printf '[1, 2, 3]' >"$in/array.json"; refuse array.json array.json
 head -c 100000 /dev/zero | tr '\0' '[' >"$in/deep.json"; refuse deep.json deep.json
-head -c 4000 /dev/urandom >"$in/noise.json"; refuse noise.json noise.json
+printf '\001\377{\200[[\000\012' >"$in/noise.json"; refuse noise.json noise.json
 
 scene albedo.json '{"type": "diffuse", "albedo": "red"}' "$quad"; refuse albedo.json materials.m.albedo
 scene overflow.json '{"type": "diffuse", "albedo": 1e999}' "$quad"; refuse overflow.json overflow.json

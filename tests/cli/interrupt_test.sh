@@ -8,6 +8,7 @@ for signal in INT TERM; do
     "$bin/raytrace" models/cornell.json -o "$scratch/out.png" --size 64x64 --spp 10000000 --quiet --stats "$scratch/stats.json" &
     process=$!
     sleep 2
+    kill -0 $process || fail "the render ended by itself"
     kill -$signal $process
     code=0
     wait $process || code=$?

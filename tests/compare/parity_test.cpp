@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 using namespace duet;
 using namespace duet::compare;
@@ -19,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scenes of models/, and the meshes of the folder that DUET_MODELS names, if it is set.
+/// The scenes of models/, and the meshes of the folder that DUET_MODELS names, or that lies beside the checkout; none
+/// where there is neither.
 std::vector<fs::path> all_scenes() {
     std::vector<fs::path> paths;
     const auto collect = [&](const fs::path& folder, const std::string& ending) {
@@ -28,7 +30,12 @@ std::vector<fs::path> all_scenes() {
                 paths.push_back(entry.path());
     };
     collect(fs::path(DUET_SOURCE_DIR) / "models", ".json");
-    if (const char* const folder = std::getenv("DUET_MODELS")) collect(folder, ".obj");
+    const char* const named = std::getenv("DUET_MODELS");
+    const fs::path meshes = named != nullptr ? fs::path(named) : fs::path(DUET_SOURCE_DIR) / "../shared/models";
+    if (fs::is_directory(meshes))
+        collect(meshes, ".obj");
+    else
+        MESSAGE("no folder ", meshes.string(), " of further meshes: only models/ is tested");
     std::sort(paths.begin(), paths.end());
     return paths;
 }
@@ -114,11 +121,12 @@ TEST_SUITE("statistical") {
         const Rendering a = raster::render(raster::prepare(scene, closed), view, closed, control);
         const Rendering b = raytrace::render(raytrace::prepare(scene, sampled), view, sampled, control);
 
-        std::map<std::uint32_t, LightOnObject> objects;
+        // By object, and each face of an object by itself, so that errors of opposite sign cannot cancel.
+        std::map<std::pair<std::uint32_t, std::uint32_t>, LightOnObject> objects;
         for (std::size_t i = 0; i < a.hit.size(); ++i) {
             if (!a.hit[i].valid() || a.hit[i].object != b.hit[i].object || a.hit[i].primitive != b.hit[i].primitive)
                 continue;
-            LightOnObject& object = objects[a.hit[i].object];
+            LightOnObject& object = objects[{a.hit[i].object, a.hit[i].primitive}];
             object.raster += Rgbd(a.radiance[i]);
             object.raytrace += Rgbd(b.radiance[i]);
             object.variance += Rgbd(b.variance[i]);
@@ -128,7 +136,7 @@ TEST_SUITE("statistical") {
         constexpr double kTolerance = 0.002;
         int lit = 0;
         for (const auto& entry : objects) {
-            const std::string& name = scene.objects[entry.first].name;
+            const std::string name = message(scene.objects[entry.first.first].name, ", primitive ", entry.first.second);
             const LightOnObject& object = entry.second;
             for (std::size_t c = 0; c < 3; ++c) {
                 if (object.raytrace[c] / object.pixels < 1e-6 && object.raster[c] / object.pixels < 1e-6) continue;

@@ -141,6 +141,8 @@ TEST_SUITE("unit") {
         CHECK(page.text.find("alert(1)</script>") == std::string::npos);
         CHECK(page.data()["objects"][0] == "</script><script>alert(1)</script>");
         CHECK(tag_fault(without_scripts_and_styles(page.text)).empty());
+        const Page marks("{{js}} {{data}} {{css}}"); // what a name says is no mark of the template
+        CHECK(marks.data()["objects"][0] == "{{js}} {{data}} {{css}}");
     }
 
     TEST_CASE("figures that are no numbers are null in JSON") {

@@ -1,7 +1,7 @@
 // OBJ and MTL files: any bytes either load to a valid mesh or throw Error with one line. What follows the first «%» is
 // the MTL file m.mtl.
-#include "common/scene/load_obj.h"
-#include "common/scene/smooth_normals.h"
+#include "common/scene/obj/load_obj.h"
+#include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"
 
 #include <algorithm>

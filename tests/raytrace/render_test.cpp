@@ -98,7 +98,8 @@ TEST_SUITE("unit") {
         film.add(0, 0, 0, Rgb(1.0f));
         CHECK(next_pass(settings, 1, 0, film)); // the error is not known yet
         film.add(0, 0, 1, Rgb(1.0f));
-        CHECK(!next_pass(settings, 2, 0, film));
+        CHECK(next_pass(settings, 2, 0, film)); // two equal samples are no proof yet
+        CHECK(!next_pass(settings, 16, 0, film));
     }
 
     TEST_CASE("a limit of time or error ends the render between passes") {

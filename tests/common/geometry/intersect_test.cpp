@@ -51,6 +51,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("triangle hits agree with a double-precision plane, at all scales") {
         Random random;
+        int tried = 0, hits = 0;
         for (int trial = 0; trial < 20000; ++trial) {
             const float scale = std::pow(10.0f, random.uniform(-6, 6));
             const Vec3 a = random.vector() * scale, b = random.vector() * scale, c = random.vector() * scale;
@@ -62,13 +63,16 @@ TEST_SUITE("unit") {
             const double cosine = dot(n, d) / length(n);
             if (std::abs(cosine) < 1e-3 || length(n) < 1e-3 * static_cast<double>(scale) * static_cast<double>(scale))
                 continue;
+            ++tried;
             const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
             if (!hit) continue; // the target may have been rounded out of the triangle: the fan test covers leaks
+            ++hits;
             const double exact = dot(n, Vec3d(a) - Vec3d(ray.origin)) / dot(n, d);
             CHECK(std::abs(static_cast<double>(hit->t) - exact) * std::abs(cosine) <= 2e-6 * std::abs(exact));
             CHECK(std::abs(hit->u - u) < 1e-3f);
             CHECK(std::abs(hit->v - v) < 1e-3f);
         }
+        CHECK(hits > 0.9 * tried);
     }
 
     TEST_CASE("degenerate triangles and rays are missed, not hit at NaN") {
@@ -82,6 +86,37 @@ TEST_SUITE("unit") {
         CHECK_FALSE(intersect_triangle(ShearedRay({{-1, 0.2f, 0}, {1, 0, 0}}), a, b, c).has_value()); // edge-on
         const Ray minus_zero{{0.2f, 0.2f, 1}, {-0.0f, -0.0f, -1}};
         CHECK(intersect_triangle(ShearedRay(minus_zero), a, b, c).has_value());
+    }
+
+    TEST_CASE("what touches a surface ten kilometres wide is told from the surface itself") {
+        Random random;
+        const float half = 1e4f;
+        const Quad ground{{-half, 0, half}, {2 * half, 0, 0}, {0, 0, -2 * half}};
+        const Shape shape = QuadList{{ground}};
+        for (int trial = 0; trial < 5000; ++trial) {
+            const float height = std::pow(10.0f, random.uniform(-6, 1));
+            const Vec3 above(random.uniform(-half, half) * 0.9f, height, random.uniform(-half, half) * 0.9f);
+            const Vec3 down = normalize(Vec3(random.uniform(), -0.1f - std::abs(random.uniform()), random.uniform()));
+            const auto hit = intersect_quad(ShearedRay({above, down}), ground);
+            REQUIRE(hit.has_value());
+            const double exact = -static_cast<double>(above.y) / static_cast<double>(down.y);
+            CHECK(std::abs(static_cast<double>(hit->t) - exact) <= 4e-3); // rounding of the corners' distances
+            const SurfacePoint point =
+                surface_point(shape, {0, 0, hit->u, hit->v, hit->t}, {above, down}, Mat4(), Mat4(), true);
+            const Vec3 up(down.x, -down.y, down.z);
+            CHECK_FALSE(intersect_quad(ShearedRay({offset_origin(point, up), up}), ground).has_value());
+        }
+    }
+
+    TEST_CASE("triangles of the size of atoms and of galaxies are hit, at finite distances") {
+        for (const float scale : {1e-15f, 1e-12f, 1e-6f, 1.0f, 1e6f, 1e12f, 1e15f, 1e17f}) {
+            const auto hit = intersect_triangle(ShearedRay({Vec3(0.2f, 0.2f, 2) * scale, {0, 0, -1}}), Vec3(0, 0, 0),
+                                                Vec3(1, 0, 0) * scale, Vec3(0, 1, 0) * scale);
+            CAPTURE(scale);
+            REQUIRE(hit.has_value());
+            CHECK(hit->t == doctest::Approx(2 * scale).epsilon(1e-5));
+            CHECK(hit->u == doctest::Approx(0.2).epsilon(1e-5));
+        }
     }
 
     TEST_CASE("a quad's coordinates run along its edges, across both halves") {
@@ -202,6 +237,10 @@ TEST_SUITE("unit") {
         Mesh inside_out = tetrahedron;
         for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
         CHECK_FALSE(is_closed_outwards(inside_out));
+        Mesh two_parts = tetrahedron; // a large part outwards, a small one inside-out beside it
+        for (const Vec3& p : tetrahedron.positions) two_parts.positions.push_back(p * 0.5f + Vec3(3, 0, 0));
+        for (const auto& t : tetrahedron.triangles) two_parts.triangles.push_back({t[0] + 4, t[2] + 4, t[1] + 4});
+        CHECK_FALSE(is_closed_outwards(two_parts));
         Mesh one_flipped = tetrahedron;
         std::swap(one_flipped.triangles[0][0], one_flipped.triangles[0][1]);
         CHECK_FALSE(is_closed_outwards(one_flipped));

@@ -201,16 +201,16 @@ TEST_SUITE("unit") {
         CHECK_FALSE(sample_light(lamp(Triangle{}, true), {0, 0, 2}, u).has_value());
     }
 
-    TEST_CASE("the choice among lights follows power and hands back a fresh number") {
+    TEST_CASE("the choice among lights is half by power, half even, and hands back a fresh number") {
         const std::vector<Light> lights{PointLight{{}, Rgb(1.0f)}, PointLight{{}, Rgb(0.0f)},
                                         PointLight{{}, Rgb(3.0f)}};
         const float environment = environment_power(ConstantEnvironment{Rgb(1.0f)}, 1);
         CHECK(environment == doctest::Approx(4 * kPiDouble * kPiDouble));
         const LightChooser chooser(lights, environment, 1);
         CHECK(chooser.environment_index() == 3);
-        CHECK(chooser.probability(0) == doctest::Approx(1 / (4 + kPiDouble)));
+        CHECK(chooser.probability(0) == doctest::Approx(0.5 / 3 + 0.5 / (4 + kPiDouble)));
         CHECK(chooser.probability(1) == 0);
-        CHECK(chooser.probability(3) == doctest::Approx(kPiDouble / (4 + kPiDouble)));
+        CHECK(chooser.probability(3) == doctest::Approx(0.5 / 3 + 0.5 * kPiDouble / (4 + kPiDouble)));
         CHECK(chooser.probability(4) == 0);
         double counts[4]{}, remapped[4]{};
         for (int i = 0; i < 10'000; ++i) {
@@ -230,7 +230,8 @@ TEST_SUITE("unit") {
         CHECK(LightChooser().empty());
         CHECK(LightChooser({}, 5, 1).sample(0.5f)->index == 0);
         const LightChooser huge({PointLight{{}, Rgb(std::numeric_limits<float>::max())}}, 1, 1);
-        CHECK(huge.probability(0) == 1);
+        CHECK(huge.probability(0) == doctest::Approx(0.75));
+        CHECK(huge.probability(1) == doctest::Approx(0.25)); // however dim beside it
     }
 }
 

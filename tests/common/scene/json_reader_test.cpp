@@ -1,4 +1,4 @@
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 
 #include "tests/common/scene/scene_files.h"
 

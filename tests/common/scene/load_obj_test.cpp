@@ -1,5 +1,5 @@
 // OBJ and MTL files: what becomes of good ones, and what is said of hostile ones.
-#include "common/scene/load_obj.h"
+#include "common/scene/obj/load_obj.h"
 #include "common/scene/scene.h"
 
 #include "tests/common/scene/scene_files.h"

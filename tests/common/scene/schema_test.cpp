@@ -1,7 +1,7 @@
 // scene.schema.json says what the reader does: the same keys, and the same verdict on good and bad files.
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
-#include "common/scene/scene_keys.h"
+#include "common/scene/json/scene_keys.h"
 
 #include "tests/common/scene/scene_files.h"
 

@@ -1,5 +1,5 @@
 // Polygons into triangles: the triangles cover the polygon exactly, at any scale, offset and inclination.
-#include "common/scene/triangulate.h"
+#include "common/scene/obj/triangulate.h"
 
 #include <doctest/doctest.h>
 

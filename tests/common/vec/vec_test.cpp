@@ -59,6 +59,8 @@ TEST_SUITE("unit") {
             for (std::size_t r = 0; r < 4; ++r)
                 for (std::size_t c = 0; c < 3; ++c)
                     CHECK(identity[r][c] == doctest::Approx(r == c ? 1.0 : 0.0).epsilon(1e-9));
+            const Vec3d there = transform_point(m, Vec3d(1, 2, 3));
+            CHECK(length(transform_point(inverse_affine(m), there) - Vec3d(1, 2, 3)) < 1e-9);
             const Vec3d p(u(engine), u(engine), u(engine)), q(u(engine), u(engine), u(engine));
             const Vec3d n = cross(p, q); // stays perpendicular to both when it is taken along as a normal
             const Vec3d image = transform_normal(inverse_affine(m), n);

@@ -1,7 +1,7 @@
-#include "common/scene/read_materials.h"
+#include "common/scene/json/read_materials.h"
 
 #include "common/image/image_file.h"
-#include "common/scene/scene_keys.h"
+#include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-#include "common/scene/read_lights.h"
+#include "common/scene/json/read_lights.h"
 
 #include "common/image/image_file.h"
-#include "common/scene/read_materials.h"
-#include "common/scene/scene_keys.h"
+#include "common/scene/json/read_materials.h"
+#include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
 namespace duet {

@@ -1,7 +1,7 @@
 // Transforms of scene files: lists of steps, applied in order.
 #pragma once
 
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/vec/matrix.h"
 
 namespace duet {

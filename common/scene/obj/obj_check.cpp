@@ -1,6 +1,6 @@
-#include "common/scene/obj_check.h"
+#include "common/scene/obj/obj_check.h"
 
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
 

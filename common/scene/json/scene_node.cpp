@@ -1,8 +1,8 @@
-#include "common/scene/scene_node.h"
+#include "common/scene/json/scene_node.h"
 
-#include "common/scene/load_obj.h"
-#include "common/scene/read_objects.h"
-#include "common/scene/scene_keys.h"
+#include "common/scene/obj/load_obj.h"
+#include "common/scene/json/read_objects.h"
+#include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
 namespace duet {

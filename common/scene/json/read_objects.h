@@ -1,8 +1,8 @@
 // The objects of scene files: shapes, groups and instances, flattened to Scene::objects.
 #pragma once
 
-#include "common/scene/json_reader.h"
-#include "common/scene/read_materials.h"
+#include "common/scene/json/json_reader.h"
+#include "common/scene/json/read_materials.h"
 #include "common/scene/scene.h"
 
 namespace duet {

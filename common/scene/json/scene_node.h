@@ -1,9 +1,9 @@
 // The tree of objects as a scene file describes it, before groups and instances are flattened.
 #pragma once
 
-#include "common/scene/json_reader.h"
-#include "common/scene/read_materials.h"
-#include "common/scene/read_transform.h"
+#include "common/scene/json/json_reader.h"
+#include "common/scene/json/read_materials.h"
+#include "common/scene/json/read_transform.h"
 #include "common/scene/scene.h"
 
 #include <map>

@@ -1,7 +1,7 @@
 // Camera, picture size, lights and environment of scene files.
 #pragma once
 
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 
 namespace duet {

@@ -1,7 +1,7 @@
 // The keys of scene files, by kind of JSON object: what the readers accept, and what scene.schema.json must say.
 #pragma once
 
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 
 namespace duet {
 

@@ -1,4 +1,4 @@
-#include "common/scene/triangulate.h"
+#include "common/scene/obj/triangulate.h"
 
 #include "common/vec/box.h"
 #include "common/vec/robust.h"

@@ -1,4 +1,4 @@
-#include "common/scene/scene_keys.h"
+#include "common/scene/json/scene_keys.h"
 
 #include "common/system/error.h"
 

@@ -1,11 +1,11 @@
-#include "common/scene/load_obj.h"
+#include "common/scene/obj/load_obj.h"
 
-#include "common/scene/json_reader.h"
-#include "common/scene/load_mtl.h"
-#include "common/scene/obj_check.h"
-#include "common/scene/obj_mesh.h"
-#include "common/scene/read_materials.h"
-#include "common/scene/smooth_normals.h"
+#include "common/scene/json/json_reader.h"
+#include "common/scene/obj/load_mtl.h"
+#include "common/scene/obj/obj_check.h"
+#include "common/scene/obj/obj_mesh.h"
+#include "common/scene/json/read_materials.h"
+#include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"
 
 #include <tiny_obj_loader.h>

@@ -1,6 +1,6 @@
-#include "common/scene/obj_mesh.h"
+#include "common/scene/obj/obj_mesh.h"
 
-#include "common/scene/triangulate.h"
+#include "common/scene/obj/triangulate.h"
 #include "common/system/error.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "common/scene/read_transform.h"
+#include "common/scene/json/read_transform.h"
 
-#include "common/scene/scene_keys.h"
+#include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
 #include <algorithm>

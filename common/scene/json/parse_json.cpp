@@ -1,5 +1,5 @@
 // The one file that knows nlohmann/json for scenes: its SAX events become a tree of JsonNode.
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/system/error.h"
 
 #include <nlohmann/json.hpp>

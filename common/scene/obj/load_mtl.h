@@ -1,7 +1,7 @@
 // MTL files: Wavefront materials, with the PBR extension, mapped to ours. models/README.md has the table.
 #pragma once
 
-#include "common/scene/load_obj.h"
+#include "common/scene/obj/load_obj.h"
 
 #include <map>
 #include <string>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/shape.h"
-#include "common/scene/obj_check.h"
+#include "common/scene/obj/obj_check.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "common/scene/smooth_normals.h"
+#include "common/scene/obj/smooth_normals.h"
 
 #include <algorithm>
 #include <bit>

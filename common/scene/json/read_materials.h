@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/image/image.h"
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 
 #include <filesystem>

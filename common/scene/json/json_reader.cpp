@@ -1,4 +1,4 @@
-#include "common/scene/json_reader.h"
+#include "common/scene/json/json_reader.h"
 
 #include "common/system/error.h"
 
