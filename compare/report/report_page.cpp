@@ -27,6 +27,13 @@ json picture_planes(const ImageRgb& image) {
     return planes;
 }
 
+// The difference has planes of its own: that of two rounded numbers would be mostly rounding where they are close.
+json difference_planes(const ImageRgb& a, const ImageRgb& b) {
+    ImageRgb difference(a.width(), a.height());
+    for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
+    return picture_planes(difference);
+}
+
 // Objects are stored plus one: none becomes 0. The path tracer's hits are stored as what differs (exclusive or) from
 // the rasterizer's, which is next to nothing.
 std::uint32_t object_code(const Hit& hit) { return hit.object + 1; }
@@ -128,6 +135,7 @@ std::string report_page(const ReportPage& page) {
                        {"objects", object_labels(page.scene)},
                        {"raster", picture_planes(page.raster.radiance)},
                        {"raytrace", picture_planes(page.raytrace.radiance)},
+                       {"difference", difference_planes(page.raster.radiance, page.raytrace.radiance)},
                        {"hits", hit_planes(page)},
                        {"stages", {{"raster", stages(page.raster)}, {"raytrace", stages(page.raytrace)}}},
                        {"skipped", {{"raster", skipped(page.raster)}, {"raytrace", skipped(page.raytrace)}}},

@@ -25,12 +25,12 @@ refuse() { # refuse FILE TEXT
     one_line_error "$2"
 }
 
-refuse missing.json missing.json
-printf '' >"$in/empty.json"; refuse empty.json empty.json
-printf '{"camera": {' >"$in/truncated.json"; refuse truncated.json truncated.json
-printf '[1, 2, 3]' >"$in/array.json"; refuse array.json array.json
-head -c 100000 /dev/zero | tr '\0' '[' >"$in/deep.json"; refuse deep.json deep.json
-printf '\001\377{\200[[\000\012' >"$in/noise.json"; refuse noise.json noise.json
+refuse missing.json 'no such file'
+printf '' >"$in/empty.json"; refuse empty.json 'unexpected end of input'
+printf '{"camera": {' >"$in/truncated.json"; refuse truncated.json 'line 1, column 13'
+printf '[1, 2, 3]' >"$in/array.json"; refuse array.json 'expected an object'
+head -c 100000 /dev/zero | tr '\0' '[' >"$in/deep.json"; refuse deep.json 'nested more than'
+printf '\001\377{\200[[\000\012' >"$in/noise.json"; refuse noise.json 'syntax error'
 
 scene albedo.json '{"type": "diffuse", "albedo": "red"}' "$quad"; refuse albedo.json materials.m.albedo
 scene overflow.json '{"type": "diffuse", "albedo": 1e999}' "$quad"; refuse overflow.json overflow.json
@@ -38,7 +38,7 @@ scene unknown.json '{"type": "diffuse", "albdeo": 1}' "$quad"; refuse unknown.js
 scene kind.json '{"type": "velvet"}' "$quad"; refuse kind.json velvet
 scene nomaterial.json "$plain" '{"type": "sphere", "center": [0,0,0], "radius": 1, "material": "missing"}'; refuse nomaterial.json missing
 scene radius.json "$plain" '{"type": "sphere", "center": [0,0,0], "radius": -1, "material": "m"}'; refuse radius.json objects[0].radius
-scene cycle.json "$plain" '{"type": "group", "name": "a", "objects": [{"type": "instance", "of": "a"}]}'; refuse cycle.json cycle
+scene cycle.json "$plain" '{"type": "group", "name": "a", "objects": [{"type": "instance", "of": "a"}]}'; refuse cycle.json 'is part of itself'
 scene size.json "$plain" "$quad" ', "image": {"width": 1000000, "height": 10}'; refuse size.json image.width
 scene nomesh.json "$plain" "$(mesh missing.obj)"; refuse nomesh.json missing.obj
 
@@ -47,24 +47,24 @@ bad_obj() { # bad_obj CONTENTS TEXT: as a mesh of a scene
     printf "$1" >"$in/bad.obj"
     refuse noobj.json "$2"
 }
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n' bad.obj
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n' bad.obj
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n' bad.obj
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n' bad.obj
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/5 2/6 3/7\n' bad.obj
-bad_obj 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' bad.obj
-bad_obj 'v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n' bad.obj
-bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\n' bad.obj
-bad_obj '' bad.obj
-bad_obj 'hello\n' bad.obj
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n' 'line 4: the vertex index 9 is out of range'
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n' 'line 4: the vertex index -9 is out of range'
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n' 'line 4: the vertex index 0 is out of range'
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n' 'line 4: the vertex index 99999999999999999999 is out of range'
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/5 2/6 3/7\n' 'texture coordinate index'
+bad_obj 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' 'line 2: found "nan"'
+bad_obj 'v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n' 'line 2: found "1e30"'
+bad_obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\n' 'no faces'
+bad_obj '' 'no faces'
+bad_obj 'hello\n' 'no faces'
 
 # Pictures as textures.
 scene texture.json '{"type": "diffuse", "albedo": {"texture": "t"}}' "$quad" ', "textures": {"t": {"type": "image", "file": "bad.png"}}'
-printf '\211PNG\r\n\032\n\000\000\000\015IHDR\000\001\206\240\000\001\206\240\010\002\000\000\000' >"$in/bad.png"; refuse texture.json bad.png # claims 100,000 x 100,000
-printf '\211PNG\r\n\032\n' >"$in/bad.png"; refuse texture.json bad.png
-printf 'P6 100000 100000 255\n' >"$in/bad.png"; refuse texture.json bad.png
-printf 'PF\n30000 30000\n-1.0\n' >"$in/bad.png"; refuse texture.json bad.png
-printf '' >"$in/bad.png"; refuse texture.json bad.png
+printf '\211PNG\r\n\032\n\000\000\000\015IHDR\000\001\206\240\000\001\206\240\010\002\000\000\000' >"$in/bad.png"; refuse texture.json 'truncated' # claims 100,000 x 100,000
+printf '\211PNG\r\n\032\n' >"$in/bad.png"; refuse texture.json 'truncated'
+printf 'P6 100000 100000 255\n' >"$in/bad.png"; refuse texture.json '100000 x 100000 pixels'
+printf 'PF\n30000 30000\n-1.0\n' >"$in/bad.png"; refuse texture.json '30000 x 30000 pixels'
+printf '' >"$in/bad.png"; refuse texture.json 'empty file'
 rm "$in/bad.png"; refuse texture.json bad.png
 mkdir "$in/bad.png"; refuse texture.json bad.png
 

@@ -48,8 +48,8 @@ async function decodePicture(texts) {
 }
 
 async function decodeAll() {
-  const [raster, raytrace, object, primitive, objectChange, primitiveChange, verdict] = await Promise.all([
-    decodePicture(data.raster), decodePicture(data.raytrace),
+  const [raster, raytrace, difference, object, primitive, objectChange, primitiveChange, verdict] = await Promise.all([
+    decodePicture(data.raster), decodePicture(data.raytrace), decodePicture(data.difference),
     decodePlane(data.hits.object, 4), decodePlane(data.hits.primitive, 4),
     decodePlane(data.hits.object_change, 4), decodePlane(data.hits.primitive_change, 4),
     decodePlane(data.hits.verdict, 1)]);
@@ -57,7 +57,7 @@ async function decodeAll() {
   const hit = (i, change) => ({
     object: (object[i] ^ (change ? objectChange[i] : 0)) >>> 0,
     primitive: (primitive[i] ^ (change ? primitiveChange[i] : 0)) >>> 0 });
-  return { raster, raytrace, verdict, rasterHit: i => hit(i, false), raytraceHit: i => hit(i, true) };
+  return { raster, raytrace, difference, verdict, rasterHit: i => hit(i, false), raytraceHit: i => hit(i, true) };
 }
 
 const minus = text => String(text).replace("-", "−");

@@ -63,14 +63,7 @@ function updateExposure() {
   showInspector();
 }
 
-const niceRange = value => {
-  const power = 10 ** Math.floor(Math.log10(value));
-  return [1, 2, 5, 10].map(step => step * power).find(v => v >= value * 0.999);
-};
-function automaticRange() {
-  const sizes = Array.from(difference, Math.abs).filter(Number.isFinite).sort((p, q) => p - q);
-  return niceRange(Math.max(sizes.length ? sizes[Math.floor((sizes.length - 1) * 0.99)] : 0, 0.001));
-}
+function automaticRange() { return report.difference_range > 0 ? report.difference_range : 0.001; }
 
 function updateDifference() {
   const beyond = paintDifference(layers.difference, difference, state.range, state.palette);
@@ -123,7 +116,7 @@ function wire() {
   element("exposure").addEventListener("input", event => setExposure(Number(event.target.value)));
   element("exposure").addEventListener("dblclick", () => setExposure(0));
   element("range").addEventListener("input", event => { state.range = 10 ** Number(event.target.value); updateDifference(); changed(); });
-  element("channel").addEventListener("change", event => { state.channel = event.target.value; difference = differences(decoded.raster, decoded.raytrace, state.channel); updateDifference(); changed(); });
+  element("channel").addEventListener("change", event => { state.channel = event.target.value; difference = differences(state.channel); updateDifference(); changed(); });
   element("palette").addEventListener("change", event => { state.palette = event.target.value; updateDifference(); changed(); });
   element("flicker-play").addEventListener("click", () => { state.play = !state.play; updateFlicker(); writeAddress(); });
   element("flicker-swap").addEventListener("click", swapByHand);
@@ -175,7 +168,7 @@ function refresh() {
   applyTheme();
   if (state.px >= width || state.py >= height) state.px = state.py = -1;
   held = state.px >= 0;
-  difference = differences(decoded.raster, decoded.raytrace, state.channel);
+  difference = differences(state.channel);
   if (!(state.range > 0)) state.range = defaults.range = automaticRange();
   updateExposure();
   updateFlicker();

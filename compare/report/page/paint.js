@@ -66,12 +66,12 @@ function falseColor(palette, value) {
 const channels = { r: [1, 0, 0], g: [0, 1, 0], b: [0, 0, 1], luminance: [0.2126, 0.7152, 0.0722] };
 
 // a − b of every pixel in one channel or in luminance.
-function differences(a, b, channel) {
+function differences(channel) {
   const result = new Float32Array(pixelCount), weights = channels[channel];
   for (let c = 0; c < 3; ++c) {
     if (weights[c] === 0) continue;
-    const pa = a.planes[c], pb = b.planes[c], weight = weights[c];
-    for (let i = 0; i < pixelCount; ++i) result[i] += weight * (halfValue[pa[i]] - halfValue[pb[i]]);
+    const plane = decoded.difference.planes[c], weight = weights[c];
+    for (let i = 0; i < pixelCount; ++i) result[i] += weight * halfValue[plane[i]];
   }
   return result;
 }

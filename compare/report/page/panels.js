@@ -134,6 +134,8 @@ function showSkipped() {
   const list = report.raster.approximations;
   fill("approximations", list.length ? make("ul", { class: "plain" }, ...list.map(text => make("li", {}, text)))
     : make("p", {}, "Nothing: in this scene it computes what the path tracer computes."));
+  const ends = report.raytrace.approximations;
+  if (ends.length) element("approximations").append(make("p", {}, "The path tracer's own: " + ends.join("; ") + "."));
   fill("skipped", ...pipelines.map(p => {
     const entries = data.skipped[p.key];
     return make("div", {}, make("h3", {}, tag(p)), entries.length ? make("table", {}, make("tbody", {}, ...entries.map(([what, why, count]) =>
