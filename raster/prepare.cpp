@@ -12,10 +12,8 @@ bool all_opaque(const Scene& scene, const Object& object) {
 }
 
 bool any_emissive(const Scene& scene, const Object& object) {
-    return std::any_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
-        const auto* emissive = std::get_if<Emissive>(&scene.materials[material]);
-        return emissive != nullptr && !is_black(emissive->radiance);
-    });
+    return std::any_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
 }
 
 PreparedObject prepare_object(const Scene& scene, const Object& object) {

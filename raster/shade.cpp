@@ -58,12 +58,6 @@ Rgb lit(const PreparedData& data, const Settings& settings, const ShadingPoint& 
     return sum;
 }
 
-Rgb as_color(Vec3 n) {
-    // Rounding takes a unit vector's component beyond 1 by an ulp: no colour is negative.
-    const auto channel = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
-    return {channel(n.x), channel(n.y), channel(n.z)};
-}
-
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
     if (settings.shading != Shading::kLit || !settings.environment || !data.scene.needs.environment) return {};
     return radiance(data.scene.environment, ray.direction);
@@ -85,7 +79,7 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
         result.radiance = lit(data, settings, point, -ray.direction);
         break;
     case Shading::kNormal:
-        result.radiance = as_color(point.ns);
+        result.radiance = direction_color(point.ns);
         break;
     case Shading::kAlbedo:
         result.radiance = color();

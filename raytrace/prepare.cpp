@@ -8,20 +8,9 @@ namespace duet::raytrace {
 
 namespace {
 
-bool textured(const Material& material) {
-    struct {
-        bool operator()(const Diffuse& m) const { return m.albedo.texture >= 0; }
-        bool operator()(const Metal& m) const { return m.reflectance.texture >= 0; }
-        bool operator()(const Dielectric& m) const { return m.tint.texture >= 0; }
-        bool operator()(const Emissive& m) const { return m.albedo.texture >= 0; }
-    } const has_texture;
-    return std::visit(has_texture, material);
-}
+bool textured(const Material& material) { return texture_slot(material).texture >= 0; }
 
-bool emits(const Material& material) {
-    const auto* emissive = std::get_if<Emissive>(&material);
-    return emissive != nullptr && !is_black(emissive->radiance);
-}
+bool emits(const Material& material) { return emitter(material) != nullptr; }
 
 template <typename Predicate> bool any_used_material(const Scene& scene, Predicate predicate) {
     return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {

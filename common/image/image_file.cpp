@@ -44,28 +44,12 @@ constexpr std::array kWriters{
     Writer{".hdr", encode_hdr}, Writer{".exr", encode_nothing},
 };
 
-std::string lower_case_ending(const fs::path& path) {
-    std::string ending = path.extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return ending;
-}
-
 const Writer& find_writer(const fs::path& path) {
     const std::string ending = lower_case_ending(path);
     for (const Writer& writer : kWriters)
         if (writer.ending == ending) return writer;
     throw Error(message(path.string(), ": ", ending.empty() ? "no ending" : "unknown ending " + ending,
                         ", expected .png, .jpg, .jpeg, .tga, .ppm, .pfm, .hdr or .exr"));
-}
-
-void write_rgb_exr(const fs::path& path, const ImageRgb& image) {
-    std::vector<ExrChannel> channels{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}};
-    for (std::size_t c = 0; c < 3; ++c) {
-        channels[c].floats.reserve(image.size());
-        for (const Rgb& pixel : image) channels[c].floats.push_back(pixel[c]);
-    }
-    write_exr(path, image.width(), image.height(), channels);
 }
 
 // Decodes encoded values: the 256 of 8-bit files (k/255, and k·257/65535 is the same float) by a table, others by the
@@ -110,6 +94,15 @@ PixelFile decode_image(const ImageBytes& file, const std::string& ending) {
         message(file.name, ": unknown format, expected a PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR or EXR picture"));
 }
 
+std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image) {
+    std::vector<ExrChannel> channels{{prefix + "R", {}, {}}, {prefix + "G", {}, {}}, {prefix + "B", {}, {}}};
+    for (std::size_t c = 0; c < 3; ++c) {
+        channels[c].floats.reserve(image.size());
+        for (const Rgb& pixel : image) channels[c].floats.push_back(pixel[c]);
+    }
+    return channels;
+}
+
 PixelFile read_pixel_file(const fs::path& path) {
     const std::string bytes = read_file(path);
     return decode_image({path.string(), bytes}, lower_case_ending(path));
@@ -137,7 +130,7 @@ void write_image(const fs::path& path, const ImageRgb& image, const WriteOptions
     const Writer& writer = find_writer(path);
     check_image_size(path.string(), image.width(), image.height(), 1);
     if (writer.encode == encode_nothing)
-        write_rgb_exr(path, image);
+        write_exr(path, image.width(), image.height(), rgb_channels("", image));
     else
         write_file(path, writer.encode(image, options));
 }

@@ -54,6 +54,8 @@ struct ExrChannel {
     std::vector<float> floats;           ///< width × height values, or empty
     std::vector<std::uint32_t> integers; ///< width × height values, or empty
 };
+/// The three channels PREFIX + "R", "G", "B" of a picture.
+std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image);
 /// String attributes are stored in the header ("duet:scene" …).
 struct ExrAttribute {
     std::string name, value;

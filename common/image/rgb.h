@@ -38,6 +38,11 @@ template <typename T> constexpr T average(RgbT<T> c) { return (c.r + c.g + c.b) 
 /// Relative luminance Y of Rec. 709 primaries (ITU-R BT.709-6, §3.2).
 template <typename T> constexpr T luminance(RgbT<T> c) { return T(0.2126) * c.r + T(0.7152) * c.g + T(0.0722) * c.b; }
 template <typename T> constexpr bool is_black(RgbT<T> c) { return c.r == T(0) && c.g == T(0) && c.b == T(0); }
+/// A unit vector as a colour, (n + 1)/2. Rounding takes a component beyond 1 by an ulp: no colour is negative.
+inline Rgb direction_color(Vec3 n) {
+    const auto channel = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
+    return {channel(n.x), channel(n.y), channel(n.z)};
+}
 template <Arithmetic T> bool is_finite(RgbT<T> c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }

@@ -105,7 +105,7 @@ std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u) {
     return std::visit([&](const auto& l) { return draw(l, p, u); }, light);
 }
 
-float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q, Vec3) {
+float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q) {
     if (!emits_towards(light, p)) return 0;
     return usable(
         std::visit([&](const auto& shape) { return solid_angle_pdf(shape, Vec3d(p), Vec3d(q)); }, light.shape));

@@ -49,10 +49,9 @@ struct LightSample {
 };
 /// Empty where the light cannot reach p (behind the emitting side, outside the cone) or u falls on a degenerate spot.
 std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u);
-/// The density (by solid angle at p) with which sample_light returns the direction in which `q`, with front normal ng,
-/// lies on the light. 0 where the light does not emit towards p. (The shape alone settles the normal; ng is not needed
-/// yet.)
-float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q, Vec3 ng);
+/// The density (by solid angle at p) with which sample_light returns the direction in which `q` lies on
+/// the light. 0 where the light does not emit towards p.
+float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q);
 /// Whether p lies on an emitting side; no point of a flat light's own plane does.
 bool emits_towards(const SurfaceLight& light, Vec3 p);
 /// Emitted flux, W, averaged over channels (of a sun: on a disk of the scene's radius), for choosing among lights.

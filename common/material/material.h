@@ -29,6 +29,11 @@ inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = Transp
 bool is_specular(const Bsdf& bsdf);
 /// Radiance that the material emits at a point towards w; black but for Emissive.
 Rgb emitted(const Material& material, const SurfacePoint& point, Vec3 w);
+/// The material as an emitter: null where it emits nothing, black emission included.
+const Emissive* emitter(const Material& material);
+/// The one slot of a material that can have a texture.
+const RgbSlot& texture_slot(const Material& material);
+RgbSlot& texture_slot(Material& material);
 /// The colour one would paint it with: albedo, reflectance or tint at the point. For the albedo AOV.
 Rgb base_color(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 

@@ -54,7 +54,8 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
 }
 
 void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; // names may not be UTF-8
+    const std::string text =
+        json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; // names may not be UTF-8
     if (path == "-")
         std::cout << text;
     else

@@ -1,9 +1,9 @@
 #include "common/program/render_program.h"
 
 #include "common/image/image_file.h"
+#include "common/system/file.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace duet {
 
@@ -23,12 +23,6 @@ template <typename Pixel, typename Get> ExrChannel integers(std::string name, co
     for (const Pixel& pixel : image) channel.integers.push_back(get(pixel));
     return channel;
 }
-Channels colour(const std::string& prefix, const ImageRgb& image) {
-    return {floats(prefix + "R", image, [](const Rgb& c) { return c.r; }),
-            floats(prefix + "G", image, [](const Rgb& c) { return c.g; }),
-            floats(prefix + "B", image, [](const Rgb& c) { return c.b; })};
-}
-
 struct Layer {
     std::string name;
     Channels channels;
@@ -42,7 +36,7 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
                           {floats("normal.X", r.normal, [](const Vec3& n) { return n.x; }),
                            floats("normal.Y", r.normal, [](const Vec3& n) { return n.y; }),
                            floats("normal.Z", r.normal, [](const Vec3& n) { return n.z; })}});
-    if (!r.albedo.empty()) layers.push_back({"albedo", colour("albedo.", r.albedo)});
+    if (!r.albedo.empty()) layers.push_back({"albedo", rgb_channels("albedo.", r.albedo)});
     if (!r.hit.empty())
         layers.push_back({"hit",
                           {integers("hit.object", r.hit, [](const Hit& h) { return h.object; }),
@@ -50,7 +44,7 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
                            floats("hit.u", r.hit, [](const Hit& h) { return h.u; }),
                            floats("hit.v", r.hit, [](const Hit& h) { return h.v; }),
                            floats("hit.t", r.hit, [](const Hit& h) { return h.t; })}});
-    if (!r.variance.empty()) layers.push_back({"variance", colour("variance.", r.variance)});
+    if (!r.variance.empty()) layers.push_back({"variance", rgb_channels("variance.", r.variance)});
     if (!r.samples.empty())
         layers.push_back({"samples", {integers("samples", r.samples, [](std::uint32_t n) { return n; })}});
     return layers;
@@ -61,11 +55,8 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
 void write_rendering(const std::filesystem::path& path, const Rendering& rendering, bool ascii_ppm) {
     const int width = rendering.radiance.width(), height = rendering.radiance.height();
     std::vector<Layer> layers = auxiliary_layers(rendering);
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (ending == ".exr" && !layers.empty()) {
-        Channels all = colour("", rendering.radiance);
+    if (lower_case_ending(path) == ".exr" && !layers.empty()) {
+        Channels all = rgb_channels("", rendering.radiance);
         for (Layer& layer : layers) std::move(layer.channels.begin(), layer.channels.end(), std::back_inserter(all));
         write_exr(path, width, height, all);
         return;

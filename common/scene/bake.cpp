@@ -91,16 +91,6 @@ bool bake(Mesh& mesh, const Mat4& m, bool textured) {
 
 } // namespace
 
-const RgbSlot& texture_slot(const Material& material) {
-    struct {
-        const RgbSlot& operator()(const Diffuse& m) const { return m.albedo; }
-        const RgbSlot& operator()(const Metal& m) const { return m.reflectance; }
-        const RgbSlot& operator()(const Dielectric& m) const { return m.tint; }
-        const RgbSlot& operator()(const Emissive& m) const { return m.albedo; }
-    } const slot;
-    return std::visit(slot, material);
-}
-
 Quad transformed(const Quad& quad, const Mat4& to_world) {
     const Mat4d m(to_world);
     const Vec3 u(transform_vector(m, Vec3d(quad.u))), v(transform_vector(m, Vec3d(quad.v)));

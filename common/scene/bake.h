@@ -21,9 +21,6 @@ namespace duet {
 /// The front of a surface is the image of its front under any of these transforms, mirroring or not.
 void bake(Scene& scene, Object& object);
 
-/// The one slot of a material that can have a texture.
-const RgbSlot& texture_slot(const Material& material);
-
 /// A quad, a triangle or a sphere under an affine map, its front side being the image of its front. Of a sphere only
 /// where the map keeps it one.
 Quad transformed(const Quad& quad, const Mat4& to_world);

@@ -1,7 +1,7 @@
 #include "common/scene/bare_mesh.h"
 
-#include "common/scene/obj/load_obj.h"
 #include "common/scene/json/read_objects.h"
+#include "common/scene/obj/load_obj.h"
 #include "common/system/error.h"
 
 namespace duet {

@@ -80,22 +80,17 @@ std::optional<SurfaceLight> surface_light(const Shape& shape, const Mat4& to_wor
     return light;
 }
 
-const Emissive* emissive(const Scene& scene, std::uint32_t material) {
-    const auto* lamp = std::get_if<Emissive>(&scene.materials[material]);
-    return lamp != nullptr && !is_black(lamp->radiance) ? lamp : nullptr;
-}
-
 void add_surface_lights(Scene& scene) {
     std::erase_if(scene.lights, [](const Light& light) { return std::holds_alternative<SurfaceLight>(light); });
     scene.first_surface_light = scene.lights.size();
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
         const Object& object = scene.objects[o];
         if (object.moving || std::none_of(object.materials.begin(), object.materials.end(),
-                                          [&](std::uint32_t m) { return emissive(scene, m); }))
+                                          [&](std::uint32_t m) { return emitter(scene.materials[m]) != nullptr; }))
             continue;
         const Shape& shape = scene.shapes[object.shape];
         for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
-            const Emissive* lamp = emissive(scene, material_index(scene, o, p));
+            const Emissive* lamp = emitter(scene.materials[material_index(scene, o, p)]);
             if (lamp == nullptr) continue;
             std::optional<SurfaceLight> light = surface_light(shape, object.to_world, p);
             if (!light) continue;

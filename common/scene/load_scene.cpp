@@ -4,8 +4,8 @@
 #include "common/scene/json/read_lights.h"
 #include "common/scene/json/read_materials.h"
 #include "common/scene/json/read_objects.h"
-#include "common/scene/scene.h"
 #include "common/scene/json/scene_keys.h"
+#include "common/scene/scene.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
 
@@ -49,17 +49,10 @@ Scene read_scene(const std::filesystem::path& path) {
     return scene;
 }
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
-}
-
 } // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
-    const std::string extension = lower_case_extension(path);
+    const std::string extension = lower_case_ending(path);
     if (extension != ".json" && extension != ".obj")
         throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
     Scene scene = extension == ".obj" ? scene_around_mesh(path) : read_scene(path);

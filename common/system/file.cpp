@@ -10,6 +10,13 @@ namespace duet {
 
 namespace fs = std::filesystem;
 
+std::string lower_case_ending(const fs::path& path) {
+    std::string ending = path.extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
 std::string read_file(const fs::path& path, std::size_t limit) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);

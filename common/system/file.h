@@ -9,6 +9,9 @@
 
 namespace duet {
 
+/// The path's ending with its dot, A to Z as a to z, whatever the locale: ".png"; empty where there is none.
+std::string lower_case_ending(const std::filesystem::path& path);
+
 /// The bytes of a regular file of at most `limit` bytes. Throws Error naming the path otherwise.
 std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);
 

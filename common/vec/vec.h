@@ -96,6 +96,8 @@ template <typename T> constexpr T length_squared(Vec3T<T> a) { return dot(a, a);
 template <typename T> T length(Vec3T<T> a) { return sqrt(length_squared(a)); }
 /// a / |a|. A zero vector gives NaN: callers test first where one can occur.
 template <typename T> Vec3T<T> normalize(Vec3T<T> a) { return a / length(a); }
+/// a / |a| for any length whose components are finite: scaled first, so squares neither overflow nor vanish.
+template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a / max_component(abs(a))); }
 /// The mirror image of w about n (unit length), both pointing away from the surface.
 template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
 

@@ -56,7 +56,7 @@ float arrival_pdf(const Scene& scene, const LightChooser& lights, Vec3 p, const 
     const std::int64_t index = surface_light_index(scene, point.object, point.primitive);
     if (index < 0) return 0;
     const auto i = static_cast<std::size_t>(index);
-    return lights.probability(i) * light_pdf(std::get<SurfaceLight>(scene.lights[i]), p, point.p, point.ng);
+    return lights.probability(i) * light_pdf(std::get<SurfaceLight>(scene.lights[i]), p, point.p);
 }
 
 float arrival_pdf(const Environment& environment, const LightChooser& lights, Vec3 w) {

@@ -7,9 +7,7 @@ Rgb normal_color(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler
     if (!hit.valid()) return Rgb();
     const SurfacePoint point = surface_point(plan.scene, ray, hit);
     const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ns : point.ns; // facing the camera
-    // Rounding takes a unit vector's component beyond 1 by an ulp: no colour is negative.
-    const auto color = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
-    return {color(n.x), color(n.y), color(n.z)};
+    return direction_color(n);
 }
 
 Rgb albedo_color(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler&, RayCounts&) {

@@ -12,9 +12,8 @@ namespace {
 /// A unit vector; any length but zero is given.
 Vec3d read_direction(const JsonValue& value) {
     const Vec3d v = value.vec3();
-    const double size = max_component(abs(v));
-    if (size == 0) value.fail("a direction must not be the zero vector");
-    return normalize(v / size);
+    if (v == Vec3d()) value.fail("a direction must not be the zero vector");
+    return normalize_scaled(v);
 }
 
 void check_orientation(const JsonValue& value, const Camera& camera) {

@@ -1,7 +1,7 @@
 #include "common/scene/json/read_objects.h"
 
-#include "common/scene/obj/load_obj.h"
 #include "common/scene/json/scene_node.h"
+#include "common/scene/obj/load_obj.h"
 #include "common/system/error.h"
 
 #include <algorithm>
@@ -157,16 +157,11 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
             throw Error(message(file.string(), ": a map_Kd of its MTL file: ", error.what()));
         }
     }
-    const auto map_slot = [&](RgbSlot& slot) {
-        if (slot.texture >= 0) slot.texture = textures[static_cast<std::size_t>(slot.texture)];
-    };
     std::vector<std::uint32_t> indices;
     for (const ObjMaterial& entry : obj.materials) {
         Material material = entry.material;
-        if (auto* diffuse = std::get_if<Diffuse>(&material)) map_slot(diffuse->albedo);
-        if (auto* metal = std::get_if<Metal>(&material)) map_slot(metal->reflectance);
-        if (auto* glass = std::get_if<Dielectric>(&material)) map_slot(glass->tint);
-        if (auto* lamp = std::get_if<Emissive>(&material)) map_slot(lamp->albedo);
+        RgbSlot& slot = texture_slot(material);
+        if (slot.texture >= 0) slot.texture = textures[static_cast<std::size_t>(slot.texture)];
         indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
         scene.materials.push_back(material);
         scene.material_names.push_back(file.stem().string() + ":" + (entry.name.empty() ? "default" : entry.name));

@@ -27,9 +27,8 @@ Mat4d read_scale(const JsonValue& value) {
 
 Mat4d read_rotation(const JsonValue& step) {
     const Vec3d axis = step.at("axis").vec3();
-    const double size = max_component(abs(axis));
-    if (size == 0) step.at("axis").fail("an axis must not be the zero vector");
-    return rotation(normalize(axis / size), radians(step.at("rotate_degrees").number()));
+    if (axis == Vec3d()) step.at("axis").fail("an axis must not be the zero vector");
+    return rotation(normalize_scaled(axis), radians(step.at("rotate_degrees").number()));
 }
 
 Mat4d read_step(const JsonValue& step) {

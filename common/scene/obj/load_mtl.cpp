@@ -1,7 +1,7 @@
 #include "common/scene/obj/load_mtl.h"
 
-#include "common/scene/obj/obj_check.h"
 #include "common/scene/json/read_materials.h"
+#include "common/scene/obj/obj_check.h"
 #include "common/system/error.h"
 
 #include <tiny_obj_loader.h>

@@ -1,10 +1,10 @@
 #include "common/scene/obj/load_obj.h"
 
 #include "common/scene/json/json_reader.h"
+#include "common/scene/json/read_materials.h"
 #include "common/scene/obj/load_mtl.h"
 #include "common/scene/obj/obj_check.h"
 #include "common/scene/obj/obj_mesh.h"
-#include "common/scene/json/read_materials.h"
 #include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"
 
@@ -102,14 +102,10 @@ private:
     }
 
     void add_texture(Material& material, const std::vector<ObjTexture>& texture) {
-        const auto move_slot = [&](RgbSlot& slot) {
-            if (slot.texture < 0) return;
-            slot.texture = static_cast<std::int32_t>(textures_.size());
-            textures_.push_back(texture.front());
-        };
-        if (auto* diffuse = std::get_if<Diffuse>(&material)) move_slot(diffuse->albedo);
-        if (auto* metal = std::get_if<Metal>(&material)) move_slot(metal->reflectance);
-        if (auto* lamp = std::get_if<Emissive>(&material)) move_slot(lamp->albedo);
+        RgbSlot& slot = texture_slot(material);
+        if (slot.texture < 0) return;
+        slot.texture = static_cast<std::int32_t>(textures_.size());
+        textures_.push_back(texture.front());
     }
 
     const std::filesystem::path* path_;

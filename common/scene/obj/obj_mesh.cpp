@@ -18,10 +18,7 @@ std::uint64_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 }
 
 /// v in unit length, of any length that float holds; (0, 0, 0) of the zero vector.
-Vec3 unit(Vec3d v) {
-    const double size = max_component(abs(v));
-    return size > 0 ? Vec3(normalize(v / size)) : Vec3();
-}
+Vec3 unit(Vec3d v) { return v == Vec3d() ? Vec3() : Vec3(normalize_scaled(v)); }
 
 } // namespace
 
