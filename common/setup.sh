@@ -1,12 +1,13 @@
 #!/bin/sh
 # Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then builds a preset.
 # Called by compare/demo.sh and tests/run.sh.
-# usage: common/setup.sh [PRESET]        (default: release)
+# usage: common/setup.sh [PRESET [PACKAGE…]]        (default: release; PACKAGE: what the caller needs besides)
 set -eu
 cd "$(dirname "$0")/.."
 preset=${1:-release}
+[ $# -gt 0 ] && shift
 
-packages='g++ cmake ninja-build pkg-config libtbb-dev libopenexr-dev libtinyobjloader-dev libstb-dev doctest-dev nlohmann-json3-dev libcli11-dev'
+packages="g++ cmake ninja-build pkg-config libtbb-dev libopenexr-dev libtinyobjloader-dev libstb-dev doctest-dev nlohmann-json3-dev libcli11-dev $*"
 
 missing=''
 for package in $packages; do

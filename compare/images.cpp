@@ -1,14 +1,16 @@
 #include "compare/images.h"
 
-#include "common/image/image_file.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
-#include "compare/metrics/error_metrics.h"
+#include "common/system/file.h"
+#include "compare/metrics/limits.h"
+#include "compare/report/false_color.h"
+#include "compare/report/output.h"
 #include "compare/report/report_json.h"
+#include "compare/report/report_page.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -17,65 +19,173 @@ namespace duet::compare {
 
 namespace {
 
-struct NamedMetric {
-    std::string name;
-    double value;
+namespace fs = std::filesystem;
+
+/// A file's values as stored, and their variances where it has them.
+struct Picture {
+    ImageRgb values, variance;
+    Encoding encoding = Encoding::kLinear;
 };
 
-std::vector<NamedMetric> named(const ErrorMetrics& m) {
-    return {{"mse", m.mse},   {"rmse", m.rmse},     {"mae", m.mae},
-            {"psnr", m.psnr}, {"relmse", m.relmse}, {"worst", m.worst}};
+ImageRgb stored_values(const PixelFile& file) {
+    ImageRgb image(file.width, file.height);
+    const auto channels = static_cast<std::size_t>(file.channels);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        const float* const v = file.values.data() + i * channels;
+        image[i] = channels < 3 ? Rgb(v[0]) : Rgb(v[0], v[1], v[2]);
+    }
+    return image;
 }
 
-struct Limit {
-    NamedMetric metric;
-    double value;
-
-    /// More error is worse; of the peak signal-to-noise ratio, less. NaN exceeds every limit.
-    bool exceeded() const { return metric.name == "psnr" ? !(metric.value >= value) : !(metric.value <= value); }
-};
-
-Limit parse_limit(const std::string& text, const std::vector<NamedMetric>& metrics) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    const auto metric =
-        std::find_if(metrics.begin(), metrics.end(), [&](const NamedMetric& m) { return m.name == name; });
-    const char* const begin = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
-    char* end = nullptr;
-    const double value = std::strtod(begin, &end);
-    if (metric == metrics.end() || end == begin || *end != '\0' || !std::isfinite(value))
-        throw Error(message("--fail-above: found ", text,
-                            ", expected METRIC=VALUE, METRIC being mse, rmse, mae, psnr, relmse or worst"));
-    return {*metric, value};
+/// variance.R, variance.G and variance.B as `--aov variance` writes them; empty without all three.
+ImageRgb variance_channels(const ExrFile& file) {
+    ImageRgb image(file.width, file.height);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::string name = std::string("variance.") + "RGB"[c];
+        const auto channel = std::find_if(file.channels.begin(), file.channels.end(),
+                                          [&](const ExrChannel& ch) { return ch.name == name && !ch.floats.empty(); });
+        if (channel == file.channels.end()) return {};
+        for (std::size_t i = 0; i < image.size(); ++i) image[i][c] = channel->floats[i];
+    }
+    return image;
 }
 
-void print_table(std::ostream& out, const std::vector<NamedMetric>& metrics, const ErrorMetrics& m) {
-    out << std::setprecision(6);
-    for (const NamedMetric& metric : metrics) out << std::left << std::setw(20) << metric.name << metric.value << '\n';
-    out << std::setw(20) << "mean_signed_error" << m.mean_signed_error.r << ' ' << m.mean_signed_error.g << ' '
-        << m.mean_signed_error.b << '\n';
-    out << std::setw(20) << "worst_pixel" << m.worst_x << ' ' << m.worst_y << '\n';
+Picture read_picture(const fs::path& path, bool decode) {
+    const PixelFile file = read_pixel_file(path);
+    Picture picture{stored_values(file), {}, file.encoding};
+    if (decode && picture.encoding == Encoding::kEncoded) {
+        picture.values = decoded(picture.values);
+        picture.encoding = Encoding::kLinear;
+    }
+    if (lower_case_ending(path) == ".exr") picture.variance = variance_channels(read_exr(path));
+    return picture;
+}
+
+void check_comparable(const ImagesOptions& options, const Picture& a, const Picture& b) {
+    const auto size = [](const Picture& p) { return message(p.values.width(), "x", p.values.height()); };
+    if (size(a) != size(b))
+        throw Error(message("the pictures differ in size: ", options.a.string(), " has ", size(a), " pixels, ",
+                            options.reference.string(), " ", size(b)));
+    if (a.encoding != b.encoding) {
+        const bool a_is_8bit = a.encoding == Encoding::kEncoded;
+        throw Error(message((a_is_8bit ? options.a : options.reference).string(), " holds encoded 8-bit values, ",
+                            (a_is_8bit ? options.reference : options.a).string(),
+                            " linear ones: --decode compares both as linear"));
+    }
+}
+
+std::vector<Limit> parse_limits(const std::vector<std::string>& texts) {
+    std::vector<Limit> limits;
+    for (const std::string& text : texts) limits.push_back(parse_limit(text));
+    return limits;
+}
+
+void check_limits(const std::vector<Limit>& limits, bool variances) {
+    for (const Limit& limit : limits)
+        if (!variances && limit.metric.rfind("z_", 0) == 0)
+            throw Error(message("--fail-above ", limit.metric,
+                                ": neither file has variances (EXR channels variance.R, variance.G, variance.B)"));
+}
+
+// The table ----------------------------------------------------------------------------------------------------------
+
+void print_row(std::ostream& out, const std::string& name, const std::string& value, const std::string& meaning) {
+    out << std::left << std::setw(22) << name << std::right << std::setw(12) << value << "  " << meaning << '\n';
+}
+std::string text_of(double value) {
+    if (std::isnan(value)) return "none";
+    std::ostringstream out;
+    out << std::setprecision(6) << value;
+    return out.str();
+}
+
+void print_channels(std::ostream& out, const char* name, Rgbd c) {
+    out << "  " << name << ": r " << text_of(c.r) << ", g " << text_of(c.g) << ", b " << text_of(c.b) << '\n';
+}
+
+void print_z_test(std::ostream& out, const ZTest& z, bool a_exact, bool b_exact) {
+    out << "\nz-test of " << z.pixels << " pixels"
+        << (a_exact   ? ", A taken as exact"
+            : b_exact ? ", B taken as exact"
+                      : "")
+        << " (the noise of the two must be independent: two seeds)\n";
+    if (z.tests == 0) {
+        out << "  no pixel has a variance: nothing can be said\n";
+        return;
+    }
+    print_channels(out, "mean difference in standard deviations", z.mean_z);
+    print_channels(out, "a mean difference that would be found in 99 of 100 such pairs", z.detectable);
+    out << "  " << (z.p < 0.01 ? "the pictures differ by more than noise" : "no difference but noise was found")
+        << ": p = " << text_of(z.p) << " after correction for " << z.tests << " tests, the most unlikely being the "
+        << "mean of channel "
+        << "rgb"[z.channel] << " over " << z.width << "x" << z.height << " pixels at (" << z.x << ", " << z.y << ")\n";
+}
+
+void print_table(std::ostream& out, const ImageMetrics& metrics, const Picture& a, const Picture& b) {
+    const ErrorMetrics& m = metrics.errors;
+    out << (a.encoding == Encoding::kLinear
+                ? "linear values\n"
+                : "stored (sRGB-encoded) values; of relmse, smape and mean_signed_error the linear ones\n");
+    for (const Figure& figure : figures(metrics)) {
+        if (!metrics.z && figure.name.rfind("z_", 0) == 0) continue;
+        print_row(out, figure.name, text_of(figure.value), figure.meaning);
+    }
+    print_channels(out, "mean signed error", m.mean_signed_error);
+    if (m.pixels > 0) out << "  worst pixel: (" << m.worst_x << ", " << m.worst_y << ")\n";
     if (m.non_finite_a + m.non_finite_b > 0)
-        out << std::setw(20) << "non_finite" << m.non_finite_a << " in A, " << m.non_finite_b << " in B\n";
+        out << "  left out: " << m.nan_a << " pixels with NaN and " << m.infinite_a << " with infinity in A, "
+            << m.nan_b << " and " << m.infinite_b << " in B\n";
+    if (metrics.flip.exposures > 0)
+        out << "  HDR-FLIP over " << metrics.flip.exposures << " exposures from "
+            << text_of(metrics.flip.start_exposure) << " to " << text_of(metrics.flip.stop_exposure) << " stops\n";
+    if (metrics.z) print_z_test(out, *metrics.z, a.variance.empty(), b.variance.empty());
+}
+
+// The page ------------------------------------------------------------------------------------------------------------
+
+/// The files' names where these differ, else their paths as they were given.
+std::pair<std::string, std::string> page_names(const ImagesOptions& options) {
+    const fs::path a = options.a.filename(), b = options.reference.filename();
+    if (a != b) return {a.string(), b.string()};
+    return {options.a.string(), options.reference.string()};
+}
+
+void write_page(const ImagesOptions& options, const Picture& a, const Picture& b, const ImageMetrics& metrics) {
+    const bool encoded = a.encoding == Encoding::kEncoded;
+    const ImageRgb linear_a = encoded ? decoded(a.values) : a.values, linear_b = encoded ? decoded(b.values) : b.values;
+    const auto [name_a, name_b] = page_names(options);
+    const double range = difference_range(linear_a, linear_b);
+    write_image(options.folder / "difference.png", difference_picture(linear_a, linear_b, range));
+    write_json(options.folder / "report.json", {{"a", options.a.string()},
+                                                {"b", options.reference.string()},
+                                                {"metrics", metrics_json(metrics, "a", "b")},
+                                                {"difference_range", range}});
+    write_file(
+        options.folder / "index.html",
+        report_page(
+            {message(name_a, " against ", name_b), {name_a, linear_a}, {name_b, linear_b}, metrics, a.encoding}));
+    if (!options.quiet) std::cerr << "report: " << (options.folder / "index.html").string() << '\n';
 }
 
 } // namespace
 
 int compare_images(const ImagesOptions& options) {
-    const ErrorMetrics metrics = error_metrics(read_image(options.a), read_image(options.reference));
-    const std::vector<NamedMetric> list = named(metrics);
-    std::vector<Limit> limits;
-    for (const std::string& text : options.limits) limits.push_back(parse_limit(text, list));
-    if (!options.quiet && options.stats != "-") print_table(std::cout, list, metrics);
+    check_json_path(options.stats);
+    const std::vector<Limit> limits = parse_limits(options.limits);
+    const Picture a = read_picture(options.a, options.decode), b = read_picture(options.reference, options.decode);
+    check_comparable(options, a, b);
+    const bool variances = !a.variance.empty() || !b.variance.empty();
+    check_limits(limits, variances);
+
+    if (!options.folder.empty()) make_folder(options.folder);
+    ImageMetrics metrics = image_metrics(a.values, b.values, a.encoding, options.threads);
+    if (variances) metrics.z = z_test({a.values, a.variance}, {b.values, b.variance});
+    if (!options.folder.empty()) write_page(options, a, b, metrics);
+    if (!options.quiet && options.stats != "-") print_table(std::cout, metrics, a, b);
     if (!options.stats.empty()) write_json(options.stats, metrics_json(metrics, "a", "b"));
-    int code = kExitOk;
-    for (const Limit& limit : limits)
-        if (limit.exceeded()) {
-            std::cerr << "compare: " << limit.metric.name << " is " << limit.metric.value << ", the limit "
-                      << limit.value << '\n';
-            code = kExitFailed;
-        }
-    return code;
+    const std::vector<std::string> failures = exceeded(limits, figures(metrics));
+    for (const std::string& failure : failures) std::cerr << "compare: " << failure << '\n';
+    return failures.empty() ? kExitOk : kExitFailed;
 }
 
 } // namespace duet::compare

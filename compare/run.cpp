@@ -7,8 +7,9 @@
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
 #include "compare/hits/hit_agreement.h"
-#include "compare/metrics/error_metrics.h"
+#include "compare/metrics/image_metrics.h"
 #include "compare/report/false_color.h"
+#include "compare/report/output.h"
 #include "compare/report/report_json.h"
 #include "compare/report/report_page.h"
 
@@ -29,22 +30,6 @@ struct Side {
     Image<Hit> hits;
     RenderContext context;
 };
-
-fs::path output_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!fs::is_directory(folder))
-        throw Error(
-            message(folder.string(), ": the folder cannot be made: ", error ? error.message() : "a file is there"));
-    return folder;
-}
-
-/// Found out before a long render, not after.
-void check_stats(const std::string& stats) {
-    if (stats.empty() || stats == "-") return;
-    const fs::path folder = fs::absolute(stats).parent_path();
-    if (!fs::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
-}
 
 /// Renders the picture, then the hits. Empty where a signal came.
 std::optional<Side> render_side(const Pipeline& pipeline, const View& view, const RunOptions& options,
@@ -80,27 +65,31 @@ void write_picture(Side& side, const fs::path& path) {
     side.context.write_seconds = watch.seconds();
 }
 
+ReportSide page_side(const std::string& name, const Side& side) {
+    return {name, side.rendering.radiance, ReportRendering{side.context, side.rendering.statistics}};
+}
+
 void print_summary(const fs::path& page, const Side& raster, const Side& raytrace, const HitAgreement& hits,
-                   const ErrorMetrics& metrics) {
+                   const ImageMetrics& metrics) {
     std::cerr << "raster:   " << readable_seconds(raster.context.prepare_seconds + raster.context.render_seconds)
               << '\n'
               << "raytrace: " << readable_seconds(raytrace.context.prepare_seconds + raytrace.context.render_seconds)
               << '\n'
               << "hits:     " << hits.same << " of " << hits.pixels << " the same, " << hits.edge << " at edges, "
               << hits.depth_tie << " depth ties, " << hits.unexplained << " unexplained\n"
-              << "relmse:   " << metrics.relmse << '\n'
+              << "relmse:   " << metrics.errors.relmse << '\n'
               << "report:   " << page.string() << '\n';
 }
 
 } // namespace
 
 int run(const RunOptions& options) {
-    check_stats(options.stats);
+    check_json_path(options.stats);
     const InterruptFlag interrupt;
     Stopwatch watch;
     const Scene scene = load_scene(options.scene);
     const double load_seconds = watch.seconds();
-    const fs::path folder = output_folder(options.folder);
+    const fs::path folder = make_folder(options.folder);
     const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
                     options.size.height > 0 ? options.size.height : scene.height};
 
@@ -112,7 +101,7 @@ int run(const RunOptions& options) {
     complete(raytrace->context, "raytrace", options, view, load_seconds);
 
     const ImageRgb &a = raster->rendering.radiance, &b = raytrace->rendering.radiance;
-    const ErrorMetrics metrics = error_metrics(a, b);
+    const ImageMetrics metrics = image_metrics(a, b, Encoding::kLinear, options.settings.threads);
     const HitAgreement agreement = compare_hits(scene, view, raster->hits, raytrace->hits, options.settings.threads);
     if (interrupt.raised()) return kExitInterrupted;
 
@@ -126,8 +115,9 @@ int run(const RunOptions& options) {
                          {"hits", hits_json(agreement, scene)},
                          {"difference_range", range}};
     write_json(folder / "report.json", report);
-    write_file(folder / "index.html", report_page({scene, raster->rendering, raytrace->rendering, raster->hits,
-                                                   raytrace->hits, agreement, report}));
+    write_file(folder / "index.html", report_page({scene.path.filename().string(), page_side("Rasterizer", *raster),
+                                                   page_side("Path tracer", *raytrace), metrics, Encoding::kLinear,
+                                                   ReportHits{scene, raster->hits, raytrace->hits, agreement}}));
     if (!options.stats.empty()) write_json(options.stats, report);
     if (!options.quiet) print_summary(folder / "index.html", *raster, *raytrace, agreement, metrics);
     return kExitOk;

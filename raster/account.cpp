@@ -23,6 +23,10 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
         because(!needs.environment, "environment", "it is black");
         because(needs.environment && !settings.environment, "environment", "turned off");
         because(data.scene.lights.empty(), "lights", "the scene has none");
+        because(!settings.parts.emission, "emission", "turned off");
+        because(!settings.parts.direct, "direct light", "turned off");
+        because(!settings.parts.environment, "environment on diffuse surfaces", "turned off");
+        because(!settings.parts.reflection, "environment on metal and glass", "turned off");
     }
     because(settings.aovs.variance, "variance", "the samples are one pattern, the same in every pixel: no replicates");
     const auto count = [&](std::int64_t number, const char* what, const char* why) {

@@ -19,13 +19,13 @@ constexpr std::size_t kChunk = 4096;
 class Assembler {
 public:
     Assembler(const TransformedObject& object, const Viewport& viewport, const std::vector<SampleOffset>& samples,
-              bool cull, bool cull_backfaces, DrawList& out)
-        : object_(object), viewport_(viewport), samples_(samples), cull_(cull), cull_backfaces_(cull_backfaces),
+              const Skips& skips, bool cull_backfaces, DrawList& out)
+        : object_(object), viewport_(viewport), samples_(samples), skips_(skips), cull_backfaces_(cull_backfaces),
           out_(out) {}
 
     void add(std::uint32_t primitive, Piece piece, std::array<std::size_t, 3> index) {
         const unsigned a = object_.outcodes[index[0]], b = object_.outcodes[index[1]], c = object_.outcodes[index[2]];
-        if (cull_ && (a & b & c & kFrustum) != 0) {
+        if (skips_.frustum && (a & b & c & kFrustum) != 0) {
             ++out_.culled.outside;
             return;
         }
@@ -52,11 +52,11 @@ private:
 
     void set_up(const Whole& whole, std::array<FixedPoint, 3> p) {
         const std::int64_t area = doubled_area(p[0], p[1], p[2]);
-        if (area == 0) {
+        if (area == 0 && skips_.degenerate) {
             ++out_.culled.degenerate;
         } else if (cull_backfaces_ && is_backface(area, object_.mirrored)) {
             ++out_.culled.backfaces;
-        } else if (!may_cover_a_sample(p)) {
+        } else if (skips_.subpixel && !may_cover_a_sample(p)) {
             ++out_.culled.subpixel;
         } else {
             const FixedPoint beside{std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport_.width * kSubPixels),
@@ -75,7 +75,8 @@ private:
     const TransformedObject& object_;
     const Viewport& viewport_;
     const std::vector<SampleOffset>& samples_;
-    bool cull_, cull_backfaces_;
+    const Skips& skips_;
+    bool cull_backfaces_;
     DrawList& out_;
 };
 
@@ -114,7 +115,7 @@ DrawList concatenate(const std::vector<DrawList>& parts, int threads) {
 } // namespace
 
 DrawList assemble(const PreparedData& data, const std::vector<TransformedObject>& objects, const Viewport& viewport,
-                  const std::vector<SampleOffset>& samples, bool cull, int threads) {
+                  const std::vector<SampleOffset>& samples, const Skips& skips, int threads) {
     const Scene& scene = data.scene;
     const auto shape_of = [&](std::size_t i) -> const Shape& {
         return scene.shapes[scene.objects[objects[i].object].shape];
@@ -128,8 +129,8 @@ DrawList assemble(const PreparedData& data, const std::vector<TransformedObject>
     std::vector<DrawList> parts(chunks.size());
     parallel_for(chunks.size(), threads, [&](std::size_t c) {
         const TransformedObject& object = objects[chunks[c].object];
-        const bool cull_backfaces = cull && may_cull_backfaces(object, data.objects[object.object].solid);
-        Assembler assembler(object, viewport, samples, cull, cull_backfaces, parts[c]);
+        const bool cull_backfaces = skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid);
+        Assembler assembler(object, viewport, samples, skips, cull_backfaces, parts[c]);
         assemble_chunk(shape_of(chunks[c].object), chunks[c], assembler);
     });
     return concatenate(parts, threads);

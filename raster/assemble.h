@@ -15,9 +15,9 @@ struct DrawList {
 };
 
 /// Cuts the objects' primitives to triangles ready to be covered. Each triangle of a mesh is one, each quad two (the
-/// diagonal is shared, so no sample falls through or counts twice), a clipped one a fan. `cull` off keeps all that has
-/// an area. Independent of `threads`, in content and in order.
+/// diagonal is shared, so no sample falls through or counts twice), a clipped one a fan. `skips` says what is left
+/// out. Independent of `threads`, in content and in order.
 DrawList assemble(const PreparedData& data, const std::vector<TransformedObject>& objects, const Viewport& viewport,
-                  const std::vector<SampleOffset>& samples, bool cull, int threads);
+                  const std::vector<SampleOffset>& samples, const Skips& skips, int threads);
 
 } // namespace duet::raster

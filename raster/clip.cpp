@@ -1,5 +1,7 @@
 #include "raster/clip.h"
 
+#include "common/system/sabotage.h"
+
 #include <algorithm>
 #include <span>
 
@@ -49,6 +51,7 @@ ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVerte
     };
     ClippedPolygon polygon{{a, b, c}, 3};
     for (const Plane& plane : planes) {
+        if (sabotaged(&plane == planes ? Guard::kNearClip : Guard::kGuardClip)) continue;
         polygon = clip(polygon, plane);
         if (&plane != planes) continue;
         // A corner cut on the near plane has just its depth; interpolated from ends far apart it could be anything

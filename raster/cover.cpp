@@ -49,7 +49,7 @@ HitTile::HitTile(const PixelRect& rect, const Pinhole& pinhole, SampleOffset off
 }
 
 bool HitTile::wins(std::size_t i, float nearness, std::uint32_t object, std::uint32_t primitive) const {
-    if (nearness != nearness_[i]) return nearness > nearness_[i];
+    if (nearness != nearness_[i] || sabotaged(Guard::kDrawOrder)) return nearness > nearness_[i];
     const Hit& other = hits_[i];
     return object != other.object ? object < other.object : primitive < other.primitive;
 }
@@ -87,10 +87,11 @@ void HitTile::draw(const SetupTriangle& triangle) {
 
 void HitTile::cover(const SetupTriangle& triangle, int x, int y) {
     const std::size_t i = index(x, y);
-    const Interpolated at = triangle.interpolation.at(offset_.position(x, y));
+    const Interpolated at = triangle.interpolation.at(offset_.position(x, y), triangle.piece);
     // Clamped to the triangle's border, a point may come to lie before the near plane at which the outline was cut.
     const bool beyond_near = at.depth_sum > near_ * at.sum;
-    const float nearness = beyond_near ? static_cast<float>(near_ * at.sum / at.depth_sum) : 1.0f;
+    float nearness = beyond_near ? static_cast<float>(near_ * at.sum / at.depth_sum) : 1.0f;
+    if (sabotaged(Guard::kReversedDepth)) nearness = 1 - (1 - nearness); // kept as the books': 0 near, 1 far
     if (!wins(i, nearness, triangle.object, triangle.primitive)) return;
     nearness_[i] = nearness;
     const double depth = beyond_near ? at.depth_sum / at.sum : near_;

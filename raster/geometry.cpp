@@ -31,13 +31,13 @@ Geometry process_geometry(const PreparedData& data, const TileGrid& grid, const 
     Stopwatch watch;
     CullCounts culled;
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
-        return settings.cull ? in_frustum(data, objects, view, culled) : objects;
+        return settings.skips.frustum ? in_frustum(data, objects, view, culled) : objects;
     };
     const std::vector<TransformedObject> objects =
         transform(data.scene, visible(data.polygonal), view.pinhole, view.time, view.viewport, settings.threads);
     const double transform_seconds = watch.lap();
 
-    DrawList list = assemble(data, objects, view.viewport, view.samples, settings.cull, settings.threads);
+    DrawList list = assemble(data, objects, view.viewport, view.samples, settings.skips, settings.threads);
     std::vector<DrawSphere> spheres =
         set_up_spheres(data.scene, visible(data.spheres), view.pinhole, view.time, view.viewport);
     list.culled += culled;

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::shading(shading_name);
         settings.environment = !no_environment;
-        settings.cull = !no_culling;
+        settings.skips.frustum = settings.skips.back_faces = !no_culling;
         return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
             return raster::render(prepared, view, settings, control);
         };

@@ -24,8 +24,8 @@ void check(const View& view, const Settings& settings) {
 std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraModel& camera,
                        const Settings& settings) {
     const bool shutter = view.camera.shutter_close != view.camera.shutter_open;
-    return plan_passes(settings.samples_per_pixel, settings.seed, camera.has_lens(),
-                       data.scene.needs.motion && shutter);
+    return plan_passes(settings.samples_per_pixel, settings.seed, camera.has_lens() || !settings.skips.lens,
+                       (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
 
 void shade_tile(const PreparedData& data, const Settings& settings, const HitTile& tile, Picture& picture) {

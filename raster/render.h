@@ -20,11 +20,16 @@ enum class Shading {
 /// "lit", "normal", "albedo", "depth"; throws Error for another name.
 Shading shading(std::string_view name);
 
+/// The parts of Shading::kLit (LightParts in raster/split.h): one that is left out is not computed.
+struct PartSet {
+    bool emission = true, direct = true, environment = true, reflection = true;
+};
+
 struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
+    PartSet parts; ///< all, but for a look at one, and for its price
     bool environment =
-        true;         ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
-    bool cull = true; ///< leave out back faces of closed meshes and what is outside the frustum
+        true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
 };
 
 struct PreparedData; // raster/prepare.h

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace duet::raster {
 namespace {
@@ -22,12 +23,15 @@ EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
     c = dy * from.x - dx * from.y;
     // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
     const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-    if (!left_or_top) c -= 1;
+    if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
 }
 
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
-    const auto local = [&](const PixelVertex& v) { return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w); };
+    const auto local = [&](const PixelVertex& v) {
+        const Vec3d p(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w);
+        return sabotaged(Guard::kPerspective) ? p / v.w : p;
+    };
     const Vec3d va = local(a), vb = local(b), vc = local(c);
     e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
     if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
@@ -46,12 +50,59 @@ Vec2d Interpolation::mirrored_inside(Vec2d p) const {
     return p;
 }
 
-Interpolated Interpolation::at(Vec2d pixel) const {
+// Where that leads across another edge, because the sample lies at a corner or the triangle is thinner than snapping
+// moves its edges. (To set negative barycentrics to zero would not do: in a sliver it leads from one end to the other.)
+Vec2d Interpolation::nearest_on_outline(Vec2d p) const {
+    const auto value = [](const Vec3d& edge, Vec2d q) { return edge.x * q.x + edge.y * q.y + edge.z; };
+    Vec2d nearest = p;
+    double least = std::numeric_limits<double>::infinity();
+    const auto offer = [&](Vec2d q) {
+        const double distance = dot(q - p, q - p);
+        if (!(distance < least)) return;
+        least = distance;
+        nearest = q;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d &edge = e[i], &next = e[(i + 1) % 3], &last = e[(i + 2) % 3];
+        const Vec2d foot = p - Vec2d(edge.x, edge.y) * (value(edge, p) / (edge.x * edge.x + edge.y * edge.y));
+        if (value(next, foot) >= 0 && value(last, foot) >= 0) offer(foot);
+        const Vec3d meeting = cross(edge, next);
+        const Vec2d corner(meeting.x / meeting.z, meeting.y / meeting.z);
+        if (value(last, corner) > 0) offer(corner); // else it lies behind the eye
+    }
+    return nearest;
+}
+
+namespace {
+
+/// Whether a sample lies beyond the diagonal of a quad, which is no edge of it, in the other half.
+bool in_other_half(const Interpolated& at, Piece piece) {
+    const auto beyond = [](double across, double other1, double other2) {
+        return other1 >= 0 && other2 >= 0 && across + other1 >= 0 && across + other2 >= 0;
+    };
+    if (sabotaged(Guard::kQuadDiagonal)) return false;
+    switch (piece) {
+    case Piece::kQuadFirst:
+        return beyond(at.b1, at.b0, at.b2);
+    case Piece::kQuadSecond:
+        return beyond(at.b2, at.b0, at.b1);
+    default:
+        return false;
+    }
+}
+
+} // namespace
+
+Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     Vec2d p(pixel.x - origin_x, pixel.y - origin_y);
     const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
     Interpolated result{value(0), value(1), value(2), 0, 0};
-    if (result.b0 < 0 || result.b1 < 0 || result.b2 < 0) {
+    const bool outside = result.b0 < 0 || result.b1 < 0 || result.b2 < 0;
+    if (outside && !in_other_half(result, piece) && !sabotaged(Guard::kInsideTriangle)) {
+        const Vec2d sample = p;
         p = mirrored_inside(p);
+        const bool still_outside = value(0) < 0 || value(1) < 0 || value(2) < 0;
+        if (still_outside && !sabotaged(Guard::kNearestOutline)) p = nearest_on_outline(sample);
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;

@@ -1,6 +1,7 @@
 // Stage 4: what a triangle's coverage and interpolation need, set up once.
 #pragma once
 
+#include "common/system/sabotage.h"
 #include "raster/samples.h"
 #include "raster/transform.h"
 
@@ -26,7 +27,10 @@ struct EdgeFunction {
     std::int64_t a, b, c;
 
     EdgeFunction(FixedPoint from, FixedPoint to);
-    std::int64_t at(std::int64_t x, std::int64_t y) const { return a * x + b * y + c; }
+    std::int64_t at(std::int64_t x, std::int64_t y) const {
+        const std::int64_t value = a * x + b * y + c;
+        return sabotaged(Guard::kWideEdges) ? static_cast<std::int32_t>(value) : value;
+    }
 };
 
 /// What an interpolated barycentric triple means for Hit::u and v.
@@ -36,10 +40,10 @@ enum class Piece : std::uint8_t {
     kQuadSecond, ///< corner, +u+v, +v
 };
 
-/// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle; a sample outside it is taken to a point
-/// inside.
+/// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or the quad that it is a half of; a sample
+/// outside is taken to a point inside.
 struct Interpolated {
-    double b0, b1, b2; ///< >= 0; in proportion to the barycentrics, not normalized
+    double b0, b1, b2; ///< in proportion to the barycentrics, not normalized; >= 0, but beyond a quad's diagonal
     double sum;        ///< of the three, > 0
     double depth_sum;  ///< depth × sum
 };
@@ -55,10 +59,11 @@ struct Interpolation {
 
     Interpolation() = default;
     Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside);
-    Interpolated at(Vec2d pixel) const;
+    Interpolated at(Vec2d pixel, Piece piece) const;
 
 private:
     Vec2d mirrored_inside(Vec2d p) const;
+    Vec2d nearest_on_outline(Vec2d p) const;
 };
 
 /// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is

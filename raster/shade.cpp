@@ -1,9 +1,14 @@
 #include "raster/shade.h"
 
 #include "raster/direct.h"
+#include "raster/split.h"
 
 namespace duet::raster {
 namespace {
+
+bool shows_environment(const PreparedData& data, const Settings& settings) {
+    return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
+}
 
 /// Light from the environment, which nothing is taken to occlude.
 class EnvironmentLight {
@@ -48,22 +53,42 @@ struct DirectLight {
     Rgb operator()(const DielectricBsdf&) const { return {}; }
 };
 
-Rgb lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, Vec3 to_viewer) {
+LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
+               Vec3 to_viewer) {
     const Scene& scene = data.scene;
-    const Material& material = scene.materials[point.surface.material];
-    const Bsdf bsdf = bsdf_at(material, scene.textures, point.surface);
-    Rgb sum = emitted(material, point.surface, to_viewer);
-    sum += std::visit(DirectLight{scene.lights, point}, bsdf);
-    if (settings.environment && scene.needs.environment) sum += std::visit(EnvironmentLight(data, point), bsdf);
-    return sum;
+    const PartSet& asked = settings.parts;
+    LightParts parts;
+    if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], point.surface, to_viewer);
+    if (asked.direct) parts.direct = std::visit(DirectLight{scene.lights, point}, bsdf);
+    const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
+    if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
+        (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, point), bsdf);
+    return parts;
+}
+
+Bsdf bsdf_of(const PreparedData& data, const SurfacePoint& surface) {
+    return bsdf_at(data.scene.materials[surface.material], data.scene.textures, surface);
 }
 
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
-    if (settings.shading != Shading::kLit || !settings.environment || !data.scene.needs.environment) return {};
+    if (settings.shading != Shading::kLit || !settings.parts.emission || !shows_environment(data, settings)) return {};
     return radiance(data.scene.environment, ray.direction);
 }
 
 } // namespace
+
+LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
+                         const Bsdf& bsdf, Vec3 to_viewer) {
+    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer);
+}
+
+LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit) {
+    const PreparedData& data = prepared.data();
+    if (!hit.valid())
+        return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}};
+    const SurfacePoint surface = surface_point(data.scene, ray, hit);
+    return shade_surface(prepared, settings, surface, bsdf_of(data, surface), -ray.direction);
+}
 
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
     const Ray& ray = tile.ray(x, y);
@@ -76,7 +101,7 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
     switch (settings.shading) {
     case Shading::kLit:
-        result.radiance = lit(data, settings, point, -ray.direction);
+        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction).sum();
         break;
     case Shading::kNormal:
         result.radiance = direction_color(point.ns);

@@ -75,10 +75,7 @@ std::pair<int, int> pixel_range(const Interval& extremes, int size) {
 
 std::optional<float> DrawSphere::intersect(const Ray& ray) const {
     if (identity) return intersect_sphere(ray, sphere);
-    Ray local = ray;
-    local.origin = transform_point(to_object, ray.origin);
-    local.direction = transform_vector(to_object, ray.direction);
-    return intersect_sphere(local, sphere);
+    return intersect_sphere(to_object_space(ray, to_world, to_object), sphere);
 }
 
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport) {
@@ -103,8 +100,13 @@ std::vector<DrawSphere> set_up_spheres(const Scene& scene, const std::vector<std
                         .bounds = {},
                         .sphere = std::get<Sphere>(scene.shapes[object.shape]),
                         .identity = object.identity,
+                        .to_world = {},
                         .to_object = {}};
-        if (!object.identity) draw.to_object = object_transform(object, time).to_object;
+        if (!object.identity) {
+            const ObjectTransform transform = object_transform(object, time);
+            draw.to_world = transform.to_world;
+            draw.to_object = transform.to_object;
+        }
         draw.bounds = sphere_bounds(draw.sphere, object_to_pixel(object, pinhole, time), viewport);
         if (!draw.bounds.empty()) result.push_back(draw);
     }

@@ -16,7 +16,7 @@ struct DrawSphere {
     PixelRect bounds; ///< pixels that may see it, within the picture
     Sphere sphere;    ///< in its object's space
     bool identity = true;
-    Mat4 to_object;
+    Mat4 to_world, to_object;
 
     /// Where a camera ray meets it: intersect_sphere in its object's space, as the ray tracer does it.
     std::optional<float> intersect(const Ray& ray) const;

@@ -28,6 +28,22 @@ std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t don
     return SampleRange{done, done + count};
 }
 
+Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
+    sampler.set_dimension(kPixelDimension);
+    const Vec2 in_pixel = sampler.get_centered_2d();
+    Vec2d lens{0.5, 0.5};
+    if (plan.lens) {
+        sampler.set_dimension(kLensDimension);
+        lens = Vec2d(sampler.get_centered_2d());
+    }
+    double time = 0;
+    if (plan.motion) {
+        sampler.set_dimension(kTimeDimension);
+        time = static_cast<double>(sampler.get_time());
+    }
+    return camera.ray(Vec2d(x, y) + Vec2d(in_pixel), lens, time);
+}
+
 namespace {
 
 constexpr int kTile = 16;
@@ -53,22 +69,6 @@ private:
     const View& view_;
     int columns_;
 };
-
-Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    sampler.set_dimension(kPixelDimension);
-    const Vec2 in_pixel = sampler.get_centered_2d();
-    Vec2d lens{0.5, 0.5};
-    if (plan.lens) {
-        sampler.set_dimension(kLensDimension);
-        lens = Vec2d(sampler.get_centered_2d());
-    }
-    double time = 0;
-    if (plan.motion) {
-        sampler.set_dimension(kTimeDimension);
-        time = static_cast<double>(sampler.get_time());
-    }
-    return camera.ray(Vec2d(x, y) + Vec2d(in_pixel), lens, time);
-}
 
 RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile, SampleRange range) {
     const RadianceFunction radiance = radiance_function(target.settings.integrator);

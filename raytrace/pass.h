@@ -20,6 +20,9 @@ struct SampleRange {
 /// that would end farther beyond the time limit than it begins before it is not begun.
 std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t done, double seconds, const Film& film);
 
+/// The camera ray of the sample that the sampler stands at, of pixel (x, y).
+Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler);
+
 /// Everything that a pass reads and adds to.
 struct PassTarget {
     const RenderPlan& plan;

@@ -8,20 +8,22 @@ namespace duet::raytrace {
 
 namespace {
 
-bool samples_lights(Integrator integrator) {
-    return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
-           integrator == Integrator::kUnshadowed;
+bool shows_light(Integrator integrator) {
+    return integrator != Integrator::kNormal && integrator != Integrator::kAlbedo;
 }
-bool shows_light(Integrator integrator) { return samples_lights(integrator) || integrator == Integrator::kNaive; }
+bool samples_lights(Integrator integrator) { return shows_light(integrator) && integrator != Integrator::kNaive; }
 
 int depth(const Settings& settings) {
     const int asked = std::max(settings.max_depth, 0);
     switch (settings.integrator) {
     case Integrator::kPath:
     case Integrator::kNaive:
+    case Integrator::kReflection:
         return asked;
     case Integrator::kDirect:
     case Integrator::kUnshadowed:
+    case Integrator::kLights:
+    case Integrator::kEnvironment:
         return std::min(asked, 1);
     case Integrator::kNormal:
     case Integrator::kAlbedo:
@@ -34,14 +36,25 @@ int depth(const Settings& settings) {
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings)
     : prepared(prepared_), scene(prepared_.scene), max_depth(depth(settings)),
-      russian_roulette(settings.russian_roulette && max_depth > 0), lens(CameraModel(view).has_lens()),
-      motion(prepared_.scene.needs.motion) {
-    const bool with_environment = settings.environment && prepared.environment && shows_light(settings.integrator);
+      russian_roulette(settings.russian_roulette && max_depth > 0) {
+    const Skips& skips = settings.skips;
+    lens = CameraModel(view).has_lens() || !skips.lens;
+    motion = scene.needs.motion || !skips.motion;
+    bsdfs = skips.textures ? &prepared.bsdfs : &none_;
+    if (!skips.textures) none_.resize(prepared.bsdfs.size());
+    emission = prepared.emitters || !skips.emission;
+    mirror_light = !skips.mirror_light;
+    black_shadow_rays = !skips.shadow_rays;
+    const bool with_environment =
+        settings.environment && (prepared.environment || !skips.environment) && shows_light(settings.integrator);
     if (with_environment) environment = &scene.environment;
-    hits_find_light = with_environment || prepared.emitters;
-    const LightChooser& chooser = with_environment ? prepared.lights : prepared.finite_lights;
-    if (samples_lights(settings.integrator) && max_depth > 0 && prepared.scatters_diffusely && !chooser.empty())
-        lights = &chooser;
+    hits_find_light = with_environment || prepared.emitters || !skips.last_bounce;
+    const bool environment_only = with_environment && settings.integrator == Integrator::kEnvironment;
+    const LightChooser& chooser = environment_only   ? prepared.environment_light
+                                  : with_environment ? prepared.lights
+                                                     : prepared.finite_lights;
+    const bool any_use = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
+    if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
 }
 
 std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
@@ -87,7 +100,14 @@ std::vector<std::string> approximations(const RenderPlan& plan, const Settings& 
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");
-    const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive;
+    if (settings.integrator == Integrator::kLights)
+        list.emplace_back("only emission, and direct light of lights by diffuse surfaces and rough metal");
+    if (settings.integrator == Integrator::kEnvironment)
+        list.emplace_back("only what the environment sends to diffuse surfaces");
+    if (settings.integrator == Integrator::kReflection)
+        list.emplace_back("only what is seen by way of metal and glass");
+    const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive ||
+                             settings.integrator == Integrator::kReflection;
     if (whole_paths && plan.max_depth < kWholePath)
         list.emplace_back(
             message("paths end after ", plan.max_depth, plan.max_depth == 1 ? " scattering" : " scatterings"));

@@ -9,16 +9,25 @@ namespace duet::raytrace {
 
 struct RenderPlan {
     RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings);
+    RenderPlan(const RenderPlan&) = delete; // bsdfs may point into it
+    RenderPlan& operator=(const RenderPlan&) = delete;
 
     const PreparedData& prepared;
     const Scene& scene;
-    const LightChooser* lights = nullptr;     ///< null: no light is sampled
-    const Environment* environment = nullptr; ///< null: rays that escape find nothing
-    bool hits_find_light = false;             ///< a ray may find light by itself: an emitter, or the environment
+    const LightChooser* lights = nullptr;                    ///< null: no light is sampled
+    const Environment* environment = nullptr;                ///< null: rays that escape find nothing
+    const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material: made once, where no texture varies it
+    bool emission = false;                                   ///< surfaces that are hit may emit
+    bool hits_find_light = false;   ///< a ray may find light by itself: an emitter, or the environment
+    bool mirror_light = false;      ///< light is sampled at mirrors and glass, too, which cannot reflect it
+    bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
     int max_depth = 0;
     bool russian_roulette = false;
     bool lens = false;   ///< rays start all over the lens
     bool motion = false; ///< rays have times of their own
+
+private:
+    std::vector<std::optional<Bsdf>> none_; ///< what bsdfs is where each is to be made at the hit
 };
 
 /// What the plan leaves out, and why.

@@ -26,8 +26,9 @@ float radius(const Box3& box) { return box.empty() ? 0.0f : static_cast<float>(l
 PreparedData::PreparedData(const Scene& scene_, int threads)
     : scene(scene_), accelerator(scene_, threads),
       lights(scene_.lights, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
-      finite_lights(scene_.lights, 0, radius(scene_.bounds)), emitters(any_used_material(scene_, emits)),
-      environment(!is_black(scene_.environment)) {
+      finite_lights(scene_.lights, 0, radius(scene_.bounds)),
+      environment_light({}, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
+      emitters(any_used_material(scene_, emits)), environment(!is_black(scene_.environment)) {
     bsdfs.reserve(scene.materials.size());
     for (const Material& material : scene.materials)
         bsdfs.push_back(textured(material) ? std::nullopt

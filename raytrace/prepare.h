@@ -18,6 +18,7 @@ struct PreparedData {
     Accelerator accelerator;
     LightChooser lights;                    ///< the scene's lights and its environment
     LightChooser finite_lights;             ///< without the environment, for settings that leave it out
+    LightChooser environment_light;         ///< the environment alone
     std::vector<std::optional<Bsdf>> bsdfs; ///< by material: made once, where no texture varies it
     bool emitters = false;                  ///< some object emits: hits can find light
     bool environment = false;               ///< it is not black: rays that escape can find light

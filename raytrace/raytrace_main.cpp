@@ -20,7 +20,9 @@ int main(int argc, char** argv) {
             ->check(CLI::Range(0, 100000));
         app.add_option("--integrator", integrator_name,
                        "path (default), naive (no light sampling), direct, unshadowed (direct light without "
-                       "visibility), normal or albedo");
+                       "visibility), lights (emission and direct light of lights), environment (its light on diffuse "
+                       "surfaces), reflection (what is seen by way of "
+                       "metal and glass), normal or albedo");
         app.add_option("--sampler", sampler,
                        "sobol (default: Owen-scrambled), stratified, independent, or center (pixel and lens centre, "
                        "shutter open)");

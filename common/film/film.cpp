@@ -1,16 +1,22 @@
 #include "common/film/film.h"
 
+#include "common/system/sabotage.h"
+
 namespace duet {
 
 Film::Film(int width, int height) : pixels_(width, height) {}
 
 bool Film::add(int x, int y, std::size_t replicate, Rgb sample) {
     Pixel& pixel = pixels_(x, y);
-    if (!is_finite(sample) || sample.r < 0 || sample.g < 0 || sample.b < 0) {
+    const bool invalid = !is_finite(sample) || sample.r < 0 || sample.g < 0 || sample.b < 0;
+    if (invalid && !sabotaged(Guard::kFilmFilter)) {
         ++pixel.invalid;
         return false;
     }
-    pixel.sum[replicate] += Rgbd(sample);
+    if (sabotaged(Guard::kFilmDoubles))
+        pixel.sum[replicate] = Rgbd(Rgb(pixel.sum[replicate]) + sample);
+    else
+        pixel.sum[replicate] += Rgbd(sample);
     ++pixel.count[replicate];
     return true;
 }

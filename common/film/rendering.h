@@ -17,12 +17,31 @@ struct AovSet {
     bool any() const { return depth || normal || albedo || hit || variance || samples; }
 };
 
+/// What may be left out because it cannot change the expected picture (`compare skip` proves it). All are on; a
+/// pipeline reads those that it has, once, before its loops.
+struct Skips {
+    bool lens = true;          ///< lens points of a pinhole
+    bool motion = true;        ///< moments where nothing moves
+    bool environment = true;   ///< one that is black
+    bool frustum = true;       ///< primitives and objects that no pixel can see (rasterizer, as the next three)
+    bool back_faces = true;    ///< of closed, opaque meshes seen from outside
+    bool subpixel = true;      ///< triangles between the samples
+    bool degenerate = true;    ///< triangles of no area on the sub-pixel grid
+    bool textures = true;      ///< BSDFs anew at each hit, where no texture varies them (path tracer, as all below)
+    bool light_samples = true; ///< where nothing emits, or no material can take them
+    bool mirror_light = true;  ///< light samples at mirrors and glass
+    bool emission = true;      ///< of the surfaces hit, where none emits
+    bool last_bounce = true;   ///< rays that could only find a light, where none can be found
+    bool shadow_rays = true;   ///< to light that the surface would not reflect
+};
+
 /// Settings that both pipelines have.
 struct RenderSettings {
     int samples_per_pixel = 1;
     int threads = 0; ///< 0: all
     std::uint64_t seed = 0;
     AovSet aovs;
+    Skips skips;
 };
 
 /// Something left out because the scene doesn't need it: why, or how many.

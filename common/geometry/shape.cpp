@@ -55,13 +55,14 @@ Box3 bounds(const Shape& shape, const Mat4& transform) {
 
 QuadList box_quads(Vec3 low, Vec3 high) {
     const Vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
+    const Vec3 far(low.x + x.x, low.y + y.y, low.z + z.z); // as rounded sums have it, like the faces' own corners
     return {{
-        {low, z, y},                    // −x
-        {{high.x, low.y, low.z}, y, z}, // +x
-        {low, x, z},                    // −y
-        {{low.x, high.y, low.z}, z, x}, // +y
-        {low, y, x},                    // −z
-        {{low.x, low.y, high.z}, x, y}, // +z
+        {low, z, y},                   // −x
+        {{far.x, low.y, low.z}, y, z}, // +x
+        {low, x, z},                   // −y
+        {{low.x, far.y, low.z}, z, x}, // +y
+        {low, y, x},                   // −z
+        {{low.x, low.y, far.z}, x, y}, // +z
     }};
 }
 

@@ -47,7 +47,8 @@ using Shape = std::variant<Sphere, QuadList, Mesh>;
 std::uint32_t primitive_count(const Shape& shape);
 /// Bounds of the shape under an affine map; conservative (they contain every point the surface routines return).
 Box3 bounds(const Shape& shape, const Mat4& transform);
-/// The six quads of an axis-aligned box, normals outwards: −x, +x, −y, +y, −z, +z.
+/// The six quads of an axis-aligned box, normals outwards: −x, +x, −y, +y, −z, +z. low < high on each axis. Neighbours
+/// have the very same corners, so no ray slips between them; for that `high` moves by its rounding.
 QuadList box_quads(Vec3 low, Vec3 high);
 /// Whether the mesh is closed and oriented outwards, judged by position: see Mesh::closed.
 bool is_closed_outwards(const Mesh& mesh);

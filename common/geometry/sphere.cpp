@@ -1,5 +1,7 @@
 #include "common/geometry/sphere.h"
 
+#include "common/system/sabotage.h"
+
 #include <cmath>
 #include <utility>
 
@@ -16,7 +18,12 @@ std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
     const double r = static_cast<double>(sphere.radius);
     const double a = dot(d, d), b = -dot(f, d);
     const Vec3d closest = f + d * (b / a); // from the centre to the ray's nearest point
-    const double discriminant = r * r - dot(closest, closest);
+    double discriminant = r * r - dot(closest, closest);
+    if (sabotaged(Guard::kSphereRoots)) { // the textbook's, in float
+        const Vec3 g = ray.origin - sphere.center, e = ray.direction;
+        const float half = dot(g, e);
+        discriminant = static_cast<double>(half * half - dot(e, e) * (dot(g, g) - sqr(sphere.radius))) / a;
+    }
     if (!(discriminant >= 0)) return std::nullopt; // a NaN misses, too
     const double c = dot(f, f) - r * r;
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);

@@ -1,6 +1,7 @@
 #include "common/geometry/surface_point.h"
 
 #include "common/geometry/sphere.h"
+#include "common/system/sabotage.h"
 #include "common/vec/robust.h"
 
 #include <cmath>
@@ -91,6 +92,7 @@ Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
 } // namespace
 
 Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
+    if (sabotaged(Guard::kOffsetOrigin)) return point.p;
     const float distance = dot(abs(point.ng), point.p_error);
     Vec3 offset = point.ng * distance;
     if (dot(w, point.ng) < 0) offset = -offset;
@@ -115,8 +117,8 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     } else {
         Rayd exact{Vec3d(ray.origin), Vec3d(ray.direction)};
         if (!identity) {
-            const Mat4d m(to_object);
-            exact = {transform_point(m, exact.origin), transform_vector(m, exact.direction)};
+            const Mat4d m(to_world), inverse(to_object);
+            exact = {transform_point_back(m, inverse, exact.origin), transform_vector(inverse, exact.direction)};
         }
         local = on_sphere(std::get<Sphere>(shape), exact, static_cast<double>(hit.t));
     }
@@ -139,11 +141,13 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         const Vec3d p = transform_point(m, local.p);
         point.p = Vec3(p);
         // A ray that leaves here is taken back into the object's space in float: its origin is off there by γ₄ |M⁻¹|
-        // |p|, and here by |M| times that. The stored inverse is itself rounded.
+        // |p − M 0|, and here by |M| times that. The stored inverse is itself rounded.
+        const Vec3d from_place = abs(p - transform_point(m, Vec3d()));
         const Vec3d in_object = local.magnitude * kRounding +
-                                absolute_transform(to_object, abs(p), 1) * static_cast<double>(gamma_bound(5));
+                                absolute_transform(to_object, from_place, 0) * static_cast<double>(gamma_bound(5));
         point.p_error = Vec3(abs(p) * kRounding + absolute_transform(to_world, in_object, 0) +
                              absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
+        if (sabotaged(Guard::kInstanceError)) point.p_error = Vec3(abs(p) * kRounding);
         point.ng = unit(transform_normal(inverse, local.ng));
         point.ns = unit(transform_normal(inverse, local.ns));
         point.dpdu = Vec3(transform_vector(m, local.dpdu));

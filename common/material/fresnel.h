@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/image/rgb.h"
+#include "common/system/sabotage.h"
 
 namespace duet {
 
@@ -9,6 +10,7 @@ namespace duet {
 /// boundary over that before it. Negative: total reflection. As ((η − 1)(η + 1) + cos²θ)/η² it is exact for η = 1 and
 /// keeps its precision near the critical angle, where 1 − sin²θ/η² cancels.
 template <typename T> T cos2_refracted(T cos_i, T eta) {
+    if (sabotaged(Guard::kCriticalAngle)) return T(1) - (T(1) - cos_i * cos_i) / (eta * eta);
     return ((eta - T(1)) * (eta + T(1)) + cos_i * cos_i) / (eta * eta);
 }
 

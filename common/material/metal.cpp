@@ -11,8 +11,17 @@ namespace {
 /// Both sides of the surface are alike: the formulas see them from above.
 Vec3 upwards(Vec3 w) { return {w.x, w.y, abs(w.z)}; }
 
-/// The microfacet normal that reflects wo into wi. Both lie strictly above the surface, so the sum has z > 0.
-Vec3 half_vector(Vec3 wo, Vec3 wi) { return normalize(wo + wi); }
+/// The microfacet that reflects wo into wi. Both lie strictly above the surface, so their sum has z > 0.
+struct Microfacet {
+    Vec3 normal;
+    float
+        cosine; ///< wo·h = wi·h = |wo + wi|/2: the dot products differ where rounding left wo and wi of unequal length
+};
+Microfacet microfacet(Vec3 wo, Vec3 wi) {
+    const Vec3 sum = wo + wi;
+    const float size = length(sum);
+    return {sum / size, 0.5f * size};
+}
 
 } // namespace
 
@@ -20,9 +29,9 @@ Rgb MetalBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     if (smooth() || !same_hemisphere(wo, wi)) return Rgb();
     wo = upwards(wo);
     wi = upwards(wi);
-    const Vec3 h = half_vector(wo, wi);
+    const Microfacet h = microfacet(wo, wi);
     // F D G₂ / (4 cos θₒ cos θᵢ) (Walter et al. 2007, eq. 20)
-    return fresnel_schlick(reflectance, dot(wo, h)) * (ggx_d(h, alpha) * ggx_visibility(wo, wi, alpha));
+    return fresnel_schlick(reflectance, h.cosine) * (ggx_d(h.normal, alpha) * ggx_visibility(wo, wi, alpha));
 }
 
 std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float, Vec2 u, TransportMode) const {
@@ -36,15 +45,15 @@ std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float, Vec2 u, TransportMod
     if (!(wi.z > 0)) return std::nullopt;
     // The normal is taken from the rounded wi again, so that density and weight are those of the very direction
     // returned.
-    const Vec3 h = half_vector(above, wi);
-    const Rgb weight = fresnel_schlick(reflectance, dot(above, h)) * ggx_g2_over_g1(above, wi, alpha);
-    return BsdfSample{{wi.x, wi.y, wo.z < 0 ? -wi.z : wi.z}, weight, ggx_reflection_pdf(above, h, alpha)};
+    const Microfacet h = microfacet(above, wi);
+    const Rgb weight = fresnel_schlick(reflectance, h.cosine) * ggx_g2_over_g1(above, wi, alpha);
+    return BsdfSample{{wi.x, wi.y, wo.z < 0 ? -wi.z : wi.z}, weight, ggx_reflection_pdf(above, h.normal, alpha)};
 }
 
 float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     if (smooth() || !same_hemisphere(wo, wi)) return 0;
     wo = upwards(wo);
-    return ggx_reflection_pdf(wo, half_vector(wo, upwards(wi)), alpha);
+    return ggx_reflection_pdf(wo, microfacet(wo, upwards(wi)).normal, alpha);
 }
 
 MetalBsdf Metal::at(const TextureSet& textures, const SurfacePoint& point) const {

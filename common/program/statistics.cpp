@@ -53,6 +53,12 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
     };
 }
 
+void check_json_path(const std::string& path) {
+    if (path.empty() || path == "-") return;
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
+}
+
 void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
     const std::string text =
         json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; // names may not be UTF-8

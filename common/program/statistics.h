@@ -23,6 +23,8 @@ struct RenderContext {
 /// invalid_samples, approximations, skipped, interrupted.
 nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics);
 
+/// Throws Error where write_json could not write, for want of a folder: called before a long run. "" and "-" can be.
+void check_json_path(const std::string& path);
 /// Pretty-printed to a file, whole or absent, or to standard output for "-".
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 

@@ -36,7 +36,8 @@ Scene scene_around_mesh(const std::filesystem::path& path) {
     ObjFile obj = load_obj(path, {MeshNormals::kAuto, true});
     Scene scene;
     scene.path = path;
-    ImageCache images(scene.textures);
+    scene.files = obj.files;
+    ImageCache images(scene);
     Object object;
     object.name = path.stem().string();
     object.materials = add_obj_materials(path, obj, images, scene);

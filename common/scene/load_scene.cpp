@@ -36,16 +36,17 @@ Scene read_scene(const std::filesystem::path& path) {
 
     Scene scene;
     scene.path = path;
+    scene.files = {path};
     scene.camera = read_camera(file.at("camera"));
     if (file.has("image")) read_image_size(file.at("image"), scene);
-    ImageCache images(scene.textures);
+    ImageCache images(scene);
     NameIndex textures, materials;
     if (file.has("textures")) textures = read_textures(file.at("textures"), scene, images);
     if (file.has("materials")) materials = read_materials(file.at("materials"), textures, scene);
     read_objects(file.at("objects"), materials, images, scene);
     if (file.has("lights"))
         for (const JsonValue& light : file.at("lights").elements()) scene.lights.push_back(read_light(light));
-    if (file.has("environment")) scene.environment = read_environment(file.at("environment"));
+    if (file.has("environment")) scene.environment = read_environment(file.at("environment"), scene.files);
     return scene;
 }
 

@@ -7,6 +7,7 @@
 #include "common/light/environment.h"
 #include "common/light/light.h"
 #include "common/material/material.h"
+#include "common/system/sabotage.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -44,6 +45,8 @@ struct SceneNeeds {
 
 struct Scene {
     std::filesystem::path path; ///< the file it was loaded from
+    std::vector<std::filesystem::path>
+        files; ///< all that was read: `path`, then meshes, MTL files and pictures, in the order read
     Camera camera;
     int width = 640, height = 480;
 
@@ -69,6 +72,15 @@ struct ObjectTransform {
     Mat4 to_world, to_object;
 };
 ObjectTransform object_transform(const Object& object, float time);
+
+/// A ray in the world, as the object sees it: the direction is not normalized, so t means the same.
+inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_object) {
+    Ray local = ray;
+    local.origin = sabotaged(Guard::kPlaceDifference) ? transform_point(to_object, ray.origin)
+                                                      : transform_point_back(to_world, to_object, ray.origin);
+    local.direction = transform_vector(to_object, ray.direction);
+    return local;
+}
 
 /// The surface point of a hit, with material, by the one way that both pipelines share.
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);

@@ -58,6 +58,13 @@ template <typename T> constexpr Vec3T<T> transform_vector(const Mat4T<T>& m, Vec
     const auto row = [&](std::size_t r) { return m[r][0] * v.x + m[r][1] * v.y + m[r][2] * v.z; };
     return {row(0), row(1), row(2)};
 }
+/// An affine map undone at a point, given the map's inverse: M⁻¹ p, by way of p − M 0. Near the place that the map
+/// carries things to that difference loses nothing; the inverse's own translation, made of numbers as large as the
+/// distance from the world's origin, would be centimetres off at 100 km in float.
+template <typename T>
+constexpr Vec3T<T> transform_point_back(const Mat4T<T>& m, const Mat4T<T>& inverse, Vec3T<T> p) {
+    return transform_vector(inverse, p - Vec3T<T>(m[0][3], m[1][3], m[2][3]));
+}
 /// A normal under an affine map, given the map's inverse: (M⁻¹)ᵀ n. Not normalized.
 template <typename T> constexpr Vec3T<T> transform_normal(const Mat4T<T>& inverse, Vec3T<T> n) {
     const auto column = [&](std::size_t c) { return inverse[0][c] * n.x + inverse[1][c] * n.y + inverse[2][c] * n.z; };

@@ -1,6 +1,8 @@
 // Robust floating-point arithmetic: products without cancellation, error bounds, neighbours.
 #pragma once
 
+#include "common/system/sabotage.h"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +13,7 @@ namespace duet {
 /// a·b − c·d with an error below 1.5 ulp of the result, however close the products are (Kahan's algorithm; proof:
 /// Jeannerod, Louvet and Muller 2013). Not antisymmetric in the exchange of the two products.
 inline float difference_of_products(float a, float b, float c, float d) {
+    if (sabotaged(Guard::kDifferenceOfProducts)) return a * b - c * d;
     const float cd = c * d;
     const float difference = std::fma(a, b, -cd);
     const float error = std::fma(-c, d, cd);

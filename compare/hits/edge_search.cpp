@@ -72,16 +72,15 @@ std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
     return kept;
 }
 
-/// The part of a polygon in the world that projects into the disk around `pixel`, in pixels; the disk as the octagon
-/// within it.
-std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners) {
+constexpr int kSides = 8;
+
+/// The part of a polygon in the world that projects into an octagon around `pixel`, its sides `reach` away; in pixels.
+std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners, double reach) {
     std::vector<Vec4d> polygon;
     for (const Vec3d& p : corners) polygon.push_back(pinhole.world_to_pixel * Vec4d(p, 1.0));
     // Depth is affine in the world (and equals w under perspective): what lies before the near plane goes first.
     for (Vec4d& v : polygon) v.z -= pinhole.near;
     polygon = clip(polygon, {0, 0, 1, 0});
-    constexpr int kSides = 8;
-    const double reach = kEdgeRadius * std::cos(kPiDouble / kSides);
     for (int i = 0; i < kSides && !polygon.empty(); ++i) {
         const double angle = 2 * kPiDouble * i / kSides, x = std::cos(angle), y = std::sin(angle);
         polygon = clip(polygon, {-x, -y, 0, reach + x * pixel.x + y * pixel.y});
@@ -92,12 +91,28 @@ std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::
     return points;
 }
 
+/// Aims just inside the border of that part: there a face that is hidden by the one before it, and seen almost edge-on,
+/// meets it.
+bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
+    Vec2d middle;
+    for (const Vec2d p : polygon) middle = middle + p * (1.0 / static_cast<double>(polygon.size()));
+    constexpr int kPoints = 16;
+    constexpr double kInside = 1e-5; // of the way to the middle
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        for (int k = 0; k < kPoints; ++k) {
+            const Vec2d p = polygon[i] + (polygon[(i + 1) % polygon.size()] - polygon[i]) * ((k + 0.5) / kPoints);
+            if (search.try_at(p + (middle - p) * kInside)) return true;
+        }
+    return false;
+}
+
 /// Aims into the part of one primitive that lies within reach: its fan of triangles, low-discrepancy points in each. A
 /// sliver thousands of times thinner than the disk is found this way.
 bool try_primitive(Search& search, const Hit& hit) {
     if (!hit.valid()) return false;
-    const std::vector<Vec2d> polygon =
-        within_reach(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive));
+    const std::vector<Vec2d> polygon = // in the octagon within the disk
+        within_reach(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive),
+                     kEdgeRadius * std::cos(kPiDouble / kSides));
     constexpr int kPoints = 64;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
         for (int k = 0; k < kPoints; ++k) {
@@ -107,7 +122,15 @@ bool try_primitive(Search& search, const Hit& hit) {
             const Vec2d p = polygon[0] + (polygon[i] - polygon[0]) * s + (polygon[i + 1] - polygon[0]) * t;
             if (search.try_at(p)) return true;
         }
-    return false;
+    return try_border(search, polygon);
+}
+
+/// Whether any displaced ray could meet the primitive: not where all of it projects outside of the octagon around the
+/// disk, with some room for rounding.
+bool may_be_met(const Search& search, const Hit& hit) {
+    if (!hit.valid()) return true;
+    const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
+    return corners.empty() || !within_reach(search.pinhole, search.pixel, corners, 1.01 * kEdgeRadius).empty();
 }
 
 } // namespace
@@ -115,6 +138,7 @@ bool try_primitive(Search& search, const Hit& hit) {
 EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
     Search search{tracer, pinhole, pixel, a, b, {}};
     search.result.center = search.trace(pixel);
+    if (!may_be_met(search, a) || !may_be_met(search, b)) return search.result;
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));
     return search.result;

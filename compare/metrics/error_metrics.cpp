@@ -1,5 +1,6 @@
 #include "compare/metrics/error_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,26 +11,56 @@ namespace {
 /// Keeps zero references from dividing by zero, and dark ones from dominating.
 constexpr double kRelativeFloor = 0.01;
 
+/// The share of the pixels that relmse_trimmed leaves out: a few fireflies are most of many a relMSE.
+constexpr double kTrimmedShare = 0.001;
+
 struct Sums {
-    double squared = 0, absolute = 0, relative = 0;
+    double squared = 0, absolute = 0, relative = 0, symmetric = 0;
     Rgbd differences;
 
-    void add(Rgbd difference, Rgbd reference) {
+    void add(Rgbd value, Rgbd reference) {
         for (std::size_t c = 0; c < 3; ++c) {
-            const double square = sqr(difference[c]);
+            const double difference = value[c] - reference[c], square = sqr(difference);
             squared += square;
-            absolute += std::abs(difference[c]);
+            absolute += std::abs(difference);
             relative += square / (sqr(reference[c]) + kRelativeFloor);
+            symmetric += std::abs(difference) / (std::abs(value[c]) + std::abs(reference[c]) + kRelativeFloor);
         }
-        differences += difference;
+        differences += value - reference;
     }
     void add(const Sums& s) {
         squared += s.squared;
         absolute += s.absolute;
         relative += s.relative;
+        symmetric += s.symmetric;
         differences += s.differences;
     }
 };
+
+bool has_nan(Rgb c) { return std::isnan(c.r) || std::isnan(c.g) || std::isnan(c.b); }
+bool has_infinity(Rgb c) { return std::isinf(c.r) || std::isinf(c.g) || std::isinf(c.b); }
+
+/// The mean of the smallest relative squared errors, one a pixel.
+double trimmed_mean(std::vector<double>& errors) {
+    const std::size_t kept =
+        errors.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(errors.size()));
+    if (kept < errors.size())
+        std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(kept), errors.end());
+    double sum = 0;
+    for (std::size_t i = 0; i < kept; ++i) sum += errors[i];
+    return sum / static_cast<double>(kept);
+}
+
+/// Counts what is not finite in a pixel of A or B: true where something is.
+bool count_unusable(ErrorMetrics& metrics, Rgb a, Rgb b) {
+    metrics.nan_a += has_nan(a);
+    metrics.nan_b += has_nan(b);
+    metrics.infinite_a += has_infinity(a);
+    metrics.infinite_b += has_infinity(b);
+    metrics.non_finite_a += !is_finite(a);
+    metrics.non_finite_b += !is_finite(b);
+    return !is_finite(a) || !is_finite(b);
+}
 
 } // namespace
 
@@ -39,16 +70,18 @@ ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
             message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
     ErrorMetrics metrics;
     metrics.worst = -1;
+    std::vector<double> relative;
+    relative.reserve(a.size());
     Sums total;
     for (int y = 0; y < a.height(); ++y) {
         Sums row; // summed by row first: the error of a long sum grows with its length
         for (int x = 0; x < a.width(); ++x) {
-            const Rgbd value(a(x, y)), reference(b(x, y));
-            if (!is_finite(value)) ++metrics.non_finite_a;
-            if (!is_finite(reference)) ++metrics.non_finite_b;
-            if (!is_finite(value) || !is_finite(reference)) continue;
-            const Rgbd difference = value - reference;
-            row.add(difference, reference);
+            if (count_unusable(metrics, a(x, y), b(x, y))) continue;
+            const Rgbd value(a(x, y)), reference(b(x, y)), difference = value - reference;
+            Sums pixel;
+            pixel.add(value, reference);
+            row.add(pixel);
+            relative.push_back(pixel.relative / 3);
             ++metrics.pixels;
             const double largest =
                 max_component(Rgbd(std::abs(difference.r), std::abs(difference.g), std::abs(difference.b)));
@@ -66,6 +99,8 @@ ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
     metrics.mae = total.absolute / (3 * pixels);
     metrics.psnr = -10 * std::log10(metrics.mse);
     metrics.relmse = total.relative / (3 * pixels);
+    metrics.relmse_trimmed = trimmed_mean(relative);
+    metrics.smape = total.symmetric / (3 * pixels);
     metrics.mean_signed_error = total.differences / pixels;
     if (metrics.pixels == 0) metrics.worst = std::numeric_limits<double>::quiet_NaN();
     return metrics;

@@ -64,4 +64,14 @@ std::string encode_plane(const std::vector<std::uint32_t>& values, int width, in
     return base64(deflate(planes));
 }
 
+std::vector<std::string> encode_picture(const ImageRgb& image) {
+    std::vector<std::string> planes;
+    std::vector<std::uint32_t> values(image.size());
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = half_bits(image[i][c]);
+        planes.push_back(encode_plane(values, image.width(), 2));
+    }
+    return planes;
+}
+
 } // namespace duet::compare

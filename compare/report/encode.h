@@ -22,4 +22,7 @@ std::string base64(std::string_view bytes);
 /// significance, the highest byte first, and deflated (zlib format): like PNG's filters, but for numbers of any width.
 std::string encode_plane(const std::vector<std::uint32_t>& values, int width, int bytes);
 
+/// A picture's red, green and blue in half precision, two bytes a number, each as encode_plane makes it.
+std::vector<std::string> encode_picture(const ImageRgb& image);
+
 } // namespace duet::compare

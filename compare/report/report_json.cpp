@@ -17,20 +17,57 @@ json hit_json(const Scene& scene, std::uint32_t object, std::uint32_t primitive,
     return {{"object", object}, {"name", scene.objects[object].name}, {"primitive", primitive}, {"t", number(t)}};
 }
 
+json channels(Rgbd c) { return {number(c.r), number(c.g), number(c.b)}; }
+
+void add_flip(json& result, const HdrFlip& flip) {
+    result["flip"] = number(flip.mean);
+    result["flip_weighted_median"] = number(flip.weighted_median);
+    result["flip_first_quartile"] = number(flip.first_quartile);
+    result["flip_third_quartile"] = number(flip.third_quartile);
+    result["flip_min"] = number(flip.min);
+    result["flip_max"] = number(flip.max);
+    if (flip.exposures == 0) return;
+    result["flip_start_exposure"] = number(flip.start_exposure);
+    result["flip_stop_exposure"] = number(flip.stop_exposure);
+    result["flip_exposures"] = flip.exposures;
+}
+
+json z_test_json(const ZTest& z) {
+    return {
+        {"pixels", z.pixels},
+        {"over_2", number(z.over_2)},
+        {"over_3", number(z.over_3)},
+        {"mean_square", number(z.mean_square)},
+        {"largest", number(z.largest)},
+        {"largest_pixel", {z.largest_x, z.largest_y}},
+        {"mean_z", channels(z.mean_z)},
+        {"detectable", channels(z.detectable)},
+        {"tests", z.tests},
+        {"p", number(z.p)},
+        {"most_unlikely", {{"x", z.x}, {"y", z.y}, {"width", z.width}, {"height", z.height}, {"channel", z.channel}}}};
+}
+
 } // namespace
 
-json metrics_json(const ErrorMetrics& m, const std::string& name_a, const std::string& name_b) {
+json metrics_json(const ImageMetrics& metrics, const std::string& name_a, const std::string& name_b) {
+    const ErrorMetrics& m = metrics.errors;
     json result = {{"mse", number(m.mse)},
                    {"rmse", number(m.rmse)},
                    {"mae", number(m.mae)},
                    {"psnr", number(m.psnr)},
                    {"relmse", number(m.relmse)},
-                   {"mean_signed_error",
-                    {number(m.mean_signed_error.r), number(m.mean_signed_error.g), number(m.mean_signed_error.b)}},
+                   {"relmse_trimmed", number(m.relmse_trimmed)},
+                   {"smape", number(m.smape)},
+                   {"mean_signed_error", channels(m.mean_signed_error)},
                    {"worst", number(m.worst)},
+                   {"ssim", number(metrics.ssim)},
                    {"pixels", m.pixels},
+                   {"nan", {{name_a, m.nan_a}, {name_b, m.nan_b}}},
+                   {"infinite", {{name_a, m.infinite_a}, {name_b, m.infinite_b}}},
                    {"non_finite", {{name_a, m.non_finite_a}, {name_b, m.non_finite_b}}}};
     result["worst_pixel"] = m.pixels > 0 ? json{m.worst_x, m.worst_y} : json(nullptr);
+    add_flip(result, metrics.flip);
+    if (metrics.z) result["z_test"] = z_test_json(*metrics.z);
     return result;
 }
 

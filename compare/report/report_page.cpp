@@ -1,10 +1,12 @@
 #include "compare/report/report_page.h"
 
-#include "compare/report/assets.h"
 #include "compare/report/encode.h"
+#include "compare/report/false_color.h"
+#include "compare/report/html.h"
+#include "compare/report/report_json.h"
 
-#include <functional>
-#include <map>
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace duet::compare {
@@ -20,35 +22,27 @@ std::string plane(const Image<Pixel>& image, int bytes, const Value& value_at) {
     return encode_plane(values, image.width(), bytes);
 }
 
-json picture_planes(const ImageRgb& image) {
-    json planes = json::array();
-    for (std::size_t c = 0; c < 3; ++c)
-        planes.push_back(plane(image, 2, [&](std::size_t i) { return std::uint32_t{half_bits(image[i][c])}; }));
-    return planes;
-}
-
 // The difference has planes of its own: that of two rounded numbers would be mostly rounding where they are close.
 json difference_planes(const ImageRgb& a, const ImageRgb& b) {
     ImageRgb difference(a.width(), a.height());
     for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
-    return picture_planes(difference);
+    return encode_picture(difference);
 }
 
-// Objects are stored plus one: none becomes 0. The path tracer's hits are stored as what differs (exclusive or) from
-// the rasterizer's, which is next to nothing.
+/// Errors in steps of 1/4095 (twelve bits: the eye sees fewer); one step more stands for NaN.
+json flip_json(const ReportPage& page) {
+    const ImageFloat& map = page.metrics.flip.map;
+    const auto code = [&](std::size_t i) {
+        return std::isnan(map[i]) ? 4096u
+                                  : static_cast<std::uint32_t>(std::lround(std::clamp(map[i], 0.0f, 1.0f) * 4095));
+    };
+    return {{"name", page.encoding == Encoding::kEncoded ? "FLIP" : "HDR-FLIP"}, {"map", plane(map, 2, code)}};
+}
+
+// Objects are stored plus one: none becomes 0. B's hits are stored as what differs (exclusive or) from A's, which is
+// next to nothing.
 std::uint32_t object_code(const Hit& hit) { return hit.object + 1; }
 std::uint32_t primitive_code(const Hit& hit) { return hit.valid() ? hit.primitive : 0; }
-
-json hit_planes(const ReportPage& page) {
-    const auto &a = page.raster_hits, &b = page.raytrace_hits;
-    return {
-        {"object", plane(a, 4, [&](std::size_t i) { return object_code(a[i]); })},
-        {"primitive", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]); })},
-        {"object_change", plane(a, 4, [&](std::size_t i) { return object_code(a[i]) ^ object_code(b[i]); })},
-        {"primitive_change", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]) ^ primitive_code(b[i]); })},
-        {"verdict", plane(page.agreement.verdicts, 1,
-                          [&](std::size_t i) { return static_cast<std::uint32_t>(page.agreement.verdicts[i]); })}};
-}
 
 /// What each object is called on the page: its name, or what it is made of.
 json object_labels(const Scene& scene) {
@@ -67,81 +61,62 @@ json object_labels(const Scene& scene) {
     return labels;
 }
 
-/// The stages in the order they ran: [[name, seconds], …].
-json stages(const Rendering& rendering) {
-    json list = json::array();
-    for (const auto& [name, seconds] : rendering.statistics.seconds) list.push_back({name, seconds});
-    return list;
+json hits_of(const ReportHits& hits) {
+    const auto &a = hits.a, &b = hits.b;
+    return {
+        {"figures", hits_json(hits.agreement, hits.scene)},
+        {"objects", object_labels(hits.scene)},
+        {"object", plane(a, 4, [&](std::size_t i) { return object_code(a[i]); })},
+        {"primitive", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]); })},
+        {"object_change", plane(a, 4, [&](std::size_t i) { return object_code(a[i]) ^ object_code(b[i]); })},
+        {"primitive_change", plane(a, 4, [&](std::size_t i) { return primitive_code(a[i]) ^ primitive_code(b[i]); })},
+        {"verdict", plane(hits.agreement.verdicts, 1,
+                          [&](std::size_t i) { return static_cast<std::uint32_t>(hits.agreement.verdicts[i]); })}};
 }
 
-/// What was left out, in order: [[what, why, count or −1], …].
-json skipped(const Rendering& rendering) {
-    json list = json::array();
-    for (const Skipped& s : rendering.statistics.skipped) list.push_back({s.what, s.why, s.count});
-    return list;
+/// The statistics of a rendering; beside them the stages [[name, seconds], …] and the skips [[what, why, count or −1],
+/// …] in the order they happened.
+json rendering_json(const ReportRendering& rendering) {
+    json stages = json::array(), skipped = json::array();
+    for (const auto& [name, seconds] : rendering.statistics.seconds) stages.push_back({name, seconds});
+    for (const Skipped& s : rendering.statistics.skipped) skipped.push_back({s.what, s.why, s.count});
+    return {{"statistics", statistics_json(rendering.context, rendering.statistics)},
+            {"stages", stages},
+            {"skipped", skipped}};
 }
 
-/// The page's template with each {{mark}} replaced by its value, in one pass: what a value holds is no mark.
-std::string fill_in(std::string_view page, const std::map<std::string_view, std::string_view>& values) {
-    std::string text;
-    for (std::size_t at = 0;;) {
-        const std::size_t open = page.find("{{", at);
-        text += page.substr(at, open - at);
-        if (open == std::string_view::npos) return text;
-        const std::size_t close = page.find("}}", open);
-        DUET_CHECK(close != std::string_view::npos);
-        text += values.at(page.substr(open + 2, close - open - 2));
-        at = close + 2;
-    }
+json side_json(const ReportSide& side) {
+    return {{"name", side.name},
+            {"picture", encode_picture(side.picture)},
+            {"rendering", side.rendering ? rendering_json(*side.rendering) : json(nullptr)}};
 }
 
-std::string escape_html(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) switch (c) {
-        case '&':
-            escaped += "&amp;";
-            break;
-        case '<':
-            escaped += "&lt;";
-            break;
-        case '>':
-            escaped += "&gt;";
-            break;
-        default:
-            escaped += c;
-        }
-    return escaped;
-}
-
-/// JSON that can stand in a script element: no text in it can end the element.
-std::string script_json(const json& value) {
-    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
-        text.replace(at, 1, "\\u003c");
-    return text;
+template <typename Pixel> void check_size(const Image<Pixel>& image, const ReportPage& page) {
+    DUET_CHECK_EQ(image.width(), page.a.picture.width());
+    DUET_CHECK_EQ(image.height(), page.a.picture.height());
 }
 
 } // namespace
 
 std::string report_page(const ReportPage& page) {
-    DUET_CHECK_EQ(page.raster.radiance.size(), page.raytrace.radiance.size());
-    DUET_CHECK_EQ(page.raster.radiance.size(), page.raster_hits.size());
-    DUET_CHECK_EQ(page.raster.radiance.size(), page.raytrace_hits.size());
-    DUET_CHECK_EQ(page.raster.radiance.size(), page.agreement.verdicts.size());
-    const std::string title = page.scene.path.filename().string();
-    const json data = {{"title", title},
-                       {"width", page.raster.radiance.width()},
-                       {"height", page.raster.radiance.height()},
-                       {"objects", object_labels(page.scene)},
-                       {"raster", picture_planes(page.raster.radiance)},
-                       {"raytrace", picture_planes(page.raytrace.radiance)},
-                       {"difference", difference_planes(page.raster.radiance, page.raytrace.radiance)},
-                       {"hits", hit_planes(page)},
-                       {"stages", {{"raster", stages(page.raster)}, {"raytrace", stages(page.raytrace)}}},
-                       {"skipped", {{"raster", skipped(page.raster)}, {"raytrace", skipped(page.raytrace)}}},
-                       {"report", page.report}};
-    const std::string escaped_title = escape_html(title), embedded = script_json(data);
-    return fill_in(kReportHtml, {{"title", escaped_title}, {"css", kReportCss}, {"data", embedded}, {"js", kReportJs}});
+    check_size(page.b.picture, page);
+    check_size(page.metrics.flip.map, page);
+    if (page.hits) {
+        check_size(page.hits->a, page);
+        check_size(page.hits->b, page);
+        check_size(page.hits->agreement.verdicts, page);
+    }
+    const json data = {{"title", page.title},
+                       {"width", page.a.picture.width()},
+                       {"height", page.a.picture.height()},
+                       {"eight_bit", page.encoding == Encoding::kEncoded},
+                       {"sides", {side_json(page.a), side_json(page.b)}},
+                       {"difference", difference_planes(page.a.picture, page.b.picture)},
+                       {"difference_range", difference_range(page.a.picture, page.b.picture)},
+                       {"metrics", metrics_json(page.metrics, "A", "B")},
+                       {"flip", flip_json(page)},
+                       {"hits", page.hits ? hits_of(*page.hits) : json(nullptr)}};
+    return make_page(kReportSource, page.title, data);
 }
 
 } // namespace duet::compare

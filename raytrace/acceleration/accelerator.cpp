@@ -109,16 +109,13 @@ template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best)
     const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
     return traverse<kAny>(world_, ray, kNoObject, best, [&](const BvhInstance& instance, Hit& so_far) {
         const Object& object = scene_.objects[instance.object];
-        // The direction keeps its length through the transform, so t means the same on both sides.
-        Ray inside = ray;
-        const auto enter = [&](const Mat4& to_object) {
-            inside.origin = transform_point(to_object, ray.origin);
-            inside.direction = transform_vector(to_object, ray.direction);
-        };
-        if (object.moving)
-            enter(object_transform(object, ray.time).to_object);
-        else
-            enter(object.to_object);
+        Ray inside;
+        if (object.moving) {
+            const ObjectTransform transform = object_transform(object, ray.time);
+            inside = to_object_space(ray, transform.to_world, transform.to_object);
+        } else {
+            inside = to_object_space(ray, object.to_world, object.to_object);
+        }
         if (!traceable(inside)) return false;
         return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
     });

@@ -9,6 +9,7 @@
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
+#include "common/system/sabotage.h"
 #include "raytrace/acceleration/bvh.h"
 
 #include <bit>
@@ -18,7 +19,7 @@ namespace duet::raytrace {
 
 /// The order of hits along a ray: by distance, and at equal distance by (object, primitive).
 inline bool precedes(const Hit& a, const Hit& b) {
-    if (a.t != b.t) return a.t < b.t;
+    if (a.t != b.t || sabotaged(Guard::kTieOrder)) return a.t < b.t;
     return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
 }
 
@@ -28,12 +29,14 @@ inline bool precedes(const Hit& a, const Hit& b) {
 class SlabRay {
 public:
     SlabRay(const Ray& ray, const Box3& bounds) {
-        constexpr float kRelative = 0x1p-20f; // 16 roundings: Woop et al. have 5, and the triangle's distance 6 more
+        const float relative = sabotaged(Guard::kEnlargedBoxes)
+                                   ? 0.0f
+                                   : 0x1p-20f; // 16 roundings: Woop et al. have 5, and the triangle's distance 6 more
         const Vec3 extent = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin));
         const float largest = extent[longest_axis(abs(ray.direction))];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float error =
-                (extent[axis] + largest + abs(ray.origin[axis])) * kRelative + std::numeric_limits<float>::min();
+                (extent[axis] + largest + abs(ray.origin[axis])) * relative + std::numeric_limits<float>::min();
             const float reciprocal = 1 / ray.direction[axis]; // ±infinity for ±0: the slab is entered at −∞, or never
             const bool negative = std::signbit(ray.direction[axis]);
             const float away = negative ? -error : error;
@@ -41,8 +44,8 @@ public:
             far_plane_[axis] = axis + (negative ? 0 : 3);
             near_origin_[axis] = ray.origin[axis] + away;
             far_origin_[axis] = ray.origin[axis] - away;
-            near_scale_[axis] = reciprocal * (1 - kRelative);
-            far_scale_[axis] = reciprocal * (1 + kRelative);
+            near_scale_[axis] = reciprocal * (1 - relative);
+            far_scale_[axis] = reciprocal * (1 + relative);
         }
     }
 

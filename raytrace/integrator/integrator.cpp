@@ -8,21 +8,32 @@
 namespace duet::raytrace {
 
 Integrator integrator(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, Integrator>, 6> kNames{{{"path", Integrator::kPath},
+    constexpr std::array<std::pair<std::string_view, Integrator>, 9> kNames{{{"path", Integrator::kPath},
                                                                              {"naive", Integrator::kNaive},
                                                                              {"direct", Integrator::kDirect},
                                                                              {"unshadowed", Integrator::kUnshadowed},
+                                                                             {"lights", Integrator::kLights},
+                                                                             {"environment", Integrator::kEnvironment},
+                                                                             {"reflection", Integrator::kReflection},
                                                                              {"normal", Integrator::kNormal},
                                                                              {"albedo", Integrator::kAlbedo}}};
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
-    throw Error(message("unknown integrator '", name, "': expected path, naive, direct, unshadowed, normal or albedo"));
+    throw Error(message("unknown integrator '", name,
+                        "': expected path, naive, direct, unshadowed, lights, environment, "
+                        "reflection, normal or albedo"));
 }
 
 RadianceFunction radiance_function(Integrator integrator) {
     switch (integrator) {
     case Integrator::kUnshadowed:
         return unshadowed_radiance;
+    case Integrator::kLights:
+        return lights_radiance;
+    case Integrator::kEnvironment:
+        return environment_radiance;
+    case Integrator::kReflection:
+        return reflection_radiance;
     case Integrator::kNormal:
         return normal_color;
     case Integrator::kAlbedo:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/sampling/sampler.h"
+#include "raytrace/integrator/light_parts.h"
 #include "raytrace/plan.h"
 
 namespace duet::raytrace {
@@ -37,10 +38,16 @@ struct VertexDimensions {
 using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
                                  RayCounts& counts);
 
-Rgb path_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);       ///< path.cpp
-Rgb unshadowed_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< unshadowed.cpp
-Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< surface_colors.cpp
-Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< surface_colors.cpp
+Rgb path_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< path.cpp
+Rgb unshadowed_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< unshadowed.cpp
+Rgb lights_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);      ///< single_part.cpp
+Rgb environment_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< single_part.cpp
+Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< single_part.cpp
+Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
+Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
+
+/// path_radiance of the same numbers, split: the parts add up to it but for rounding.
+LightParts path_parts(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp
 
 /// The function of an integrator. Path, naive and direct are one: they differ in their plans.
 RadianceFunction radiance_function(Integrator integrator);

@@ -6,7 +6,7 @@ Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
     Vertex vertex;
     vertex.point = surface_point(plan.scene, ray, hit);
     vertex.material = &plan.scene.materials[vertex.point.material];
-    const std::optional<Bsdf>& constant = plan.prepared.bsdfs[vertex.point.material];
+    const std::optional<Bsdf>& constant = (*plan.bsdfs)[vertex.point.material];
     vertex.bsdf = constant ? *constant : bsdf_at(*vertex.material, plan.scene.textures, vertex.point);
     vertex.frame = frame_from_normal(vertex.point.ns);
     const Vec3 wo = -normalize(ray.direction);

@@ -42,6 +42,8 @@ TEST_SUITE("unit") {
         CHECK(m.mae == doctest::Approx(1.75 / 6));
         CHECK(m.psnr == doctest::Approx(10 * std::log10(6 / 1.3125)));
         CHECK(m.relmse == doctest::Approx((0.25 / 0.26 + 0.0625 / 0.0725 + 1.0 / 1.01) / 6));
+        CHECK(m.relmse_trimmed == m.relmse); // 0.1 % of two pixels is none
+        CHECK(m.smape == doctest::Approx((0.5 / 1.51 + 0.25 / 0.26 + 1.0 / 3.01) / 6));
         CHECK(m.mean_signed_error.r == doctest::Approx(0.25));
         CHECK(m.mean_signed_error.g == doctest::Approx(0.5));
         CHECK(m.mean_signed_error.b == doctest::Approx(-0.125));
@@ -75,6 +77,14 @@ TEST_SUITE("unit") {
         CHECK(error_metrics(b, a).mean_signed_error.g == -error_metrics(a, b).mean_signed_error.g);
     }
 
+    TEST_CASE("the trimmed relative error leaves out the worst 0.1 % of the pixels") {
+        ImageRgb a(100, 21, Rgb(1.5f)), b(100, 21, Rgb(1));
+        for (const int x : {3, 50, 99}) a(x, 7) = Rgb(100);
+        const double each = 0.25 / 1.01, outlier = 99.0 * 99.0 / 1.01;
+        CHECK(error_metrics(a, b).relmse == doctest::Approx((2097 * each + 3 * outlier) / 2100));
+        CHECK(error_metrics(a, b).relmse_trimmed == doctest::Approx((2097 * each + outlier) / 2098));
+    }
+
     TEST_CASE("pixels that are not finite are counted and left out") {
         ImageRgb a(3, 1, Rgb(1.0f)), b(3, 1, Rgb(0.5f));
         a(0, 0).g = std::numeric_limits<float>::quiet_NaN();
@@ -82,6 +92,10 @@ TEST_SUITE("unit") {
         const ErrorMetrics m = error_metrics(a, b);
         CHECK(m.non_finite_a == 1);
         CHECK(m.non_finite_b == 1);
+        CHECK(m.nan_a == 1);
+        CHECK(m.infinite_a == 0);
+        CHECK(m.nan_b == 0);
+        CHECK(m.infinite_b == 1);
         CHECK(m.pixels == 1);
         CHECK(m.mse == doctest::Approx(0.25));
         CHECK(m.worst_x == 2);

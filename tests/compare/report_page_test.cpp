@@ -15,6 +15,13 @@ using nlohmann::json;
 
 namespace {
 
+/// What the page's scripts are given.
+json data_of(const std::string& page) {
+    const std::string begin = "<script type=\"application/json\" id=\"data\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    return json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
 struct Page {
     Scene scene = test::empty_scene(8, 6);
     Rendering raster, raytrace;
@@ -33,15 +40,17 @@ struct Page {
         raster_hits(4, 3) = raytrace_hits(4, 3) = {0, 0, 0, 0, 4};
         raytrace_hits(2, 2) = {0, 0, 0, 0, 4};
         const HitAgreement agreement = compare_hits(scene, {scene.camera, 8, 6}, raster_hits, raytrace_hits);
-        report = {{"hits", hits_json(agreement, scene)},
-                  {"metrics", metrics_json(error_metrics(raster.radiance, raytrace.radiance), "raster", "raytrace")}};
-        text = report_page({scene, raster, raytrace, raster_hits, raytrace_hits, agreement, report});
+        const ImageMetrics metrics = image_metrics(raster.radiance, raytrace.radiance, Encoding::kLinear);
+        report = {{"hits", hits_json(agreement, scene)}, {"metrics", metrics_json(metrics, "a", "b")}};
+        const RenderContext context;
+        text = report_page({"balls.json",
+                            {"Rasterizer", raster.radiance, ReportRendering{context, raster.statistics}},
+                            {"Path tracer", raytrace.radiance, ReportRendering{context, raytrace.statistics}},
+                            metrics,
+                            Encoding::kLinear,
+                            ReportHits{scene, raster_hits, raytrace_hits, agreement}});
     }
-    json data() const {
-        const std::string begin = "<script type=\"application/json\" id=\"data\">";
-        const std::size_t from = text.find(begin) + begin.size();
-        return json::parse(text.substr(from, text.find("</script>", from) - from));
-    }
+    json data() const { return data_of(text); }
 };
 
 std::string without_scripts_and_styles(std::string text) {
@@ -90,18 +99,37 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the page holds every figure of the report, the stages in their order, and what was skipped") {
         const Page page;
-        const json data = page.data();
-        CHECK(data["report"] == page.report);
+        const json data = page.data(), side = data["sides"][0];
+        CHECK(data["metrics"]["flip"] == page.report["metrics"]["flip"]);
+        CHECK(data["metrics"]["relmse"] == page.report["metrics"]["relmse"]);
+        CHECK(data["hits"]["figures"] == page.report["hits"]);
         CHECK(data["width"] == 8);
         CHECK(data["height"] == 6);
-        CHECK(data["stages"]["raster"] == json::parse(R"([["transform", 0.5], ["cover", 0.25]])"));
-        CHECK(data["skipped"]["raster"] ==
+        CHECK(data["title"] == "balls.json");
+        CHECK(side["name"] == "Rasterizer");
+        CHECK(side["rendering"]["statistics"]["approximations"] == json::parse(R"(["Direct light is unshadowed."])"));
+        CHECK(side["rendering"]["stages"] == json::parse(R"([["transform", 0.5], ["cover", 0.25]])"));
+        CHECK(side["rendering"]["skipped"] ==
               json::parse(R"([["textures", "no material has one", -1], ["backfaces", "of closed meshes", 17]])"));
-        CHECK(data["objects"] == json::parse(R"(["ball"])"));
-        CHECK(data["raster"].size() == 3);
-        CHECK(data["raytrace"].size() == 3);
+        CHECK(data["hits"]["objects"] == json::parse(R"(["ball"])"));
+        CHECK(data["flip"]["name"] == "HDR-FLIP");
+        CHECK(data["flip"]["map"].is_string());
+        for (const json& one : data["sides"]) CHECK(one["picture"].size() == 3);
         for (const char* const plane : {"object", "primitive", "object_change", "primitive_change", "verdict"})
             CHECK(data["hits"][plane].is_string());
+    }
+
+    TEST_CASE("two files have neither hits nor times; 8-bit ones have FLIP, not HDR-FLIP") {
+        const ImageRgb a(4, 2, Rgb(0.5f)), b(4, 2, Rgb(0.25f));
+        const ImageMetrics metrics = image_metrics(a, b, Encoding::kEncoded);
+        const json data =
+            data_of(report_page({"a against b", {"a.png", a}, {"b.png", b}, metrics, Encoding::kEncoded}));
+        CHECK(data["hits"].is_null());
+        CHECK(data["flip"]["name"] == "FLIP");
+        CHECK(data["eight_bit"] == true);
+        for (const json& side : data["sides"]) CHECK(side["rendering"].is_null());
+        CHECK(data["difference_range"] == 0.5);
+        CHECK(data["sides"][1]["name"] == "b.png");
     }
 
     TEST_CASE("the page asks the network for nothing") {
@@ -117,7 +145,8 @@ TEST_SUITE("unit") {
         CHECK(text.rfind("<!doctype html>", 0) == 0);
         for (const char* const mark : {"{{title}}", "{{css}}", "{{data}}", "{{js}}"})
             CHECK(text.find(mark) == std::string::npos);
-        for (const char* const script : {"decode.js", "paint.js", "view.js", "viewer.js", "panels.js", "main.js"})
+        for (const char* const script : {"base.js", "decode.js", "paint.js", "view.js", "stage.js", "hands.js",
+                                         "metrics.js", "panels.js", "inspector.js", "histogram.js", "main.js"})
             CHECK_MESSAGE(text.find(script) != std::string::npos, script, " is missing");
         CHECK(tag_fault("<p><b></p>") == "</p> closes <b>"); // the check can fail
     }
@@ -139,20 +168,20 @@ TEST_SUITE("unit") {
     TEST_CASE("names from the scene cannot break out of the page") {
         const Page page("</script><script>alert(1)</script>");
         CHECK(page.text.find("alert(1)</script>") == std::string::npos);
-        CHECK(page.data()["objects"][0] == "</script><script>alert(1)</script>");
+        CHECK(page.data()["hits"]["objects"][0] == "</script><script>alert(1)</script>");
         CHECK(tag_fault(without_scripts_and_styles(page.text)).empty());
         const Page marks("{{js}} {{data}} {{css}}"); // what a name says is no mark of the template
-        CHECK(marks.data()["objects"][0] == "{{js}} {{data}} {{css}}");
+        CHECK(marks.data()["hits"]["objects"][0] == "{{js}} {{data}} {{css}}");
     }
 
     TEST_CASE("figures that are no numbers are null in JSON") {
         const ImageRgb a(2, 2, Rgb(0.5f));
-        const json same = metrics_json(error_metrics(a, a), "a", "b");
+        const json same = metrics_json(image_metrics(a, a, Encoding::kLinear), "a", "b");
         CHECK(same["psnr"].is_null());
         CHECK(same["mse"] == 0);
         CHECK(same["worst_pixel"] == json::parse("[0, 0]"));
         const ImageRgb nan(2, 2, Rgb(std::numeric_limits<float>::quiet_NaN()));
-        const json none = metrics_json(error_metrics(nan, a), "a", "b");
+        const json none = metrics_json(image_metrics(nan, a, Encoding::kLinear), "a", "b");
         CHECK(none["mse"].is_null());
         CHECK(none["worst_pixel"].is_null());
         CHECK(none["non_finite"]["a"] == 4);

@@ -2,7 +2,6 @@
 
 #include "common/image/image_file.h"
 #include "common/system/file.h"
-#include "compare/images.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -73,7 +72,8 @@ TEST_SUITE("unit") {
                 CHECK_MESSAGE(report[side].contains(key), side, " lacks ", key);
         CHECK(report["raster"]["program"] == "raster");
         CHECK(report["raytrace"]["samples_per_pixel"] == 2);
-        for (const char* const key : {"mse", "rmse", "mae", "psnr", "relmse", "mean_signed_error"})
+        for (const char* const key :
+             {"mse", "rmse", "mae", "psnr", "relmse", "mean_signed_error", "smape", "ssim", "flip"})
             CHECK(report["metrics"].contains(key));
         const json& hits = report["hits"];
         CHECK(hits["pixels"] == 24 * 20);
@@ -99,29 +99,5 @@ TEST_SUITE("unit") {
         write_file(scratch.path / "file", "x");
         CHECK_THROWS_AS(run(small_run(scratch.path / "file")), Error);
         CHECK_THROWS_AS(run(small_run(scratch.path / "file" / "below")), Error);
-    }
-
-    TEST_CASE("compare images: limits decide the exit code") {
-        const Scratch scratch;
-        write_image(scratch.path / "a.pfm", ImageRgb(4, 4, Rgb(0.5f)));
-        write_image(scratch.path / "b.pfm", ImageRgb(4, 4, Rgb(0.25f)));
-        ImagesOptions options{
-            scratch.path / "a.pfm", scratch.path / "b.pfm", {}, (scratch.path / "m.json").string(), true};
-        CHECK(compare_images(options) == 0);
-        CHECK(json::parse(read_file(options.stats))["mse"].get<double>() == doctest::Approx(0.0625));
-        options.limits = {"rmse=0.26", "mae=0.25", "psnr=12"};
-        CHECK(compare_images(options) == 0);
-        options.limits = {"rmse=0.24"};
-        CHECK(compare_images(options) == 1);
-        options.limits = {"psnr=13"};
-        CHECK(compare_images(options) == 1);
-        for (const char* const bad : {"rmse", "rmse=", "rmse=x", "rmse=1x", "=1", "other=1", "rmse=nan"}) {
-            options.limits = {bad};
-            CAPTURE(bad);
-            CHECK_THROWS_AS(compare_images(options), Error);
-        }
-        options.limits.clear();
-        write_image(scratch.path / "b.pfm", ImageRgb(4, 3));
-        CHECK_THROWS_AS(compare_images(options), Error);
     }
 }

@@ -1,6 +1,8 @@
 // Coverage by fixed-point edge functions against an oracle in wider integers.
 #include "raster/cover.h"
 
+#include "compare/stress/exact_coverage.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,8 +13,6 @@ using namespace duet;
 using namespace duet::raster;
 
 namespace {
-
-__extension__ typedef __int128 Wide;
 
 constexpr int kSize = 48; // pixels a side of the test picture
 const PixelRect kPicture{0, 0, kSize, kSize};
@@ -28,19 +28,6 @@ SetupTriangle triangle(FixedPoint a, FixedPoint b, FixedPoint c) {
                            .depth = 1};
     };
     return {.corners = {a, b, c}, .interpolation = Interpolation(vertex(a), vertex(b), vertex(c), a)};
-}
-
-/// The rule by its definition: a sample belongs to the triangle that holds it after a move to the right by an
-/// infinitely small step, and down by one infinitely smaller. No edge is ever met.
-bool oracle(const SetupTriangle& t, std::int64_t x, std::int64_t y) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const FixedPoint a = t.corners[i], b = t.corners[(i + 1) % 3];
-        const Wide dx = Wide{b.x} - a.x, dy = Wide{b.y} - a.y;
-        const Wide here = dx * (y - a.y) - dy * (x - a.x);
-        const Wide value = here != 0 ? here : -dy != 0 ? -dy : dx;
-        if (value < 0) return false;
-    }
-    return true;
 }
 
 /// How often the triangles cover each sample of the picture.
@@ -61,7 +48,7 @@ Image<int> expected(const std::vector<SetupTriangle>& triangles, SampleOffset of
     for (const SetupTriangle& t : triangles)
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x)
-                count(x, y) += oracle(t, x * kSubPixels + offset.x, y * kSubPixels + offset.y) ? 1 : 0;
+                count(x, y) += compare::covers(t.corners, x * kSubPixels + offset.x, y * kSubPixels + offset.y) ? 1 : 0;
     return count;
 }
 
@@ -141,6 +128,23 @@ TEST_SUITE("unit") {
             if (doubled_area(one[0].corners[0], one[0].corners[1], one[0].corners[2]) == 0) continue;
             check_equal(covered(one, {}), expected(one, {}), one[0]);
         }
+    }
+
+    TEST_CASE("a sample beside a sliver sees the sliver's nearest point, not one of its ends") {
+        // 8e-8 pixels wide, 8 long, deeper to the upper end; the sample lies 3e-4 pixels beside it.
+        const auto vertex = [](double x, double y, double depth) {
+            return PixelVertex{.xw = x * depth, .yw = y * depth, .w = depth, .depth = depth};
+        };
+        const Interpolation sliver(vertex(19.9046225, 21.9291211, 5.91187377),
+                                   vertex(17.0116565, 14.8682996, 7.53373377),
+                                   vertex(19.755635, 21.5654896, 5.97815284), {4355, 3806});
+        const Interpolated at = sliver.at({18.5, 18.5}, Piece::kTriangle);
+        const double depth = at.depth_sum / at.sum;
+        const double x =
+            (at.b0 * 19.9046225 * 5.91187377 + at.b1 * 17.0116565 * 7.53373377 + at.b2 * 19.755635 * 5.97815284) /
+            at.depth_sum;
+        CHECK(std::abs(x - 18.5) < 1.0 / 128);
+        CHECK(depth == doctest::Approx(6.62).epsilon(0.01)); // the ends are at 5.91 and 7.53
     }
 
     TEST_CASE("a fan around a vertex covers each sample once") {

@@ -55,7 +55,7 @@ TEST_SUITE("unit") {
             raster::Settings settings;
             settings.aovs.hit = true;
             const Rendering with = render(scene, view, settings);
-            settings.cull = false;
+            settings.skips.frustum = settings.skips.back_faces = false;
             const Rendering without = render(scene, view, settings);
             const Difference d = difference(with.hit, without.hit);
             CHECK(d.coverage == 0);

@@ -13,7 +13,7 @@ namespace {
 /// Renders and compares; at most `edges` of the pixels may be explained by an edge near the sample.
 Rendering check_hits(const Scene& scene, const View& view, double edges = 0.02, bool cull = true) {
     raster::Settings settings = hits_only();
-    settings.cull = cull;
+    settings.skips.frustum = settings.skips.back_faces = cull;
     Rendering rendering = render(scene, view, settings);
     const Agreement agreement = compare_hits(scene, view, rendering.hit);
     CAPTURE(agreement.first);
@@ -129,6 +129,29 @@ TEST_SUITE("unit") {
                 REQUIRE(hit.u == doctest::Approx(exact.u).epsilon(1e-6));
                 REQUIRE(hit.v == doctest::Approx(exact.v).epsilon(1e-6));
             }
+    }
+
+    TEST_CASE("a quad's diagonal is no edge of it: distances are exact there, too") {
+        Random random(12);
+        int compared = 0;
+        for (int i = 0; i < 600; ++i) {
+            Scene scene;
+            add(scene, QuadList{{{random.vector(1), random.vector(4), random.vector(4)}}});
+            finish_scene(scene);
+            const View view{look({0, 0, 3}, Vec3d(random.vector(1)), 70), 32, 24};
+            const Rendering rendering = render(scene, view, hits_only());
+            const Oracle oracle(scene);
+            const Pinhole pinhole = CameraModel(view).through();
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    const Hit& hit = rendering.hit(x, y);
+                    const ExactHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
+                    if (!hit.valid() || exact.object == kNoObject || exact.cosine < 0.01) continue;
+                    REQUIRE(static_cast<double>(hit.t) == doctest::Approx(exact.t).epsilon(2e-6));
+                    ++compared;
+                }
+        }
+        CHECK(compared > 10000);
     }
 
     TEST_CASE("barycentrics are perspective-correct: those of the exact ray") {

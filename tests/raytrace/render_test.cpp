@@ -298,6 +298,9 @@ TEST_SUITE("unit") {
         for (const Rgb& pixel : render_scene(nothing, 4, settings).radiance) CHECK(pixel.g == 0.25f);
 
         CHECK(integrator("unshadowed") == Integrator::kUnshadowed);
+        CHECK(integrator("lights") == Integrator::kLights);
+        CHECK(integrator("environment") == Integrator::kEnvironment);
+        CHECK(integrator("reflection") == Integrator::kReflection);
         CHECK_THROWS_AS(integrator("magic"), Error);
         CHECK_THROWS_AS(render_scene(nothing, 0, settings), Error);
         settings.samples_per_pixel = 0;

@@ -83,7 +83,7 @@ Light read_light(const JsonValue& value) {
     }
 }
 
-Environment read_environment(const JsonValue& value) {
+Environment read_environment(const JsonValue& value, std::vector<std::filesystem::path>& files) {
     switch (value.at("type").one_of({"constant", "sky", "image"})) {
     case 0:
         value.check_keys(scene_keys("constant_environment"));
@@ -110,6 +110,7 @@ Environment read_environment(const JsonValue& value) {
             if (!(pixel.r >= 0 && pixel.g >= 0 && pixel.b >= 0 && max_component(pixel) <= kLightRange.high))
                 value.at("file").fail(file.string() +
                                       ": holds a radiance that is negative, not finite, or beyond 1e12");
+        files.push_back(file);
         return make_image_environment(std::move(image), static_cast<float>(scale), static_cast<float>(rotation));
     }
     }

@@ -9,6 +9,7 @@ namespace duet {
 Camera read_camera(const JsonValue& camera);
 /// One of "lights".
 Light read_light(const JsonValue& light);
-Environment read_environment(const JsonValue& environment);
+/// Appends the picture's file to `files` where there is one.
+Environment read_environment(const JsonValue& environment, std::vector<std::filesystem::path>& files);
 
 } // namespace duet

@@ -21,8 +21,8 @@ std::string canonical_key(const fs::path& path) {
 }
 
 std::uint32_t ImageCache::load(const fs::path& file) {
-    const auto [entry, added] =
-        index_.try_emplace(canonical_key(file), static_cast<std::uint32_t>(textures_->images.size()));
+    std::vector<ImageRgb>& images = scene_->textures.images;
+    const auto [entry, added] = index_.try_emplace(canonical_key(file), static_cast<std::uint32_t>(images.size()));
     if (!added) return entry->second;
     ImageRgb image = read_image(file);
     for (Rgb& pixel : image.pixels()) {
@@ -30,7 +30,8 @@ std::uint32_t ImageCache::load(const fs::path& file) {
             throw Error(message(file.string(), ": holds a value that is not finite, which no texture may"));
         pixel = {clamp(pixel.r, 0.0f, 1.0f), clamp(pixel.g, 0.0f, 1.0f), clamp(pixel.b, 0.0f, 1.0f)};
     }
-    textures_->images.push_back(std::move(image));
+    images.push_back(std::move(image));
+    scene_->files.push_back(file);
     return entry->second;
 }
 

@@ -14,13 +14,13 @@ namespace duet {
 /// The images of a scene, each file read once however often it is used.
 class ImageCache {
 public:
-    explicit ImageCache(TextureSet& textures) : textures_(&textures) {}
+    explicit ImageCache(Scene& scene) : scene_(&scene) {}
     /// The index in TextureSet::images of the file's picture, its values limited to [0, 1] (it is a reflectance).
     /// Throws Error for a file that read_image refuses or that holds NaN.
     std::uint32_t load(const std::filesystem::path& file);
 
 private:
-    TextureSet* textures_;
+    Scene* scene_;
     std::map<std::string, std::uint32_t> index_; ///< by canonical path
 };
 

@@ -27,12 +27,7 @@ Shape read_box(const JsonValue& value) {
     const Vec3 low(value.at("low").vec3()), high(value.at("high").vec3());
     if (!(low.x < high.x && low.y < high.y && low.z < high.z))
         value.fail("\"low\" must be below \"high\" on each axis");
-    // Faces are corner + edge: the far corners must be sums that rounding leaves alike, or rays slip between faces.
-    Vec3 far = high;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < 4; ++i) far[axis] = low[axis] + (far[axis] - low[axis]);
-    if (!(low.x < far.x && low.y < far.y && low.z < far.z)) value.fail("the box is too thin for where it stands");
-    return box_quads(low, far);
+    return box_quads(low, high);
 }
 
 } // namespace
@@ -105,6 +100,7 @@ const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& v
     if (found != meshes_.end()) return found->second;
     try {
         ObjFile obj = load_obj(file, {kKinds[kind], !own_material});
+        scene_->files.insert(scene_->files.end(), obj.files.begin(), obj.files.end());
         LoadedMesh mesh{static_cast<std::uint32_t>(scene_->shapes.size()), {}, obj.materials.size()};
         if (!own_material) mesh.materials = add_obj_materials(file, obj, *images_, *scene_);
         scene_->shapes.push_back(std::move(obj.mesh));

@@ -26,7 +26,7 @@ public:
 /// The material slots of a mesh, as the usemtl lines ask for them.
 class Slots {
 public:
-    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted) : path_(&path), wanted_(wanted) {
+    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted) : path_(&path), wanted_(wanted), files_{path} {
         if (!wanted) return;
         for (const std::string& line : counts.material_files) load_library(line);
     }
@@ -46,6 +46,7 @@ public:
     }
 
     void finish(ObjFile& file) {
+        file.files = std::move(files_);
         file.materials = std::move(materials_);
         file.textures = std::move(textures_);
     }
@@ -62,17 +63,22 @@ private:
         const std::size_t first = line.find_first_not_of(" \t");
         if (first == std::string::npos) return;
         const std::string whole = line.substr(first, line.find_last_not_of(" \t") - first + 1);
-        if (is_there(whole)) return load_mtl(beside(*path_, whole), library_);
+        if (is_there(whole)) return load(beside(*path_, whole));
         for (std::size_t at = 0; at < whole.size();) {
             const std::size_t end = std::min(whole.find_first_of(" \t", at), whole.size());
             const std::string name = whole.substr(at, end - at);
             at = end + 1;
             if (name.empty()) continue;
             if (is_there(name))
-                load_mtl(beside(*path_, name), library_);
+                load(beside(*path_, name));
             else
                 missing_.push_back(beside(*path_, name).string());
         }
+    }
+
+    void load(const std::filesystem::path& file) {
+        load_mtl(file, library_);
+        files_.push_back(file);
     }
 
     std::uint32_t find_slot() {
@@ -110,6 +116,7 @@ private:
 
     const std::filesystem::path* path_;
     bool wanted_;
+    std::vector<std::filesystem::path> files_;
     std::map<std::string, MtlMaterial> library_;
     std::vector<std::string> missing_;
     std::string current_;

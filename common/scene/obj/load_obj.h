@@ -39,6 +39,7 @@ struct ObjFile {
     std::vector<ObjMaterial> materials; ///< one a material slot, in order of first use; at least one. Faces without a
                                         ///< material use the one named "" (default_obj_material)
     std::vector<ObjTexture> textures;
+    std::vector<std::filesystem::path> files; ///< the OBJ file, then the MTL files that were read
     std::size_t degenerate_faces = 0; ///< left out: fewer than three different vertices
 };
 

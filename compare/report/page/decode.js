@@ -1,6 +1,5 @@
 // ---- decode.js: from text to numbers. The counterpart of compare/report/encode.h.
 
-const data = JSON.parse(document.getElementById("data").textContent);
 const width = data.width, height = data.height, pixelCount = width * height;
 
 async function inflate(base64) {
@@ -47,38 +46,26 @@ async function decodePicture(texts) {
   return new Picture(await Promise.all(texts.map(text => decodePlane(text, 2))));
 }
 
+// Which object and primitive each side saw, and the verdict on the two. Object 0 stands for none; what B saw is stored
+// as the bits that differ.
+async function decodeHits(hits) {
+  const [object, primitive, objectChange, primitiveChange, verdict] = await Promise.all([
+    decodePlane(hits.object, 4), decodePlane(hits.primitive, 4),
+    decodePlane(hits.object_change, 4), decodePlane(hits.primitive_change, 4), decodePlane(hits.verdict, 1)]);
+  return {
+    verdict,
+    of: [i => ({ object: object[i], primitive: primitive[i] }),
+      i => ({ object: (object[i] ^ objectChange[i]) >>> 0, primitive: (primitive[i] ^ primitiveChange[i]) >>> 0 })] };
+}
+
+// FLIP's errors, from steps of 1/4095; one step more is NaN.
+async function decodeFlip(flip) {
+  return Float32Array.from(await decodePlane(flip.map, 2), code => code > 4095 ? NaN : code / 4095);
+}
+
 async function decodeAll() {
-  const [raster, raytrace, difference, object, primitive, objectChange, primitiveChange, verdict] = await Promise.all([
-    decodePicture(data.raster), decodePicture(data.raytrace), decodePicture(data.difference),
-    decodePlane(data.hits.object, 4), decodePlane(data.hits.primitive, 4),
-    decodePlane(data.hits.object_change, 4), decodePlane(data.hits.primitive_change, 4),
-    decodePlane(data.hits.verdict, 1)]);
-  // Object 0 stands for none; what the path tracer saw is stored as the bits that differ.
-  const hit = (i, change) => ({
-    object: (object[i] ^ (change ? objectChange[i] : 0)) >>> 0,
-    primitive: (primitive[i] ^ (change ? primitiveChange[i] : 0)) >>> 0 });
-  return { raster, raytrace, difference, verdict, rasterHit: i => hit(i, false), raytraceHit: i => hit(i, true) };
+  const [a, b, difference, hits, flip] = await Promise.all([
+    decodePicture(data.sides[0].picture), decodePicture(data.sides[1].picture), decodePicture(data.difference),
+    data.hits && decodeHits(data.hits), decodeFlip(data.flip)]);
+  return { pictures: [a, b], difference, hits, flip };
 }
-
-const minus = text => String(text).replace("-", "−");
-
-// A radiance in four significant digits or so.
-function radianceText(v) {
-  if (Number.isNaN(v)) return "NaN";
-  if (!Number.isFinite(v)) return v > 0 ? "∞" : "−∞";
-  const size = Math.abs(v);
-  return minus(size === 0 ? "0" : size >= 1000 ? v.toFixed(0) : size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2)
-    : size >= 1 ? v.toFixed(3) : size >= 0.00005 ? v.toFixed(4) : v.toExponential(0));
-}
-const signedText = v => (v > 0 ? "+" : "") + radianceText(v);
-
-function secondsText(s) {
-  if (s < 0.0005) return `${(s * 1e6).toFixed(0)} µs`;
-  if (s < 0.01) return `${(s * 1e3).toFixed(1)} ms`;
-  if (s < 0.9995) return `${(s * 1e3).toFixed(0)} ms`;
-  if (s < 59.95) return `${s.toFixed(s < 10 ? 2 : 1)} s`;
-  const whole = Math.round(s);
-  return whole < 3600 ? `${Math.floor(whole / 60)} min ${String(whole % 60).padStart(2, "0")} s`
-    : `${Math.floor(whole / 3600)} h ${String(Math.floor(whole / 60) % 60).padStart(2, "0")} min`;
-}
-const countText = n => Number(n).toLocaleString("en").replaceAll(",", "\u2009");

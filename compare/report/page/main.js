@@ -2,13 +2,11 @@
 
 function changed() {
   settle();
-  const z = zoomNow();
-  element("zoom-value").textContent = `${Math.round(z * 100)} %`;
-  const atSplit = state.mode === "split";
-  handle.hidden = !atSplit;
+  element("zoom-value").textContent = `${Math.round(zoomNow() * 100)} %`;
+  handle.hidden = state.mode !== "split";
   handle.style.left = `${state.split * 100}%`;
   handle.setAttribute("aria-valuenow", Math.round(state.split * 100));
-  handle.setAttribute("aria-valuetext", `rasterizer on the left ${Math.round(state.split * 100)} percent`);
+  handle.setAttribute("aria-valuetext", `${sides[0].name} on the left ${Math.round(state.split * 100)} percent`);
   // At rest a finger scrolls the page up and down; zoomed in, it moves the picture.
   canvas.style.touchAction = fitted() ? "pan-y" : "none";
   redraw();
@@ -27,59 +25,72 @@ function showChips() {
 }
 
 const captions = {
-  split: "Drag the line. Left of it the rasterizer's picture, right of it the path tracer's.",
-  flicker: "One picture after the other: what moves or changes shade differs.",
-  side: "Both pictures move and zoom together.",
-  difference: "",
-  hits: "",
+  split: () => `Drag the line. Left of it ${sides[0].symbol} ${sides[0].name}, right of it ${sides[1].symbol} ${sides[1].name}.`,
+  flicker: () => "One picture after the other: what moves or changes shade differs.",
+  side: () => "Both pictures move and zoom together.",
+  difference: () => "",
+  flip: () => `How visible the difference is to someone who alternates between the pictures (Andersson et al. ${data.eight_bit ? "2020" : "2021"}).`,
+  hits: () => disagreeing.length ? "Marked: pixels where the two see different primitives." : "Both pipelines see the same primitive in every pixel.",
 };
 
 function setMode(mode) {
   state.mode = mode;
   for (const button of element("modes").children) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
   for (const field of document.querySelectorAll("[data-for]")) field.hidden = !field.dataset.for.split(" ").includes(mode);
-  element("caption").textContent = captions[mode];
+  element("caption").textContent = captions[mode]();
   layoutStage();
   if (mode === "difference") updateDifference();
-  if (mode === "hits") captionHits();
+  if (mode === "flip") updateFlip();
+  showSteps();
   showChips();
   changed();
 }
 
-function captionHits() {
-  element("steps").hidden = !disagreeing.length;
-  element("caption").textContent = disagreeing.length
-    ? "Marked: pixels where the two see different primitives."
-    : "Both pipelines see the same primitive in every pixel.";
+// The buttons to the next and the last pixel are there where there are such pixels.
+function showSteps() {
+  const list = state.bin >= 0 ? lit : state.mode === "hits" ? disagreeing : [];
+  element("steps").hidden = state.bin < 0 && !list.length;
+  element("previous").hidden = element("next").hidden = !list.length;
+  element("show-all").hidden = state.bin < 0;
+  element("steps-text").textContent = state.bin < 0 ? "" : list.length === 1 ? "Lit: 1 pixel" : `Lit: ${countText(list.length)} pixels`;
 }
 
-// ---- exposure, difference, flicker
+// ---- exposure, difference, FLIP, flicker
 
 function updateExposure() {
   element("exposure").value = state.ev;
   element("exposure-value").textContent = minus(`${state.ev > 0 ? "+" : ""}${state.ev.toFixed(1)} EV`);
-  paintPicture(layers.a, decoded.raster, state.ev);
-  paintPicture(layers.b, decoded.raytrace, state.ev);
+  layers.pictures.forEach((layer, k) => paintPicture(layer, decoded.pictures[k], state.ev));
   showInspector();
 }
 
-function automaticRange() { return report.difference_range > 0 ? report.difference_range : 0.001; }
+function drawScale(color, ticks, ends) {
+  const scale = element("scale").getContext("2d");
+  for (let x = 0; x < 512; ++x) {
+    scale.fillStyle = css(color(x / 511));
+    scale.fillRect(x, 0, 1, 14);
+  }
+  fill("ticks", ...ticks.map(text => make("span", {}, text)));
+  fill("ends", ...ends.map(text => make("span", {}, text)));
+  element("palette").value = state.palette;
+  element("palette").options[0].textContent = state.mode === "flip" ? "dark violet – pale yellow" : "blue – white – orange";
+}
 
 function updateDifference() {
-  const beyond = paintDifference(layers.difference, difference, state.range, state.palette);
+  const beyond = paintValues(layers.difference, difference, -state.range, state.range, palettes[state.palette].signed);
   element("range").value = Math.log10(state.range);
   element("range-value").textContent = radianceText(state.range);
   element("channel").value = state.channel;
-  element("palette").value = state.palette;
-  const scale = element("scale").getContext("2d");
-  for (let x = 0; x < 512; ++x) {
-    scale.fillStyle = `rgb(${falseColor(state.palette, x / 511 * 2 - 1).join(" ")})`;
-    scale.fillRect(x, 0, 1, 14);
-  }
-  fill("ticks", ...[-1, -0.5, 0, 0.5, 1].map(f => make("span", {}, f === 0 ? "0" : minus((f > 0 ? "+" : "") + Number((f * state.range).toPrecision(2))))));
-  element("caption").textContent = `Rasterizer minus path tracer, ${state.channel === "luminance" ? "luminance" : element("channel").selectedOptions[0].textContent}, linear. `
-    + (beyond > 0 ? `${percentText(beyond)} of the pixels lie beyond the scale's ends.` : "No pixel lies beyond the scale's ends.");
+  drawScale(f => signedColor(2 * f - 1), [-1, -0.5, 0, 0.5, 1].map(f => f === 0 ? "0" : minus((f > 0 ? "+" : "") + Number((f * state.range).toPrecision(2)))),
+    [`${sides[1].symbol} ${sides[1].name} brighter`, `${sides[0].name} brighter ${sides[0].symbol}`]);
+  element("caption").textContent = `${sides[0].name} minus ${sides[1].name}, ${element("channel").selectedOptions[0].textContent}, linear. `
+    + (beyond > 0 ? `${percentText(beyond / pixelCount)} of the pixels lie beyond the scale's ends.` : "No pixel lies beyond the scale's ends.");
   showInspector();
+}
+
+function updateFlip() {
+  paintValues(layers.flip, decoded.flip, 0, 1, palettes[state.palette].error);
+  drawScale(errorColor, ["0", "0.25", "0.5", "0.75", "1"], ["not seen", "seen at once"]);
 }
 
 let flickerTimer = 0;
@@ -92,69 +103,61 @@ function updateFlicker() {
   clearInterval(flickerTimer);
   if (state.play) flickerTimer = setInterval(() => { if (state.mode === "flicker") swap(); }, state.period);
   element("flicker-play").textContent = state.play ? "Pause" : "Play";
-  element("flicker-play").setAttribute("aria-pressed", String(state.play));
   element("period").value = state.period;
   element("period-value").textContent = `${(state.period / 1000).toFixed(2)} s`;
 }
 
-function applyTheme() {
-  if (state.theme === "auto") delete document.documentElement.dataset.theme;
-  else document.documentElement.dataset.theme = state.theme;
-  element("theme").textContent = `Theme: ${state.theme}`;
+// To the pixel that differs most in what the stage shows: FLIP's error, or the difference.
+function showWorst() {
+  const values = state.mode === "flip" ? decoded.flip : difference;
+  let worst = -1;
+  for (let i = 0; i < pixelCount; ++i) if (Number.isFinite(values[i]) && (worst < 0 || Math.abs(values[i]) > Math.abs(values[worst]))) worst = i;
+  if (worst >= 0) moveTo(worst % width, Math.floor(worst / width), 24);
 }
 
 // ---- wiring
 
 function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -8, 8); updateExposure(); changed(); }
+function setChannel(channel) { state.channel = channel; difference = channelOf(decoded.difference, channel); updateDifference(); changed(); }
+function setPalette(palette) { state.palette = palette; setMode(state.mode); showHistogram(); }
 function swapByHand() { state.play = false; updateFlicker(); if (state.mode !== "flicker") setMode("flicker"); swap(); writeAddress(); }
+function zoomBy(factor) { zoomAt(factor); changed(); }
+function fitAgain() { state.zoom = 0; changed(); }
 
 function wire() {
+  const on = (id, kind, act) => element(id).addEventListener(kind, event => act(event.target.value));
   for (const button of element("modes").children) button.addEventListener("click", () => setMode(button.dataset.mode));
-  element("zoom-in").addEventListener("click", () => { zoomAt(2); changed(); });
-  element("zoom-out").addEventListener("click", () => { zoomAt(0.5); changed(); });
-  element("zoom-fit").addEventListener("click", () => { state.zoom = 0; changed(); });
-  element("exposure").addEventListener("input", event => setExposure(Number(event.target.value)));
-  element("exposure").addEventListener("dblclick", () => setExposure(0));
-  element("range").addEventListener("input", event => { state.range = 10 ** Number(event.target.value); updateDifference(); changed(); });
-  element("channel").addEventListener("change", event => { state.channel = event.target.value; difference = differences(state.channel); updateDifference(); changed(); });
-  element("palette").addEventListener("change", event => { state.palette = event.target.value; updateDifference(); changed(); });
-  element("flicker-play").addEventListener("click", () => { state.play = !state.play; updateFlicker(); writeAddress(); });
-  element("flicker-swap").addEventListener("click", swapByHand);
-  element("next").addEventListener("click", () => nextDisagreement(1));
-  element("previous").addEventListener("click", () => nextDisagreement(-1));
-  element("period").addEventListener("input", event => { state.period = Number(event.target.value); updateFlicker(); writeAddress(); });
-  element("theme").addEventListener("click", () => { state.theme = { auto: "light", light: "dark", dark: "auto" }[state.theme]; applyTheme(); writeAddress(); });
-  fill("marks", ...[1, 2, 3].map(kind => {
-    const box = make("input", { type: "checkbox", checked: "" });
-    box.addEventListener("change", () => { shown[kind] = box.checked; redraw(); });
-    return make("label", {}, box, symbolOf(kind), `${verdicts[kind].title} ${countText(report.hits[verdicts[kind].key])}`);
-  }));
-  canvas.addEventListener("keydown", stageKey);
+  on("zoom-in", "click", () => zoomBy(2));
+  on("zoom-out", "click", () => zoomBy(0.5));
+  on("zoom-fit", "click", fitAgain);
+  on("exposure", "input", value => setExposure(Number(value)));
+  on("exposure", "dblclick", () => setExposure(0));
+  on("range", "input", value => { state.range = Number((10 ** value).toPrecision(3)); updateDifference(); changed(); });
+  on("channel", "change", setChannel);
+  on("palette", "change", setPalette);
+  on("flicker-play", "click", () => { state.play = !state.play; updateFlicker(); writeAddress(); });
+  on("flicker-swap", "click", swapByHand);
+  on("period", "input", value => { state.period = Number(value); updateFlicker(); writeAddress(); });
+  on("worst", "click", showWorst);
+  on("next", "click", () => step(1));
+  on("previous", "click", () => step(-1));
+  on("show-all", "click", () => { chooseBin(-1); canvas.focus({ preventScroll: true }); });
+  wireHistogram();
+  wireStage();
   document.addEventListener("keydown", pageKey);
   window.addEventListener("resize", () => { layoutStage(); showChips(); changed(); });
   window.addEventListener("hashchange", () => { readAddress(); refresh(); });
-}
-
-function stageKey(event) {
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-  if (!step) return;
-  event.preventDefault();
-  const size = event.shiftKey ? 10 : 1;
-  if (state.px < 0) moveTo(Math.floor(state.x), Math.floor(state.y));
-  else moveTo(clamp(state.px + step[0] * size, 0, width - 1), clamp(state.py + step[1] * size, 0, height - 1));
 }
 
 function pageKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
   const onButton = /^(BUTTON|SUMMARY|A)$/.test(event.target.tagName);
   const actions = {
-    1: () => setMode(modes[0]), 2: () => setMode(modes[1]), 3: () => setMode(modes[2]), 4: () => setMode(modes[3]), 5: () => setMode(modes[4]),
-    f: () => setMode("flicker"), n: () => nextDisagreement(1), p: () => nextDisagreement(-1),
+    f: () => setMode("flicker"), n: () => step(1), p: () => step(-1), w: showWorst,
     "[": () => setExposure(state.ev - 0.5), "]": () => setExposure(state.ev + 0.5),
     ",": () => setSplit(state.split - 0.05), ".": () => setSplit(state.split + 0.05),
-    "+": () => { zoomAt(2); changed(); }, "=": () => { zoomAt(2); changed(); }, "-": () => { zoomAt(0.5); changed(); },
-    0: () => { state.zoom = 0; changed(); },
+    "+": () => zoomBy(2), "=": () => zoomBy(2), "-": () => zoomBy(0.5), 0: fitAgain,
+    ...Object.fromEntries(modes.map((mode, k) => [k + 1, () => setMode(mode.key)])),
   };
   if (!onButton) actions[" "] = swapByHand;
   const action = actions[event.key.toLowerCase()];
@@ -163,39 +166,60 @@ function pageKey(event) {
   action();
 }
 
+// ---- the start
+
+// What depends on the page's data but not on its state.
+function fillIn() {
+  fill("modes", ...modes.map((mode, k) => make("button", { type: "button", "data-mode": mode.key, "aria-keyshortcuts": k + 1, "aria-pressed": "false" }, mode.title)));
+  ["chip-a", "chip-b"].forEach((id, k) => fill(id, make("i", { "aria-hidden": "true" }, sides[k].symbol), ` ${sides[k].name}`));
+  element("mode-keys").textContent = `1 – ${modes.length}`;
+  element("mode-names").textContent = modes.map(mode => mode.title.toLowerCase()).join(", ");
+  showSections();
+  showLede();
+  showMetrics();
+  if (data.hits) {
+    showHits();
+    fill("marks", ...[1, 2, 3].map(kind => {
+      const box = make("input", { type: "checkbox", checked: "" });
+      box.addEventListener("change", () => { shown[kind] = box.checked; redraw(); });
+      return make("label", {}, box, symbolOf(kind), `${verdicts[kind].title} ${countText(data.hits.figures[verdicts[kind].key])}`);
+    }));
+  }
+  if (rendered) {
+    showTimes();
+    showSkipped();
+    showFacts();
+  }
+}
+
 // Brings everything in line with the state.
 function refresh() {
-  applyTheme();
-  if (state.px >= width || state.py >= height) state.px = state.py = -1;
   held = state.px >= 0;
-  difference = differences(state.channel);
-  if (!(state.range > 0)) state.range = defaults.range = automaticRange();
+  difference = channelOf(decoded.difference, state.channel);
+  countBins();
   updateExposure();
   updateFlicker();
+  showHistogram();
   setMode(state.mode);
-  showInspector();
 }
 
 async function start() {
+  startTheme();
   readAddress();
-  applyTheme();
   layoutStage();
-  showLede();
-  showHits();
-  showMetrics();
-  showTimes();
-  showSkipped();
-  showFacts();
+  fillIn();
   try {
     decoded = await decodeAll();
   } catch (error) {
     element("loading").textContent = `The pictures could not be unpacked: ${error.message}. A browser from 2023 or later is needed.`;
     return;
   }
-  for (let i = 0; i < pixelCount; ++i) if (decoded.verdict[i]) disagreeing.push(i);
-  disagreeing.sort((i, j) => decoded.verdict[j] - decoded.verdict[i] || i - j);
-  paintGround(layers.ground, decoded.raster);
-  if (matchMedia("(prefers-reduced-motion: reduce)").matches) state.play = false;
+  if (decoded.hits) {
+    const verdict = decoded.hits.verdict;
+    for (let i = 0; i < pixelCount; ++i) if (verdict[i]) disagreeing.push(i);
+    disagreeing.sort((i, j) => verdict[j] - verdict[i] || i - j);
+    paintGround(layers.ground, decoded.pictures[0]);
+  }
   element("loading").hidden = true;
   wire();
   refresh();

@@ -13,10 +13,10 @@ function exposureTable(stops) {
   return table;
 }
 
+// A picture to paint, to draw on the stage and to read again, for texts that stand out from it.
 function newCanvas() {
-  const canvas = document.createElement("canvas");
-  canvas.width = width;
-  canvas.height = height;
+  const canvas = make("canvas", { width, height });
+  canvas.getContext("2d", { willReadFrequently: true });
   return canvas;
 }
 
@@ -25,24 +25,25 @@ function paint(canvas, color) {
   const context = canvas.getContext("2d");
   const image = context.createImageData(width, height), bytes = image.data;
   for (let i = 0, at = 0; i < pixelCount; ++i, at += 4) {
-    color(i, bytes, at);
     bytes[at + 3] = 255;
+    color(i, bytes, at);
   }
   context.putImageData(image, 0, 0);
 }
 
-const invalid = bits => (bits & 0x7c00) === 0x7c00; // NaN or infinite: shown in magenta
+const invalidColor = [255, 0, 255]; // of what is NaN or infinite: magenta
+const invalid = bits => (bits & 0x7c00) === 0x7c00;
 function write(bytes, at, r, g, b) { bytes[at] = r; bytes[at + 1] = g; bytes[at + 2] = b; }
 
 function paintPicture(canvas, picture, stops) {
   const table = exposureTable(stops), [r, g, b] = picture.planes;
   paint(canvas, (i, bytes, at) => {
-    if (invalid(r[i]) || invalid(g[i]) || invalid(b[i])) write(bytes, at, 255, 0, 255);
+    if (invalid(r[i]) || invalid(g[i]) || invalid(b[i])) write(bytes, at, ...invalidColor);
     else write(bytes, at, table[r[i]], table[g[i]], table[b[i]]);
   });
 }
 
-// The rasterizer's picture in pale grey: the ground for marks.
+// A picture in pale grey: the ground for marks.
 function paintGround(canvas, picture) {
   const table = exposureTable(0), [r, g, b] = picture.planes;
   paint(canvas, (i, bytes, at) => {
@@ -51,42 +52,62 @@ function paintGround(canvas, picture) {
   });
 }
 
-// Anchors of the false colours, from −1 to 1; "hue" as in compare/report/false_color.cpp. "grey" tells the sign by lightness alone.
-const anchors = {
-  hue: [[8, 48, 107], [33, 102, 172], [82, 148, 206], [167, 205, 230], [246, 246, 244], [250, 203, 150], [233, 143, 53], [190, 92, 8], [115, 49, 6]],
-  grey: [[0, 0, 0], [38, 38, 38], [72, 72, 72], [100, 100, 100], [126, 126, 126], [155, 155, 155], [186, 186, 186], [220, 220, 220], [255, 255, 255]],
+// Grey over all pixels but those that are `lit`: they keep their colours, which stand out whether dark or bright.
+function paintVeil(canvas, lit) {
+  paint(canvas, (i, bytes, at) => {
+    write(bytes, at, 116, 116, 116);
+    bytes[at + 3] = lit(i) ? 0 : 225;
+  });
+}
+
+// Anchors of the false colours. "hue": for signed values as in compare/report/false_color.cpp, for errors matplotlib's
+// "magma" (Smith and van der Walt 2015), whose lightness rises evenly; "grey" does without hues.
+const palettes = {
+  hue: {
+    signed: [[8, 48, 107], [33, 102, 172], [82, 148, 206], [167, 205, 230], [246, 246, 244], [250, 203, 150], [233, 143, 53], [190, 92, 8], [115, 49, 6]],
+    error: [[0, 0, 4], [24, 15, 61], [68, 15, 118], [114, 31, 129], [158, 47, 127], [205, 64, 113], [241, 96, 93], [253, 150, 104], [254, 202, 141], [252, 253, 191]],
+  },
+  grey: {
+    signed: [[0, 0, 0], [38, 38, 38], [72, 72, 72], [100, 100, 100], [126, 126, 126], [155, 155, 155], [186, 186, 186], [220, 220, 220], [255, 255, 255]],
+    error: [[0, 0, 0], [255, 255, 255]],
+  },
 };
 
-function falseColor(palette, value) {
-  const list = anchors[palette], position = (Math.min(Math.max(value, -1), 1) + 1) / 2 * (list.length - 1);
-  const low = Math.min(Math.floor(position), list.length - 2), f = position - low;
-  return list[low].map((v, c) => Math.round(v + (list[low + 1][c] - v) * f));
+// The colour of a position in [0, 1] along the anchors.
+function colorAt(anchors, position) {
+  if (Number.isNaN(position)) return invalidColor;
+  const at = clamp(position, 0, 1) * (anchors.length - 1);
+  const low = Math.min(Math.floor(at), anchors.length - 2), f = at - low;
+  return anchors[low].map((v, c) => Math.round(v + (anchors[low + 1][c] - v) * f));
+}
+const signedColor = value => colorAt(palettes[state.palette].signed, (value + 1) / 2); // of −1 to 1
+const errorColor = value => colorAt(palettes[state.palette].error, value); // of 0 to 1
+const css = color => `rgb(${color.join(" ")})`;
+
+// Paints values between low and high and returns how many lie beyond.
+function paintValues(canvas, values, low, high, anchors) {
+  const steps = 1024, table = [];
+  for (let k = 0; k <= steps; ++k) table.push(colorAt(anchors, k / steps));
+  let beyond = 0;
+  paint(canvas, (i, bytes, at) => {
+    const position = (values[i] - low) / (high - low);
+    if (!Number.isFinite(position)) { write(bytes, at, ...invalidColor); return; }
+    if (position < 0 || position > 1) ++beyond;
+    write(bytes, at, ...table[Math.round(clamp(position, 0, 1) * steps)]);
+  });
+  return beyond;
 }
 
 const channels = { r: [1, 0, 0], g: [0, 1, 0], b: [0, 0, 1], luminance: [0.2126, 0.7152, 0.0722] };
+const luminance = rgb => rgb.reduce((sum, v, c) => sum + v * channels.luminance[c], 0);
 
-// a − b of every pixel in one channel or in luminance.
-function differences(channel) {
+// A picture's value in one channel or in luminance, for every pixel.
+function channelOf(picture, channel) {
   const result = new Float32Array(pixelCount), weights = channels[channel];
   for (let c = 0; c < 3; ++c) {
     if (weights[c] === 0) continue;
-    const plane = decoded.difference.planes[c], weight = weights[c];
+    const plane = picture.planes[c], weight = weights[c];
     for (let i = 0; i < pixelCount; ++i) result[i] += weight * halfValue[plane[i]];
   }
   return result;
-}
-
-// Paints the differences and returns the share of pixels beyond the range.
-function paintDifference(canvas, values, range, palette) {
-  const steps = 1024, table = [];
-  for (let k = 0; k <= steps; ++k) table.push(falseColor(palette, k / steps * 2 - 1));
-  let beyond = 0;
-  paint(canvas, (i, bytes, at) => {
-    const value = values[i] / range;
-    if (!Number.isFinite(value)) { write(bytes, at, 255, 0, 255); return; }
-    if (Math.abs(value) > 1) ++beyond;
-    const color = table[Math.round((Math.min(Math.max(value, -1), 1) + 1) / 2 * steps)];
-    write(bytes, at, color[0], color[1], color[2]);
-  });
-  return beyond / pixelCount;
 }

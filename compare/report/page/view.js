@@ -1,27 +1,42 @@
 // ---- view.js: which part of the picture is seen, how large; and what the page's address says of it.
 
-// All that can be linked to. Zoom is in screen pixels a picture pixel; 0 fits the picture.
+const modes = [
+  { key: "split", title: "Split" },
+  { key: "flicker", title: "Flicker" },
+  { key: "side", title: "Side by side" },
+  { key: "difference", title: "Difference" },
+  { key: "flip", title: data.flip.name },
+  ...(data.hits ? [{ key: "hits", title: "Hits" }] : []),
+];
+
+// All that can be linked to, beside the theme. Zoom is in screen pixels a picture pixel; 0 fits the picture. `bin` is
+// the histogram's chosen one; −1: none.
 const state = {
-  mode: "split", split: 0.5, zoom: 0, x: width / 2, y: height / 2, ev: 0, range: 0, channel: "luminance", palette: "hue",
-  show: "a", play: true, px: -1, py: -1, theme: "auto", period: 700,
+  mode: "split", split: 0.5, zoom: 0, x: width / 2, y: height / 2, ev: 0, range: data.difference_range, channel: "luminance",
+  palette: "hue", show: "a", play: !matchMedia("(prefers-reduced-motion: reduce)").matches, period: 700, px: -1, py: -1, histogram: "signed", bin: -1,
 };
-const modes = ["split", "flicker", "side", "difference", "hits"];
 const defaults = { ...state };
-const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 
 function readAddress() {
   Object.assign(state, defaults); // what the address doesn't say is as at the start
-  for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
-    if (!(key in defaults)) continue;
+  for (const [key, text] of addressPairs()) {
+    if (!Object.hasOwn(defaults, key)) continue;
     const kind = typeof defaults[key];
     if (kind === "boolean") state[key] = text !== "false" && text !== "0";
     else if (kind === "string") state[key] = text;
     else if (Number.isFinite(Number(text))) state[key] = Number(text);
   }
-  if (!modes.includes(state.mode)) state.mode = "split";
-  if (!(state.channel in channels)) state.channel = "luminance";
-  if (!(state.palette in anchors)) state.palette = "hue";
-  if (!["auto", "light", "dark"].includes(state.theme)) state.theme = "auto";
+  if (!modes.some(mode => mode.key === state.mode)) state.mode = "split";
+  if (!Object.hasOwn(channels, state.channel)) state.channel = "luminance";
+  if (!Object.hasOwn(palettes, state.palette)) state.palette = "hue";
+  if (!Object.hasOwn(quantities, state.histogram)) state.histogram = "signed";
+  if (!(state.range > 0)) state.range = defaults.range;
+  if (state.show !== "b") state.show = "a";
+  state.px = Math.round(state.px);
+  state.py = Math.round(state.py);
+  if (state.px < 0 || state.py < 0 || state.px >= width || state.py >= height) state.px = state.py = -1;
+  state.bin = Math.max(Math.round(state.bin), -1);
+  state.range = clamp(state.range, 1e-4, 100);
   state.split = clamp(state.split, 0, 1);
   state.ev = clamp(state.ev, -8, 8);
   state.period = clamp(state.period, 350, 2000);
@@ -32,17 +47,14 @@ let addressTimer = 0;
 function writeAddress() {
   clearTimeout(addressTimer);
   addressTimer = setTimeout(() => {
-    const parts = [];
-    for (const key of Object.keys(defaults)) {
-      if (state[key] === defaults[key] || (state.zoom === 0 && (key === "x" || key === "y"))) continue;
-      parts.push(`${key}=${typeof state[key] === "number" ? +state[key].toPrecision(5) : state[key]}`);
-    }
-    history.replaceState(null, "", parts.length ? "#" + parts.join("&") : location.pathname + location.search);
+    const said = key => state[key] !== defaults[key] && !(state.zoom === 0 && (key === "x" || key === "y"));
+    const short = value => typeof value === "number" ? +value.toPrecision(7) : value;
+    setAddress(Object.keys(defaults).filter(said).map(key => [key, short(state[key])]));
   }, 250);
 }
 
 const maxZoom = 128;
-const stage = document.getElementById("stage"), canvas = document.getElementById("canvas");
+const stage = element("stage"), canvas = element("canvas");
 let stageWidth = 1, stageHeight = 1; // CSS pixels
 
 // Side by side where there is room, one above the other on a narrow screen.

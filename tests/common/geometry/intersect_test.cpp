@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
 
 using namespace duet;
@@ -220,6 +221,19 @@ TEST_SUITE("unit") {
             self_hits += again ? 1 : 0;
         }
         CHECK(self_hits == 0);
+    }
+
+    TEST_CASE("a box has eight corners, whatever rounding does to its edges") {
+        Random random;
+        for (int trial = 0; trial < 1000; ++trial) {
+            const Vec3 low = random.vector();
+            const Vec3 high = low + Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)) * 3.0f;
+            std::vector<Vec3> distinct;
+            for (const Quad& quad : box_quads(low, high).quads)
+                for (const Vec3& p : corners(quad))
+                    if (std::find(distinct.begin(), distinct.end(), p) == distinct.end()) distinct.push_back(p);
+            REQUIRE(distinct.size() == 8);
+        }
     }
 
     TEST_CASE("closedness is judged by position, orientation by volume") {

@@ -4,7 +4,7 @@
 #include "common/sampling/sampler.h"
 #include "common/sampling/warp.h"
 #include "common/vec/matrix.h"
-#include "tests/support/chi_squared.h"
+#include "compare/stress/chi_squared.h"
 
 #include <doctest/doctest.h>
 
@@ -154,10 +154,10 @@ TEST_SUITE("statistical") {
     TEST_CASE("directions are distributed as pdf says, which integrates to 1") {
         const auto all = environments();
         for (const Named& named : all) { // 1e-4 for all together
-            test::DirectionTest setup;
+            compare::DirectionTest setup;
             setup.axis = {0, 1, 0};
             setup.subdivisions = 12; // a picture's density has steps within cells
-            const auto result = test::test_directions(
+            const auto result = compare::test_directions(
                 setup,
                 [&](Vec2 u) -> std::optional<Vec3> {
                     const auto s = sample(named.environment, u);
@@ -166,7 +166,7 @@ TEST_SUITE("statistical") {
                 [&](Vec3 w) { return static_cast<double>(pdf(named.environment, w)); });
             CAPTURE(named.name);
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
-            CHECK_MESSAGE(result.chi_squared.p_value > test::sidak(1e-4, static_cast<int>(all.size())),
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, static_cast<int>(all.size())),
                           result.chi_squared.account);
         }
     }

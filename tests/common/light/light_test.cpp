@@ -3,7 +3,7 @@
 #include "common/light/light.h"
 #include "common/light/light_choice.h"
 #include "common/sampling/sampler.h"
-#include "tests/support/chi_squared.h"
+#include "compare/stress/chi_squared.h"
 
 #include <doctest/doctest.h>
 
@@ -242,13 +242,13 @@ TEST_SUITE("statistical") {
             CAPTURE(s.name);
             // Smaller or thinner than the test's cells: the next case has these.
             if (s.name.ends_with("far") || s.name.ends_with("aside")) continue;
-            test::DirectionTest setup;
+            compare::DirectionTest setup;
             setup.axis =
                 normalize(normalize(center(s.light) - s.p) + Vec3(0.05f, 0.02f, -0.03f)); // no ring along a rim
             setup.axis_power = 2;
             setup.samples = 50'000;
             setup.subdivisions = 20; // the rim cuts through cells
-            const auto result = test::test_directions(
+            const auto result = compare::test_directions(
                 setup,
                 [&](Vec2 u) -> std::optional<Vec3> {
                     const auto found = sample_light(s.light, s.p, u);
@@ -259,7 +259,7 @@ TEST_SUITE("statistical") {
                     return q ? static_cast<double>(light_pdf(s.light, s.p, Vec3(*q))) : 0.0;
                 });
             CHECK(result.integral == doctest::Approx(1).epsilon(4e-3));
-            CHECK_MESSAGE(result.chi_squared.p_value > test::sidak(1e-4, static_cast<int>(all.size())),
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, static_cast<int>(all.size())),
                           result.chi_squared.account);
         }
     }

@@ -2,7 +2,7 @@
 #include "common/light/solid_angle.h"
 #include "common/light/spherical_triangle.h"
 #include "common/sampling/hash.h"
-#include "tests/support/chi_squared.h"
+#include "compare/stress/chi_squared.h"
 
 #include <doctest/doctest.h>
 
@@ -96,14 +96,14 @@ TEST_SUITE("statistical") {
             {normalize(Vec3d(1, 0, 0.5)), normalize(Vec3d(0.8, 0.6, 0.4)), normalize(Vec3d(-0.1, 0.2, 1))}};
         for (const SphericalTriangle& t : triangles) {
             const double omega = t.solid_angle();
-            test::DirectionTest setup;
+            compare::DirectionTest setup;
             setup.axis = Vec3(normalize(t.a + t.b + t.c));
             setup.subdivisions = 20; // edges cut through cells
-            const auto result = test::test_directions(
+            const auto result = compare::test_directions(
                 setup, [&](Vec2 u) { return Vec3(t.sample(omega, Vec2d(u))); },
                 [&](Vec3 w) { return contains(t, Vec3d(w)) ? 1 / omega : 0.0; });
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
-            CHECK_MESSAGE(result.chi_squared.p_value > test::sidak(1e-4, 3), result.chi_squared.account);
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.account);
         }
     }
 }

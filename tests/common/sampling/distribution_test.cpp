@@ -2,7 +2,7 @@
 #include "common/sampling/distribution.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
-#include "tests/support/chi_squared.h"
+#include "compare/stress/chi_squared.h"
 
 #include <doctest/doctest.h>
 
@@ -111,12 +111,12 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     // Significance 1e-4 a case, seeds fixed.
     TEST_CASE("warps have the densities they claim") {
-        const double alpha = test::sidak(1e-4, 3);
-        const auto sphere = test::test_directions(
+        const double alpha = compare::sidak_level(1e-4, 3);
+        const auto sphere = compare::test_directions(
             {}, [](Vec2 u) { return uniform_sphere(u); }, [](Vec3) { return static_cast<double>(kUniformSpherePdf); });
         CHECK_MESSAGE(sphere.chi_squared.p_value > alpha, sphere.chi_squared.account);
         CHECK(sphere.integral == doctest::Approx(1).epsilon(1e-6));
-        const auto cosine = test::test_directions(
+        const auto cosine = compare::test_directions(
             {}, [](Vec2 u) { return cosine_hemisphere(u); },
             [](Vec3 w) { return static_cast<double>(cosine_hemisphere_pdf(w.z)); });
         CHECK_MESSAGE(cosine.chi_squared.p_value > alpha, cosine.chi_squared.account);
@@ -133,16 +133,16 @@ TEST_SUITE("statistical") {
             const Vec2 b = uniform_triangle(Vec2{unit_float(high_bits(bits)), unit_float(low_bits(bits))});
             ++count[static_cast<std::size_t>(b.y * 4) * 4 + static_cast<std::size_t>(b.x * 4)];
         }
-        const auto triangle = test::chi_squared(count, expected);
+        const auto triangle = compare::chi_squared(count, expected);
         CHECK_MESSAGE(triangle.p_value > alpha, triangle.account);
     }
 
     TEST_CASE("the chi-squared test finds a density that is wrong by up to 10 %, and knows its quantiles") {
         // Tabulated 5 % points (Abramowitz and Stegun 1964, table 26.8)
-        CHECK(test::chi_squared_tail(3.84146, 1) == doctest::Approx(0.05).epsilon(1e-4));
-        CHECK(test::chi_squared_tail(18.3070, 10) == doctest::Approx(0.05).epsilon(1e-4));
-        CHECK(test::chi_squared_tail(124.342, 100) == doctest::Approx(0.05).epsilon(1e-4));
-        const auto wrong = test::test_directions(
+        CHECK(compare::chi_squared_tail(3.84146, 1) == doctest::Approx(0.05).epsilon(1e-4));
+        CHECK(compare::chi_squared_tail(18.3070, 10) == doctest::Approx(0.05).epsilon(1e-4));
+        CHECK(compare::chi_squared_tail(124.342, 100) == doctest::Approx(0.05).epsilon(1e-4));
+        const auto wrong = compare::test_directions(
             {}, [](Vec2 u) { return uniform_sphere(u); },
             [](Vec3 w) { return static_cast<double>(kUniformSpherePdf) * (1 + 0.1 * static_cast<double>(w.x)); });
         CHECK(wrong.chi_squared.p_value < 1e-6);

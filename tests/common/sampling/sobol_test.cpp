@@ -3,7 +3,7 @@
 #include "common/sampling/sampler.h"
 #include "common/sampling/sobol.h"
 #include "common/system/error.h"
-#include "tests/support/chi_squared.h"
+#include "compare/stress/chi_squared.h"
 
 #include <doctest/doctest.h>
 
@@ -222,10 +222,10 @@ TEST_SUITE("statistical") {
                         const Vec2 u = s.get_2d();
                         ++count[static_cast<std::size_t>(u.y * kBins) * kBins + static_cast<std::size_t>(u.x * kBins)];
                     }
-                const auto result = test::chi_squared(count, expected);
+                const auto result = compare::chi_squared(count, expected);
                 CAPTURE(sampler_name(kind));
                 CAPTURE(variant);
-                CHECK_MESSAGE(result.p_value > test::sidak(1e-4, kTests), result.account);
+                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, kTests), result.account);
             }
     }
 
@@ -251,13 +251,13 @@ TEST_SUITE("statistical") {
                         ++count[static_cast<std::size_t>(draw({}) * kBins) * kBins +
                                 static_cast<std::size_t>(draw(key) * kBins)];
                     }
-                const auto result = test::chi_squared(count, expected);
+                const auto result = compare::chi_squared(count, expected);
                 CAPTURE(sampler_name(kind));
                 CAPTURE(key.seed);
                 CAPTURE(key.x);
                 CAPTURE(key.index);
                 CAPTURE(key.dimension);
-                CHECK_MESSAGE(result.p_value > test::sidak(1e-4, 18), result.account);
+                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, 18), result.account);
             }
     }
 
@@ -280,7 +280,7 @@ TEST_SUITE("statistical") {
                     const std::size_t flip_b = (owen_scramble(prefix_b, seed) >> digit) & 1u;
                     ++count[digit == 0 ? flip_a : 2 * flip_a + flip_b];
                 }
-                const auto result = test::chi_squared(count, expected);
+                const auto result = compare::chi_squared(count, expected);
                 ++tests;
                 if (result.p_value < worst) {
                     worst = result.p_value;
@@ -288,7 +288,7 @@ TEST_SUITE("statistical") {
                         message("digit ", digit, ", prefixes ", prefix_a, " and ", prefix_b, ": ", result.account);
                 }
             }
-        CHECK_MESSAGE(worst > test::sidak(1e-4, tests), account);
+        CHECK_MESSAGE(worst > compare::sidak_level(1e-4, tests), account);
     }
 
     TEST_CASE("scrambled Sobol points integrate a smooth function far better than independent ones, without bias") {

@@ -55,10 +55,7 @@ Hit nearest(const Scene& scene, const Ray& world) {
     const Object& object = scene.objects[0];
     const ObjectTransform transform = object_transform(object, world.time);
     Ray ray = world;
-    if (!object.identity) {
-        ray.origin = transform_point(transform.to_object, world.origin);
-        ray.direction = transform_vector(transform.to_object, world.direction);
-    }
+    if (!object.identity) ray = to_object_space(world, transform.to_world, transform.to_object);
     const Shape& shape = scene.shapes[object.shape];
     Hit best;
     for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {

@@ -44,9 +44,8 @@ Hit brute_force(const Scene& scene, const Ray& ray) {
         const Object& object = scene.objects[o];
         Ray inside = ray;
         if (!object.identity || object.moving) {
-            const Mat4 to_object = object.moving ? object_transform(object, ray.time).to_object : object.to_object;
-            inside.origin = transform_point(to_object, ray.origin);
-            inside.direction = transform_vector(to_object, ray.direction);
+            const ObjectTransform transform = object_transform(object, ray.time);
+            inside = to_object_space(ray, transform.to_world, transform.to_object);
         }
         const ShearedRay sheared(inside);
         const Shape& shape = scene.shapes[object.shape];
@@ -193,6 +192,35 @@ BuildItem item_at(Vec3 low, Vec3 high, std::size_t index, PrimitiveKind kind = P
 } // namespace
 
 TEST_SUITE("unit") {
+
+    TEST_CASE("instances stand where they should 100 km from the origin, moving ones too") {
+        Random random(9);
+        for (int i = 0; i < 200; ++i) {
+            SceneBuilder builder;
+            const std::uint32_t grey = builder.material(Diffuse{});
+            const std::uint32_t shape =
+                builder.shape(i % 2 ? Shape(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0})) : Shape(Sphere{{}, 1}));
+            const Vec3 place = random.vector() * 1e5f;
+            const Mat4 begin = translation(place) * rotation(random.direction(), random.uniform(0, 6));
+            builder.place_moving(shape, grey, begin, i % 4 < 2 ? begin : translation(random.vector() * 0.3f) * begin);
+            builder.place(shape, grey, translation(Vec3(-1e5f, 0, 0))); // used twice, it is not baked
+            const Scene scene = builder.finish();
+            Ray ray;
+            ray.time = 0.5f;
+            ray.origin = place + random.direction() * 5.0f;
+            ray.direction = normalize(place - ray.origin + random.direction() * 0.3f);
+            const Hit hit = Accelerator(scene, 1).closest(ray);
+            const Mat4d to_world(object_transform(scene.objects[0], ray.time).to_world);
+            const Mat4d to_object = inverse_affine(to_world);
+            const Vec3d o = transform_point(to_object, Vec3d(ray.origin)),
+                        d = transform_vector(to_object, Vec3d(ray.direction));
+            const double b = -dot(o, d) / dot(d, d); // nearest to the centre
+            const double expected = i % 2 ? -o.z / d.z : b - std::sqrt((1 - length_squared(o + d * b)) / dot(d, d));
+            if (!(expected > 0 && expected < 7)) continue; // along the quad
+            REQUIRE(hit.object == 0);
+            REQUIRE(static_cast<double>(hit.t) == doctest::Approx(expected).epsilon(2e-5));
+        }
+    }
 
     TEST_CASE("the nearest hit is that of testing every primitive, to the bit") {
         for (const bool with_instances : {false, true})

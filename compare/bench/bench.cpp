@@ -1,0 +1,182 @@
+#include "compare/bench/bench.h"
+
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/file.h"
+#include "common/system/parallel.h"
+#include "compare/bench/bench_report.h"
+#include "compare/bench/render_reference.h"
+#include "compare/peers/cycles.h"
+#include "compare/report/output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace duet::compare {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Found out before long renders, not after.
+void check(const BenchOptions& options) {
+    check_choice(options.choice);
+    if (!options.peer.empty() && options.peer != "cycles")
+        throw Error(message("--peer: found ", options.peer, ", expected cycles"));
+    if (!options.folder.empty()) make_folder(options.folder);
+    check_json_path(options.stats);
+}
+
+json read_baseline(const fs::path& path) {
+    const json report = json::parse(read_file(path), nullptr, false);
+    if (report.is_discarded()) throw Error(message(path.string(), ": not JSON, expected a report of compare bench"));
+    return report;
+}
+
+/// The size asked for, or one of the scene's shape that takes a trial seconds, not minutes.
+View view_of(const Scene& scene, PictureSize size) {
+    if (size.width > 0) return {scene.camera, size.width, size.height};
+    const double scale = std::min(1.0, 256 / std::sqrt(static_cast<double>(scene.width) * scene.height));
+    const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
+    return {scene.camera, side(scene.width), side(scene.height)};
+}
+
+int threads_of(const BenchOptions& options) {
+    return options.choice.threads > 0 ? options.choice.threads : available_threads();
+}
+
+/// One scene's measurement, in its three steps.
+class SceneBench {
+public:
+    SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
+        : options_(options), interrupt_(interrupt), scene_(load_scene(path)), view_(view_of(scene_, options.size)),
+          counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
+        result_.scene = path.string();
+        result_.scene_hash = hash_scene_files(scene_);
+        result_.width = view_.width;
+        result_.height = view_.height;
+        if (!options.peer.empty())
+            peer_ =
+                std::make_shared<CyclesPeer>(scene_, view_, ExportSettings{options.choice.depth, threads_of(options)});
+    }
+
+    /// Empty where a signal came.
+    std::optional<SceneResult> run() {
+        find_references();
+        if (!interrupt_.raised()) measure_all();
+        if (interrupt_.raised()) return {};
+        return std::move(result_);
+    }
+
+private:
+    std::string label(const char* what) const { return message(scene_.path.stem().string(), ": ", what); }
+
+    ReferenceSettings reference_settings() const {
+        return {options_.references, options_.reference_spp, options_.choice.depth, options_.choice.threads};
+    }
+
+    KeptReference reference(const std::string& estimator) const {
+        ProgressBar bar(label("reference by ") + estimator, options_.quiet);
+        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        return reference_by(estimator, scene_, view_, reference_settings(), control);
+    }
+
+    void check_against(KeptReference other, std::vector<std::string> approximations) {
+        if (interrupt_.raised()) return;
+        const BiasCheck check = check_bias(result_.reference.reference, other.reference);
+        result_.checks.push_back({std::move(other), check, std::move(approximations)});
+    }
+
+    void find_references() {
+        result_.reference = reference("path");
+        result_.no_naive = unfit_for_naive(scene_);
+        if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive"), {});
+        if (!interrupt_.raised() && peer_) check_against(peer_reference(), peer_->notes());
+    }
+
+    KeptReference peer_reference() const {
+        ProgressBar bar(label("reference by Cycles"), options_.quiet);
+        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        Control silent{&interrupt_.flag(), {}};
+        const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_picture(spp, seed, silent); };
+        return reference_by_seeds("cycles", kCyclesExportVersion, scene_, view_, reference_settings(), render, control);
+    }
+
+    void measure_all() {
+        std::vector<Contender> contenders = our_contenders(scene_, view_, options_.choice);
+        if (peer_)
+            for (Contender& c : cycles_contenders(peer_, options_.choice.spps)) contenders.push_back(std::move(c));
+        ProgressBar bar(label("measuring"), options_.quiet);
+        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        result_.rows = measure(contenders, result_.reference.reference, counted_, options_.measure, control);
+        count_best_only(result_.rows, options_.peer);
+        widen_efficiency(result_.rows, options_.drift, processor_share(result_.rows, threads_of(options_)));
+        result_.equal_times = at_equal_times(result_.rows, options_.moments, options_.peer);
+        result_.processor_share = processor_share(result_.rows, threads_of(options_));
+    }
+
+    const BenchOptions& options_;
+    const InterruptFlag& interrupt_;
+    const Scene scene_;
+    const View view_;
+    const Image<std::uint8_t> counted_;
+    std::shared_ptr<CyclesPeer> peer_; ///< null: none is asked for
+    SceneResult result_;
+};
+
+void write_report(const BenchOptions& options, const json& report) {
+    if (!options.stats.empty()) write_json(options.stats, report);
+    if (options.folder.empty()) return;
+    write_json(options.folder / "report.json", report);
+    write_file(options.folder / "bench.csv", bench_csv(report));
+    write_file(options.folder / "index.html", bench_page(report));
+}
+
+BenchOptions with_defaults(BenchOptions options) {
+    if (options.references.empty()) options.references = default_reference_folder();
+    const auto& spps = options.choice.spps;
+    if (options.reference_spp == 0) options.reference_spp = 16 * *std::max_element(spps.begin(), spps.end());
+    return options;
+}
+
+} // namespace
+
+int bench(const BenchOptions& given) {
+    check(given);
+    const BenchOptions options = with_defaults(given);
+    const bool tables = !options.quiet && options.stats != "-";
+    std::optional<json> earlier;
+    if (!options.baseline.empty()) {
+        earlier = read_baseline(options.baseline);
+        check_baseline(*earlier, {options.choice.depth, threads_of(options), options.reference_spp});
+    }
+
+    const InterruptFlag interrupt;
+    std::vector<SceneResult> results;
+    for (const fs::path& path : options.scenes) {
+        std::optional<SceneResult> result = SceneBench(options, path, interrupt).run();
+        if (!result) return kExitInterrupted;
+        if (tables) print_scene(std::cout, *result, !options.excluded.empty());
+        results.push_back(std::move(*result));
+    }
+
+    write_report(options, bench_json(options, results, std::nullopt)); // kept whatever the baseline turns out to be
+    std::optional<BaselineComparison> baseline;
+    if (earlier) baseline = compare_with_baseline(results, *earlier, options.drift);
+    if (baseline && tables) print_baseline(std::cout, *baseline);
+    if (baseline) write_report(options, bench_json(options, results, baseline));
+
+    const bool biased = std::any_of(results.begin(), results.end(), [](const SceneResult& r) {
+        return std::any_of(r.checks.begin(), r.checks.end(), [](const IndependentCheck& c) { return c.failed(); });
+    });
+    if (biased) std::cerr << "compare: independent references of a scene disagree\n";
+    const bool worse = baseline && baseline->flagged();
+    if (worse) std::cerr << "compare: slower or less accurate than the baseline\n";
+    return biased || worse ? kExitFailed : kExitOk;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,150 @@
+#include "compare/bench/bench_report.h"
+#include "raytrace/render.h"
+
+#include "common/system/parallel.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+using nlohmann::json;
+
+// JSON has neither infinity nor NaN: they become null.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json estimate_json(const Estimate& e) {
+    return {{"value", number(e.value)},
+            {"low", number(e.low())},
+            {"high", number(e.high())},
+            {"relative_error", number(e.relative_error)},
+            {"dof", number(e.dof)}};
+}
+
+json trials_json(const std::vector<TrialFigures>& trials) {
+    json list = json::array();
+    for (const TrialFigures& t : trials)
+        list.push_back({{"seed", t.seed},
+                        {"seconds", t.seconds},
+                        {"cpu_seconds", t.cpu_seconds},
+                        {"mse", number(t.whole.mse)},
+                        {"relmse", number(t.whole.relmse)},
+                        {"rest_mse", number(t.rest.mse)},
+                        {"rest_relmse", number(t.rest.relmse)}});
+    return list;
+}
+
+json row_json(const Measurement& m, bool with_rest) {
+    json row = {{"technique", m.technique},
+                {"sampler", m.sampler},
+                {"note", m.note},
+                {"spp", m.spp},
+                {"counted", m.counted},
+                {"repeats", m.trials.size()},
+                {"mse", estimate_json(m.mse)},
+                {"relmse", estimate_json(m.relmse)},
+                {"seconds", estimate_json(m.seconds)},
+                {"efficiency", estimate_json(m.efficiency)},
+                {"variance", number(m.variance)},
+                {"bias_share", number(m.bias_share())},
+                {"reference_share", number(m.reference_share)},
+                {"trials", trials_json(m.trials)}};
+    if (with_rest)
+        row["rest"] = {{"mse", estimate_json(m.rest_mse)},
+                       {"relmse", estimate_json(m.rest_relmse)},
+                       {"efficiency", estimate_json(m.rest_efficiency)}};
+    return row;
+}
+
+json reference_json(const KeptReference& r) {
+    return {{"estimator", r.estimator}, {"file", r.file.string()}, {"rendered", r.rendered}, {"mse", number(r.mse)}};
+}
+
+json check_json(const IndependentCheck& c) {
+    const BiasCheck& check = c.check;
+    return {{"other", reference_json(c.other)},
+            {"approximations", c.approximations},
+            {"tests", check.tests},
+            {"worst_z", number(check.worst_z)},
+            {"dof", number(check.worst_dof)},
+            {"p_value", number(check.p_value)},
+            {"significance", BiasCheck::kSignificance},
+            {"consistent", check.consistent()},
+            {"failed", c.failed()},
+            {"block", {check.block_x, check.block_y, check.block_size}},
+            {"channel", check.channel},
+            {"relative_bias",
+             {number(check.relative_bias.r), number(check.relative_bias.g), number(check.relative_bias.b)}},
+            {"detectable", number(check.detectable)}};
+}
+
+json equal_time_json(const EqualTimeRow& row) {
+    const auto optional = [](const std::optional<Estimate>& e) { return e ? estimate_json(*e) : json(nullptr); };
+    return {{"seconds", row.seconds},           {"name", row.name},
+            {"mse", optional(row.mse)},         {"rest_mse", optional(row.rest_mse)},
+            {"to_peer", optional(row.to_peer)}, {"rest_to_peer", optional(row.rest_to_peer)}};
+}
+
+json scene_json(const SceneResult& result, bool with_rest) {
+    json rows = json::array();
+    for (const Measurement& m : result.rows) rows.push_back(row_json(m, with_rest));
+    json checks = json::array();
+    for (const IndependentCheck& c : result.checks) checks.push_back(check_json(c));
+    json equal_times = json::array();
+    for (const EqualTimeRow& row : result.equal_times) equal_times.push_back(equal_time_json(row));
+    return {{"scene", result.scene}, {"equal_times", equal_times},  {"hash", result.scene_hash},
+            {"width", result.width}, {"height", result.height},     {"reference", reference_json(result.reference)},
+            {"checks", checks},      {"no_naive", result.no_naive}, {"processor_share", number(result.processor_share)},
+            {"rows", rows}};
+}
+
+json excluded_json(const std::vector<ExcludedRectangle>& rectangles) {
+    json list = json::array();
+    for (const ExcludedRectangle& r : rectangles)
+        list.push_back({{"corners", {r.x0, r.y0, r.x1, r.y1}}, {"fractions", r.fractions}});
+    return list;
+}
+
+json baseline_json(const BaselineComparison& comparison) {
+    json rows = json::array();
+    for (const BaselineRow& r : comparison.rows)
+        rows.push_back({{"scene", r.scene},
+                        {"technique", r.technique},
+                        {"sampler", r.sampler},
+                        {"spp", r.spp},
+                        {"mse_ratio", estimate_json(r.mse_ratio)},
+                        {"seconds_ratio", estimate_json(r.seconds_ratio)},
+                        {"less_accurate", r.less_accurate},
+                        {"slower", r.slower},
+                        {"more_accurate", r.more_accurate},
+                        {"faster", r.faster}});
+    return {{"significance", BaselineComparison::kSignificance},
+            {"drift", comparison.drift},
+            {"flagged", comparison.flagged()},
+            {"unmatched", comparison.unmatched},
+            {"rows", rows}};
+}
+
+} // namespace
+
+json bench_json(const BenchOptions& options, const std::vector<SceneResult>& results,
+                const std::optional<BaselineComparison>& baseline) {
+    json scenes = json::array();
+    for (const SceneResult& result : results) scenes.push_back(scene_json(result, !options.excluded.empty()));
+    json report = {{"program", "compare bench"},
+                   {"version", DUET_VERSION},
+                   {"estimator_version", raytrace::kEstimatorVersion},
+                   {"threads", options.choice.threads > 0 ? options.choice.threads : available_threads()},
+                   {"depth", options.choice.depth},
+                   {"seed", options.measure.seed},
+                   {"reference_spp", options.reference_spp},
+                   {"confidence", 0.95},
+                   {"excluded", excluded_json(options.excluded)},
+                   {"scenes", scenes}};
+    if (baseline) report["baseline"] = baseline_json(*baseline);
+    return report;
+}
+
+} // namespace duet::compare

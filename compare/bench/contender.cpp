@@ -1,0 +1,128 @@
+#include "compare/bench/contender.h"
+
+#include "common/system/stopwatch.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <sys/resource.h>
+
+namespace duet::compare {
+
+namespace {
+
+double cpu_seconds_so_far() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// What keeps a technique from the reference's picture.
+std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
+    using raytrace::Integrator;
+    const bool delta_lights = scene.needs.delta_lights;
+    switch (integrator) {
+    case Integrator::kDirect:
+        return "light after more than one scattering is missing";
+    case Integrator::kUnshadowed:
+        return "direct light only, without shadows";
+    case Integrator::kNaive:
+        return delta_lights ? "point, spot and sun lights are missing" : "";
+    default:
+        return "";
+    }
+}
+
+Contender raster_contender(const Scene& scene, const View& view, const ContenderChoice& choice) {
+    raster::Settings settings;
+    settings.threads = choice.threads;
+    const raster::Prepared prepared = raster::prepare(scene, settings);
+    return {"raster", "", "shadows, indirect light and reflections of objects are missing", choice.spps,
+            [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
+                raster::Settings s = settings;
+                s.samples_per_pixel = spp;
+                s.seed = seed;
+                return timed([&] { return raster::render(prepared, view, s, control).radiance; }, control);
+            }};
+}
+
+Contender raytrace_contender(const raytrace::Prepared& prepared, const Scene& scene, const View& view,
+                             const ContenderChoice& choice, const std::string& technique, const std::string& sampler) {
+    raytrace::Settings settings;
+    settings.threads = choice.threads;
+    settings.max_depth = choice.depth;
+    settings.integrator = raytrace::integrator(technique);
+    settings.sampler = sampler_kind(sampler);
+    return {technique, sampler, note_of(settings.integrator, scene), choice.spps,
+            [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
+                raytrace::Settings s = settings;
+                s.samples_per_pixel = spp;
+                s.seed = seed;
+                return timed([&] { return raytrace::render(prepared, view, s, control).radiance; }, control);
+            }};
+}
+
+/// The techniques that estimate light, in the order of --help.
+constexpr std::string_view kTechniques[] = {"raster", "path", "naive", "direct", "unshadowed"};
+constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
+
+template <typename Names> std::string listed(const Names& names) {
+    std::string text;
+    for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+template <typename Names>
+void check_names(const char* option, const std::vector<std::string>& found, const Names& known) {
+    for (const std::string& name : found)
+        if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+            throw Error(message(option, ": found ", name, ", expected one or more of ", listed(known)));
+}
+
+} // namespace
+
+Trial timed(const std::function<ImageRgb()>& render, const Control& control) {
+    Trial trial;
+    int times = 0;
+    const Stopwatch watch;
+    const double cpu = cpu_seconds_so_far();
+    do {
+        trial.picture = render();
+        ++times;
+    } while (watch.seconds() < kShortestTiming && !control.stopped());
+    trial.seconds = watch.seconds() / times;
+    trial.cpu_seconds = (cpu_seconds_so_far() - cpu) / times;
+    return trial;
+}
+
+void check_choice(const ContenderChoice& choice) {
+    check_names("--techniques", choice.techniques, kTechniques);
+    check_names("--samplers", choice.samplers, kSamplers);
+}
+
+std::vector<Contender> our_contenders(const Scene& scene, const View& view, const ContenderChoice& choice) {
+    check_choice(choice);
+    std::optional<raytrace::Prepared> traced; // one hierarchy for all
+    std::vector<Contender> contenders;
+    for (const std::string& technique : choice.techniques) {
+        if (technique == "raster") {
+            contenders.push_back(raster_contender(scene, view, choice));
+            continue;
+        }
+        if (!traced) {
+            raytrace::Settings settings;
+            settings.threads = choice.threads;
+            traced = raytrace::prepare(scene, settings);
+        }
+        for (const std::string& sampler : choice.samplers)
+            contenders.push_back(raytrace_contender(*traced, scene, view, choice, technique, sampler));
+    }
+    return contenders;
+}
+
+} // namespace duet::compare

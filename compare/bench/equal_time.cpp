@@ -1,0 +1,78 @@
+#include "compare/bench/equal_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace duet::compare {
+
+namespace {
+
+struct Point {
+    double log_seconds = 0, log_error = 0;
+    Estimate seconds, error;
+};
+
+/// Between two measurements, `t` of the way in the logarithm of time.
+Estimate between(const Point& a, const Point& b, double t) {
+    const double slope = (b.log_error - a.log_error) / (b.log_seconds - a.log_seconds);
+    const auto uncertainty = [&](const Point& p) {
+        return std::hypot(p.error.relative_error, slope * p.seconds.relative_error);
+    };
+    return {std::exp(std::lerp(a.log_error, b.log_error, t)), std::max(uncertainty(a), uncertainty(b)),
+            std::min(std::min(a.error.dof, b.error.dof), std::min(a.seconds.dof, b.seconds.dof))};
+}
+
+} // namespace
+
+std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std::string& technique,
+                                 const std::optional<std::string>& sampler, double seconds, bool rest) {
+    std::vector<Point> points;
+    for (const Measurement& m : rows) {
+        if (m.technique != technique || (sampler && m.sampler != *sampler) || !m.counted) continue;
+        const Estimate& error = rest ? m.rest_mse : m.mse;
+        if (!(error.value > 0) || !(m.seconds.value > 0)) continue;
+        points.push_back({std::log(m.seconds.value), std::log(error.value), m.seconds, error});
+    }
+    std::sort(points.begin(), points.end(),
+              [](const Point& a, const Point& b) { return a.log_seconds < b.log_seconds; });
+    const double at = std::log(seconds);
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Point &a = points[i], &b = points[i + 1];
+        if (at >= a.log_seconds && at <= b.log_seconds && a.log_seconds < b.log_seconds)
+            return between(a, b, (at - a.log_seconds) / (b.log_seconds - a.log_seconds));
+    }
+    return std::nullopt;
+}
+
+std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows, const std::vector<double>& moments,
+                                         const std::string& peer) {
+    std::vector<EqualTimeRow> table;
+    for (const double seconds : moments) {
+        const auto ratio = [&](const std::optional<Estimate>& error, bool rest) -> std::optional<Estimate> {
+            const auto its = peer.empty() ? std::nullopt : error_at(rows, peer, std::nullopt, seconds, rest);
+            return error && its ? std::optional(ratio_of(*error, *its)) : std::nullopt;
+        };
+        std::set<std::string> seen;
+        for (const Measurement& m : rows) {
+            const bool is_peer = m.technique == peer;
+            const std::string name = is_peer || m.sampler.empty() ? m.technique : m.technique + ", " + m.sampler;
+            if (!seen.insert(name).second) continue;
+            const std::optional<std::string> sampler = is_peer ? std::nullopt : std::optional(m.sampler);
+            EqualTimeRow row{seconds,
+                             name,
+                             error_at(rows, m.technique, sampler, seconds, false),
+                             error_at(rows, m.technique, sampler, seconds, true),
+                             {},
+                             {}};
+            if (!is_peer) {
+                row.to_peer = ratio(row.mse, false);
+                row.rest_to_peer = ratio(row.rest_mse, true);
+            }
+            table.push_back(std::move(row));
+        }
+    }
+    return table;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,171 @@
+#include "compare/bench/measure.h"
+
+#include "common/sampling/hash.h"
+#include "common/system/stopwatch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace duet::compare {
+
+namespace {
+
+/// A measurement that is being made.
+struct Running {
+    const Contender* contender = nullptr;
+    Measurement measurement;
+    ImageRgb last; ///< the picture of the seed before: half the squared difference of two estimates their variance
+    double squared_differences = 0;
+};
+
+std::vector<Running> all_of(const std::vector<Contender>& contenders) {
+    std::vector<Running> list;
+    for (const Contender& c : contenders)
+        for (const int spp : c.spps) {
+            Running running{&c, {}, {}, 0};
+            running.measurement.technique = c.technique;
+            running.measurement.sampler = c.sampler;
+            running.measurement.note = c.note;
+            running.measurement.spp = spp;
+            list.push_back(std::move(running));
+        }
+    return list;
+}
+
+double mean_squared_difference(const ImageRgb& a, const ImageRgb& b) {
+    return picture_error(a, b, Image<std::uint8_t>(a.width(), a.height(), 1)).mse;
+}
+
+/// One render, and its figures. False where it was stopped.
+bool run_trial(Running& running, std::uint64_t seed, const Reference& reference, const Image<std::uint8_t>& counted,
+               Control& control) {
+    Trial trial = running.contender->render(running.measurement.spp, seed, control);
+    if (control.stopped()) return false;
+    const Image<std::uint8_t> all(counted.width(), counted.height(), 1);
+    running.measurement.trials.push_back({seed, trial.seconds, trial.cpu_seconds,
+                                          picture_error(trial.picture, reference.mean, all),
+                                          picture_error(trial.picture, reference.mean, counted)});
+    if (!running.last.empty()) running.squared_differences += mean_squared_difference(trial.picture, running.last);
+    running.last = std::move(trial.picture);
+    return true;
+}
+
+template <typename Figure> Estimate mean_over(const std::vector<TrialFigures>& trials, Figure figure) {
+    std::vector<double> values;
+    for (const TrialFigures& t : trials) values.push_back(figure(t));
+    return mean_of(values);
+}
+
+/// The reference's error as its own variance has it: what a perfect picture would be charged with.
+double reference_mse(const Reference& reference) {
+    double sum = 0;
+    for (const Rgb& variance : reference.variance) sum += average(Rgbd(variance));
+    return sum / static_cast<double>(reference.variance.size());
+}
+
+Measurement finish(Running& running, double reference_error) {
+    Measurement m = std::move(running.measurement);
+    std::vector<double> seconds;
+    for (const TrialFigures& t : m.trials) seconds.push_back(t.seconds);
+    const double pairs = static_cast<double>(m.trials.size()) - 1;
+    m.variance = pairs > 0 ? running.squared_differences / (2 * pairs) : std::numeric_limits<double>::quiet_NaN();
+    m.mse = mean_over(m.trials, [](const TrialFigures& t) { return t.whole.mse; });
+    m.relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.whole.relmse; });
+    m.rest_mse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.mse; });
+    m.rest_relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.relmse; });
+    m.seconds = median_of(std::move(seconds));
+    m.efficiency = efficiency_of(m.mse, m.seconds);
+    m.rest_efficiency = efficiency_of(m.rest_mse, m.seconds);
+    m.reference_share = m.mse.value > 0 ? reference_error / m.mse.value : 0;
+    return m;
+}
+
+} // namespace
+
+double Measurement::bias_share() const {
+    const double explained = variance + reference_share * mse.value;
+    return explained < mse.low() ? 1 - explained / mse.value : 0; // NaN is below nothing: one trial tells no bias
+}
+
+void count_best_only(std::vector<Measurement>& rows, const std::string& technique) {
+    for (Measurement& a : rows)
+        if (a.technique == technique)
+            a.counted = std::none_of(rows.begin(), rows.end(), [&](const Measurement& b) {
+                return b.technique == technique && b.spp == a.spp && b.efficiency.value > a.efficiency.value;
+            });
+}
+
+void widen_efficiency(std::vector<Measurement>& rows, double drift, double share) {
+    const double lost = share > 0 && share < 1 ? -std::log(share) : 0;
+    constexpr double kManyDegrees = 1e6; // assumed, not estimated
+    const Estimate pace{1, std::hypot(std::log1p(drift), lost) / 2, kManyDegrees};
+    for (Measurement& m : rows) {
+        m.efficiency = ratio_of(m.efficiency, pace);
+        m.rest_efficiency = ratio_of(m.rest_efficiency, pace);
+    }
+}
+
+double processor_share(const std::vector<Measurement>& rows, int threads) {
+    double wall = 0, processor = 0;
+    for (const Measurement& m : rows)
+        for (const TrialFigures& t : m.trials) {
+            if (t.seconds < 0.01 || t.cpu_seconds <= 0) continue;
+            wall += t.seconds;
+            processor += t.cpu_seconds;
+        }
+    return wall > 0 ? processor / (wall * threads) : 1;
+}
+
+PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, const Image<std::uint8_t>& counted) {
+    DUET_CHECK_EQ(picture.size(), reference.size());
+    DUET_CHECK_EQ(picture.size(), counted.size());
+    PictureError total;
+    double pixels = 0;
+    for (int y = 0; y < picture.height(); ++y) {
+        PictureError row; // summed by row first: the error of a long sum grows with its length
+        for (int x = 0; x < picture.width(); ++x) {
+            if (counted(x, y) == 0) continue;
+            ++pixels;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double r = static_cast<double>(reference(x, y)[c]);
+                const double square = sqr(static_cast<double>(picture(x, y)[c]) - r);
+                row.mse += square;
+                row.relmse += square / (sqr(r) + 0.01);
+            }
+        }
+        total.mse += row.mse;
+        total.relmse += row.relmse;
+    }
+    return {total.mse / (3 * pixels), total.relmse / (3 * pixels)};
+}
+
+std::vector<Measurement> measure(const std::vector<Contender>& contenders, const Reference& reference,
+                                 const Image<std::uint8_t>& counted, const MeasureSettings& settings,
+                                 Control& control) {
+    Control quiet{control.stop, {}};
+    for (const Contender& c : contenders) c.render(1, settings.seed, quiet); // caches warm, pages mapped, clocks up
+
+    std::vector<Running> running = all_of(contenders);
+    const auto count = static_cast<std::uint32_t>(running.size());
+    double round_work = 0, done = 0;
+    for (const Running& r : running) round_work += r.measurement.spp;
+    const Stopwatch watch;
+    for (int round = 0; round < settings.repeats; ++round) {
+        if (round >= 2 && watch.seconds() > settings.time_limit) break;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Running& next = running[permute(i, count, hash_combine(0, static_cast<std::uint64_t>(round)))];
+            const std::uint64_t seed = settings.seed + 1 + static_cast<std::uint64_t>(round);
+            if (!run_trial(next, seed, reference, counted, quiet)) return {};
+            done += next.measurement.spp;
+            control.report(
+                std::max(done / (round_work * settings.repeats), std::min(watch.seconds() / settings.time_limit, 1.0)));
+        }
+    }
+    const double reference_error = reference_mse(reference);
+    std::vector<Measurement> results;
+    for (Running& r : running) results.push_back(finish(r, reference_error));
+    return results;
+}
+
+} // namespace duet::compare

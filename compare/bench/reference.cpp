@@ -1,0 +1,106 @@
+#include "compare/bench/reference.h"
+
+#include "common/image/image_file.h"
+#include "common/sampling/hash.h"
+#include "common/system/file.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace duet::compare {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKeyAttribute = "duet:reference";
+
+/// A hash of bytes: their number, then eight at a time.
+std::uint64_t hash_bytes(std::uint64_t state, std::string_view bytes) {
+    state = hash_combine(state, bytes.size());
+    for (std::size_t at = 0; at < bytes.size(); at += 8) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + at, std::min<std::size_t>(8, bytes.size() - at));
+        state = hash_combine(state, word);
+    }
+    return state;
+}
+
+std::string hexadecimal(std::uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+/// The picture of three channels of a file; empty where one is missing.
+ImageRgb picture(const ExrFile& file, const std::string& prefix) {
+    ImageRgb image(file.width, file.height);
+    constexpr const char* kChannels[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = std::find_if(file.channels.begin(), file.channels.end(),
+                                          [&](const ExrChannel& e) { return e.name == prefix + kChannels[c]; });
+        if (channel == file.channels.end() || channel->floats.size() != image.size()) return {};
+        for (std::size_t i = 0; i < image.size(); ++i) image[i][c] = channel->floats[i];
+    }
+    return image;
+}
+
+} // namespace
+
+std::string ReferenceKey::text() const {
+    return message("scene ", scene_hash, ", estimator ", estimator, " ", version, ", ", width, "x", height, ", depth ",
+                   depth, ", ", spp, " samples a pixel");
+}
+
+std::string hash_scene_files(const Scene& scene) {
+    std::uint64_t state = hash_combine(0, scene.files.size());
+    for (const fs::path& file : scene.files) state = hash_bytes(state, read_file(file));
+    return hexadecimal(state);
+}
+
+fs::path default_reference_folder() {
+    const auto variable = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return std::string(value != nullptr ? value : "");
+    };
+    const std::string cache = variable("XDG_CACHE_HOME"), home = variable("HOME");
+    const fs::path base = !cache.empty()  ? fs::path(cache)
+                          : !home.empty() ? fs::path(home) / ".cache"
+                                          : fs::temp_directory_path();
+    return base / "duet" / "references";
+}
+
+fs::path ReferenceCache::path(const std::string& scene_name, const ReferenceKey& key) const {
+    return folder_ / (scene_name + "-" + key.estimator + "-" + hexadecimal(hash_bytes(0, key.text())) + ".exr");
+}
+
+std::optional<Reference> ReferenceCache::find(const std::string& scene_name, const ReferenceKey& key) const {
+    const fs::path file_path = path(scene_name, key);
+    if (!fs::exists(file_path)) return std::nullopt;
+    try {
+        const ExrFile file = read_exr(file_path);
+        const bool same = std::any_of(file.attributes.begin(), file.attributes.end(), [&](const ExrAttribute& a) {
+            return a.name == kKeyAttribute && a.value == key.text();
+        });
+        Reference reference{picture(file, ""), picture(file, "variance.")};
+        if (!same || reference.mean.empty() || reference.variance.empty()) return std::nullopt;
+        if (file.width != key.width || file.height != key.height) return std::nullopt;
+        return reference;
+    } catch (const Error&) {
+        return std::nullopt; // damaged: it is rendered again
+    }
+}
+
+void ReferenceCache::store(const std::string& scene_name, const ReferenceKey& key, const Reference& reference) const {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (!fs::is_directory(folder_))
+        throw Error(message(folder_.string(), ": the folder of references cannot be made: ", error.message()), 1);
+    std::vector<ExrChannel> channels = rgb_channels("", reference.mean);
+    for (ExrChannel& channel : rgb_channels("variance.", reference.variance)) channels.push_back(std::move(channel));
+    write_exr(path(scene_name, key), key.width, key.height, channels, {{kKeyAttribute, key.text()}});
+}
+
+} // namespace duet::compare

@@ -1,0 +1,118 @@
+#include "compare/bench/render_reference.h"
+
+#include "common/sampling/hash.h"
+#include "raytrace/render.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace duet::compare {
+
+namespace {
+
+/// Far from the seeds of trials, which count up from small numbers, and another for each estimator.
+std::uint64_t reference_seed(const std::string& estimator) {
+    std::uint64_t seed = 0x7265666572656e63u; // "referenc"
+    for (const char c : estimator) seed = hash_combine(seed, static_cast<unsigned char>(c));
+    return seed;
+}
+
+double mean_variance(const Reference& reference) {
+    double sum = 0;
+    for (const Rgb& v : reference.variance) sum += average(Rgbd(v));
+    return sum / static_cast<double>(reference.variance.size());
+}
+
+/// Sums of pictures and of their squares, in double.
+class MeanOfPictures {
+public:
+    MeanOfPictures(int width, int height) : sums_(width, height), squares_(width, height) {}
+
+    void add(const ImageRgb& picture) {
+        DUET_CHECK_EQ(picture.size(), sums_.size());
+        ++count_;
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+            const Rgbd value(picture[i]);
+            sums_[i] += value;
+            squares_[i] += value * value;
+        }
+    }
+    /// The mean, and the variance of the mean.
+    Reference reference() const {
+        Reference r{ImageRgb(sums_.width(), sums_.height()), ImageRgb(sums_.width(), sums_.height())};
+        const double n = count_;
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const Rgbd mean = sums_[i] / n;
+            r.mean[i] = Rgb(mean);
+            for (std::size_t c = 0; c < 3; ++c)
+                r.variance[i][c] =
+                    static_cast<float>(std::max(0.0, squares_[i][c] / n - sqr(mean[c])) / std::max(1.0, n - 1));
+        }
+        return r;
+    }
+
+private:
+    Image<Rgbd> sums_, squares_;
+    int count_ = 0;
+};
+
+KeptReference found_or_rendered(const std::string& estimator, int version, const Scene& scene, const View& view,
+                                const ReferenceSettings& settings, const std::function<Reference()>& render,
+                                const Control& control) {
+    const ReferenceKey key{hash_scene_files(scene), estimator,   version, view.width, view.height,
+                           settings.depth,          settings.spp};
+    const std::string name = scene.path.stem().string();
+    const ReferenceCache cache(settings.folder);
+    KeptReference kept{{}, estimator, cache.path(name, key), false, 0};
+    if (std::optional<Reference> found = cache.find(name, key)) {
+        kept.reference = std::move(*found);
+    } else {
+        Reference rendered = render();
+        if (control.stopped()) return kept;
+        kept.reference = std::move(rendered);
+        kept.rendered = true;
+        cache.store(name, key, kept.reference);
+    }
+    kept.mse = mean_variance(kept.reference);
+    return kept;
+}
+
+} // namespace
+
+std::string unfit_for_naive(const Scene& scene) {
+    return scene.needs.delta_lights ? "naive cannot find point, spot and sun lights" : "";
+}
+
+KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
+                           const ReferenceSettings& settings, Control& control) {
+    const auto render = [&] {
+        raytrace::Settings s;
+        s.integrator = raytrace::integrator(estimator);
+        s.samples_per_pixel = settings.spp;
+        s.max_depth = settings.depth;
+        s.threads = settings.threads;
+        s.seed = reference_seed(estimator);
+        s.aovs.variance = true;
+        Rendering rendering = raytrace::render(raytrace::prepare(scene, s), view, s, control);
+        return Reference{std::move(rendering.radiance), std::move(rendering.variance)};
+    };
+    return found_or_rendered(estimator, raytrace::kEstimatorVersion, scene, view, settings, render, control);
+}
+
+KeptReference reference_by_seeds(const std::string& estimator, int version, const Scene& scene, const View& view,
+                                 const ReferenceSettings& settings,
+                                 const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control) {
+    const auto render_all = [&] {
+        MeanOfPictures mean(view.width, view.height);
+        const int spp = std::max(2, settings.spp / kReferenceSeeds);
+        for (int i = 0; i < kReferenceSeeds && !control.stopped(); ++i) {
+            const ImageRgb picture = render(spp, reference_seed(estimator) + static_cast<std::uint64_t>(i));
+            if (!control.stopped()) mean.add(picture);
+            control.report(static_cast<double>(i + 1) / kReferenceSeeds);
+        }
+        return mean.reference();
+    };
+    return found_or_rendered(estimator, version, scene, view, settings, render_all, control);
+}
+
+} // namespace duet::compare

@@ -1,0 +1,48 @@
+// The references of one scene: the path tracer's, and one by an independent estimator, found in the cache or rendered.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "common/system/control.h"
+#include "compare/bench/bias_check.h"
+#include "compare/bench/reference.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace duet::compare {
+
+struct ReferenceSettings {
+    std::filesystem::path folder; ///< of the cache
+    int spp = 1024;
+    int depth = 64;
+    int threads = 0;
+};
+
+/// A reference and where it is from.
+struct KeptReference {
+    Reference reference;
+    std::string estimator;
+    std::filesystem::path file;
+    bool rendered = false; ///< now; else it was in the cache
+    double mse = 0;        ///< its own, estimated: the mean of its variance
+
+    explicit operator bool() const { return !reference.mean.empty(); }
+};
+
+/// By the path tracer's integrator of that name ("path", "naive"), Sobol samples, and a seed of its own. Rendered and
+/// stored where the cache has none. Empty where it was stopped: then nothing is stored.
+KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
+                           const ReferenceSettings& settings, Control& control);
+
+/// By something else: rendered with kReferenceSeeds seeds of equal shares of the samples, whose spread tells the
+/// variance (each pixel's with kReferenceSeeds − 1 degrees of freedom). `version` as in ReferenceKey.
+inline constexpr int kReferenceSeeds = 8;
+KeptReference reference_by_seeds(const std::string& estimator, int version, const Scene& scene, const View& view,
+                                 const ReferenceSettings& settings,
+                                 const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control);
+
+/// Why `naive` cannot check a scene, or nothing where it can.
+std::string unfit_for_naive(const Scene& scene);
+
+} // namespace duet::compare

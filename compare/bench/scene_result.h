@@ -1,0 +1,35 @@
+// What the bench found out about one scene.
+#pragma once
+
+#include "compare/bench/bias_check.h"
+#include "compare/bench/equal_time.h"
+#include "compare/bench/measure.h"
+#include "compare/bench/render_reference.h"
+
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+/// The reference against another estimator's.
+struct IndependentCheck {
+    KeptReference other;
+    BiasCheck check;
+    std::vector<std::string> approximations; ///< of the other: with any, a disagreement is shown but is no failure
+
+    bool failed() const { return !check.consistent() && approximations.empty(); }
+};
+
+struct SceneResult {
+    std::string scene;      ///< the file, as it was given
+    std::string scene_hash; ///< hash_scene_files
+    int width = 0, height = 0;
+    KeptReference reference;
+    std::vector<IndependentCheck> checks; ///< against independent estimators
+    std::string no_naive;                 ///< why naive is not among them; empty: it is
+    std::vector<Measurement> rows;
+    std::vector<EqualTimeRow> equal_times;
+    double processor_share = 1; ///< see measure.h
+};
+
+} // namespace duet::compare

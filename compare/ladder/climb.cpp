@@ -1,0 +1,97 @@
+#include "compare/ladder/climb.h"
+
+#include "common/system/parallel.h"
+#include "raster/split.h"
+#include "raytrace/split.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace duet::compare {
+
+namespace {
+
+/// What one camera sample adds to I₁ … I₇.
+using Steps = std::array<Rgbd, kRungCount>;
+
+Steps steps(const PreparedPair& pair, const raytrace::CameraSample& sample) {
+    const raster::LightParts hit = raster::shade_hit(pair.raster, pair.raster_settings, sample.ray, sample.hit);
+    const raster::LightParts surface =
+        sample.surface ? raster::shade_surface(pair.raster, pair.raster_settings, sample.surface->point,
+                                               sample.surface->bsdf, -sample.ray.direction)
+                       : hit;
+    const raytrace::LightParts& light = sample.light;
+    const Rgbd v(surface.environment), r(surface.reflection);
+    const Rgbd emission(light.emission), shadowed_direct(light.direct), environment(light.environment);
+    const Rgbd seen = emission + shadowed_direct;
+    return {Rgbd(hit.sum()),
+            Rgbd(surface.sum()),
+            emission + Rgbd(light.unshadowed()) + v + r,
+            seen + v + r,
+            seen + environment + r,
+            seen + environment + Rgbd(light.reflection),
+            seen + environment + Rgbd(light.reflection) + Rgbd(light.indirect)};
+}
+
+bool is_valid(const Steps& steps) {
+    for (const Rgbd& c : steps)
+        if (!is_finite(c) || c.r < 0 || c.g < 0 || c.b < 0) return false;
+    return true;
+}
+
+/// The sums of one half of a pixel's samples.
+struct Sums {
+    Steps steps{};
+    int count = 0;
+
+    bool add(const Steps& sample) {
+        if (!is_valid(sample)) return false;
+        for (std::size_t k = 0; k < kRungCount; ++k) steps[k] += sample[k];
+        ++count;
+        return true;
+    }
+    Rgb mean(std::size_t k) const { return count > 0 ? Rgb(steps[k] / static_cast<double>(count)) : Rgb(); }
+};
+
+/// One pixel; returns the number of invalid samples.
+int climb_pixel(const PreparedPair& pair, const raytrace::SplitTracer& tracer, int x, int y, LadderPictures& pictures) {
+    std::array<Sums, 2> sums;
+    int invalid = 0;
+    const auto samples = static_cast<std::uint32_t>(pair.raytrace_settings.samples_per_pixel);
+    for (std::uint32_t i = 0; i < samples; ++i)
+        if (!sums[i % 2].add(steps(pair, tracer.sample(x, y, i)))) ++invalid;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t k = 0; k < kRungCount; ++k) pictures.halves[half][k](x, y) = sums[half].mean(k);
+    return invalid;
+}
+
+} // namespace
+
+ImageRgb LadderPictures::picture(std::size_t k) const {
+    if (k == 0) return first;
+    ImageRgb mean(first.width(), first.height());
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (halves[0][k - 1][i] + halves[1][k - 1][i]) * 0.5f;
+    return mean;
+}
+
+LadderPictures climb(ImageRgb first, const PreparedPair& pair, const View& view, Control& control) {
+    LadderPictures pictures;
+    pictures.first = std::move(first);
+    for (auto& half : pictures.halves) half.fill(ImageRgb(view.width, view.height));
+    const raytrace::SplitTracer tracer(pair.raytrace, view, pair.raytrace_settings);
+    std::atomic<std::int64_t> invalid = 0;
+    std::mutex mutex; // of the progress
+    int rows_done = 0;
+    parallel_for(static_cast<std::size_t>(view.height), pair.raytrace_settings.threads, [&](std::size_t row) {
+        for (int x = 0; x < view.width; ++x) {
+            if (control.stopped()) return;
+            invalid += climb_pixel(pair, tracer, x, static_cast<int>(row), pictures);
+        }
+        const std::lock_guard lock(mutex);
+        control.report(static_cast<double>(++rows_done) / view.height);
+    });
+    pictures.invalid_samples = invalid;
+    return pictures;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,103 @@
+#include "compare/ladder/ladder.h"
+
+#include "common/image/image_file.h"
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/file.h"
+#include "common/system/stopwatch.h"
+#include "compare/ladder/ladder_report.h"
+#include "compare/report/false_color.h"
+#include "compare/report/output.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One bar for a list of tasks, each a part of the whole by its cost.
+class Tasks {
+public:
+    Tasks(double cost, bool quiet, const InterruptFlag& interrupt)
+        : bar_("ladder", quiet), interrupt_(interrupt), cost_(cost) {}
+
+    Control next(double cost) {
+        const double begin = begun_;
+        begun_ += cost;
+        return {&interrupt_.flag(),
+                [this, begin, cost](double fraction) { bar_.update((begin + fraction * cost) / cost_); }};
+    }
+
+private:
+    ProgressBar bar_;
+    const InterruptFlag& interrupt_;
+    double cost_, begun_ = 0;
+};
+
+/// Measures and climbs; where a signal came, the result is worthless.
+LadderResult find_out(const Scene& scene, const View& view, const LadderOptions& options,
+                      const InterruptFlag& interrupt) {
+    const Stopwatch watch;
+    const PreparedPair pair = prepare_pair(scene, options.settings);
+    LadderResult result{scene, view, options.settings, plan_rungs(scene, pair), {}, {}, {}, {}, {}, 0};
+    const double climbing_cost = 1.5 * pair.raytrace_settings.samples_per_pixel;
+    Tasks tasks(measuring_cost(result.plan) + climbing_cost, options.quiet, interrupt);
+    result.rungs = measure_rungs(scene, view, result.plan, options.settings.threads,
+                                 [&](double cost) { return tasks.next(cost); });
+    const MeasuredQuantity& everything = result.rungs.back().front();
+    Control control = tasks.next(climbing_cost);
+    result.pictures = climb(everything.raster.picture, pair, view, control);
+    if (control.stopped()) return result;
+    result.metrics = image_metrics(everything.raster.picture, everything.raytrace.picture, Encoding::kLinear,
+                                   options.settings.threads);
+    result.shares = shares(result.pictures);
+    result.map = map_causes(result.pictures);
+    result.seconds = watch.seconds();
+    return result;
+}
+
+void write_pictures(const fs::path& folder, const LadderResult& result) {
+    for (std::size_t k = 0; k < kRungCount; ++k)
+        for (const MeasuredQuantity& q : result.rungs[k]) {
+            write_image(folder / message(k + 1, '-', q.name, "-raster.png"), q.raster.picture);
+            write_image(folder / message(k + 1, '-', q.name, "-raytrace.png"), q.raytrace.picture);
+        }
+    const double range = difference_range(result.pictures.first, result.pictures.picture(kRungCount));
+    for (std::size_t k = 0; k <= kRungCount; ++k) {
+        const ImageRgb picture = result.pictures.picture(k);
+        write_image(folder / message("picture-", k, ".png"), picture);
+        if (k > 0)
+            write_image(folder / message("change-", k, ".png"),
+                        difference_picture(result.pictures.picture(k - 1), picture, range));
+    }
+    write_image(folder / "cause.png", cause_picture(result.map));
+}
+
+} // namespace
+
+int ladder(const LadderOptions& options) {
+    check_json_path(options.stats);
+    const InterruptFlag interrupt;
+    const Scene scene = load_scene(options.scene);
+    const fs::path folder = make_folder(options.folder);
+    const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
+                    options.size.height > 0 ? options.size.height : scene.height};
+    const LadderResult result = find_out(scene, view, options, interrupt);
+    if (interrupt.raised()) return kExitInterrupted;
+
+    const nlohmann::json report = ladder_json(result);
+    write_pictures(folder, result);
+    write_json(folder / "report.json", report);
+    write_file(folder / "index.html", ladder_page(result, report));
+    if (!options.stats.empty()) write_json(options.stats, report);
+    if (!options.quiet) {
+        print_ladder(std::cerr, result);
+        std::cerr << "report: " << (folder / "index.html").string() << '\n';
+    }
+    return kExitOk;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,123 @@
+#include "compare/ladder/rungs.h"
+
+namespace duet::compare {
+
+namespace {
+
+RenderFunction renderer(const raster::Prepared& prepared, const raster::Settings& settings) {
+    return [=](const View& view, Control& control) { return raster::render(prepared, view, settings, control); };
+}
+RenderFunction renderer(const raytrace::Prepared& prepared, const raytrace::Settings& settings) {
+    return [=](const View& view, Control& control) { return raytrace::render(prepared, view, settings, control); };
+}
+
+Quantity quantity(std::string name, const PreparedPair& pair, const raster::Settings& raster,
+                  const raytrace::Settings& raytrace) {
+    return {std::move(name), renderer(pair.raster, raster), renderer(pair.raytrace, raytrace), raster.samples_per_pixel,
+            raytrace.samples_per_pixel};
+}
+
+Quantity hits(const PreparedPair& pair) {
+    raster::Settings raster = pair.raster_settings;
+    raster.samples_per_pixel = 1;
+    raster.shading = raster::Shading::kDepth; // the cheapest picture: only its hits are kept
+    raster.aovs.hit = true;
+    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace.samples_per_pixel = 1;
+    raytrace.sampler = SamplerKind::kCenter;
+    raytrace.integrator = raytrace::Integrator::kNormal;
+    raytrace.aovs.hit = true;
+    return quantity("hits", pair, raster, raytrace);
+}
+
+Quantity surface(const char* name, const PreparedPair& pair, raster::Shading shading, raytrace::Integrator integrator) {
+    raster::Settings raster = pair.raster_settings;
+    raster.shading = shading;
+    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace.integrator = integrator;
+    return quantity(name, pair, raster, raytrace);
+}
+
+/// Parts of the light alone. `environment`: whether the settings that name it are left on.
+Quantity light(const char* name, const PreparedPair& pair, const raster::PartSet& parts,
+               raytrace::Integrator integrator, bool environment) {
+    raster::Settings raster = pair.raster_settings;
+    raster.parts = parts;
+    raster.environment = environment;
+    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace.integrator = integrator;
+    raytrace.environment = environment;
+    return quantity(name, pair, raster, raytrace);
+}
+
+constexpr raster::PartSet kLights{.emission = true, .direct = true, .environment = false, .reflection = false};
+constexpr raster::PartSet kEnvironment{.emission = false, .direct = false, .environment = true, .reflection = false};
+constexpr raster::PartSet kReflection{.emission = false, .direct = false, .environment = false, .reflection = true};
+
+/// The rung, or, where the scene does not have the quantity, a note that says so.
+RungPlan if_present(bool present, RungPlan rung, const char* absent) {
+    if (present) return rung;
+    return {{}, "", "", absent};
+}
+
+constexpr const char* kNoLights = "The scene has no light but, perhaps, its environment.";
+constexpr const char* kNoShadows = "The rasterizer has no shadows yet: its unshadowed light stands in.";
+
+} // namespace
+
+PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& common) {
+    raster::Settings raster;
+    raster.samples_per_pixel = common.raster_spp;
+    raytrace::Settings raytrace;
+    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves
+    raytrace.max_depth = common.max_depth;
+    raster.threads = raytrace.threads = common.threads;
+    raster.seed = raytrace.seed = common.seed;
+    return {raster::prepare(scene, raster), raster, raytrace::prepare(scene, raytrace), raytrace};
+}
+
+std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPair& pair) {
+    using raytrace::Integrator;
+    const SceneNeeds& needs = scene.needs;
+    const bool lights = !scene.lights.empty();
+    const RungPlan visibility{{hits(pair)},
+                              "Projects each primitive onto the pixels and keeps the nearest.",
+                              "Sends a ray through each pixel's centre into a bounding volume hierarchy.",
+                              ""};
+    const RungPlan normals{{surface("normals", pair, raster::Shading::kNormal, Integrator::kNormal),
+                            surface("albedo", pair, raster::Shading::kAlbedo, Integrator::kAlbedo)},
+                           "Surface point and texture of its hits.",
+                           "Surface point and texture of its hits.",
+                           "Shared code: from a hit on, both are the same. Where these pictures differ, samples lie "
+                           "elsewhere in the pixel."};
+    const RungPlan direct{{light("direct", pair, kLights, Integrator::kUnshadowed, false)},
+                          "Each light in closed form; on rough metal a surface light counts as a distant one.",
+                          "One light sample a camera ray, its visibility left out.",
+                          ""};
+    const RungPlan shadows{{light("shadows", pair, kLights, Integrator::kLights, false)},
+                           "The same light as on the rung below.",
+                           "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
+                           kNoShadows};
+    const RungPlan environment{
+        {light("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
+        "Irradiance as if nothing hid the environment, in closed form or by spherical harmonics.",
+        "Light and BSDF samples of the environment, with shadow rays.",
+        ""};
+    const RungPlan reflections{{light("reflections", pair, kReflection, Integrator::kReflection, true)},
+                               "Looks up the environment in the mirrored and the refracted direction.",
+                               "Follows the path on from metal and glass to whatever it meets.",
+                               ""};
+    const RungPlan everything{{light("everything", pair, {}, Integrator::kPath, true)},
+                              "All of the above. Light that surfaces reflect onto each other is left out.",
+                              "Whole paths.",
+                              ""};
+    return {visibility,
+            normals,
+            if_present(lights, direct, kNoLights),
+            if_present(lights, shadows, kNoLights),
+            if_present(needs.environment, environment, "The scene has no environment."),
+            if_present(needs.specular || needs.glossy, reflections, "The scene has no metal and no glass."),
+            everything};
+}
+
+} // namespace duet::compare

@@ -1,0 +1,216 @@
+#include "compare/metrics/z_test.h"
+
+#include "compare/metrics/normal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+// How a difference is judged by variances of so few replicates
+//
+// A variance from two replicates (common/film/film.h) has one degree of freedom: it is right on average and, pixel by
+// pixel, worthless: a difference divided by its root has Student's distribution of one degree, Cauchy's, whose
+// variance is infinite. Two ways out are taken.
+//
+// To describe single pixels, the variance is averaged over 5 × 5 of them, of which the differences of the others are
+// estimates, too: at the edge of a lamp a well stratified sampler's replicates often agree to the last bit. With some
+// ν = 50 degrees of freedom E z² = ν / (ν − 2) = 1.04.
+//
+// To decide, differences dᵢ are added over many pixels. Pixels are independent, so the sum's variance is the sum of
+// the variances σᵢ², however they differ, and both sᵢ², the estimate, and, where the pictures agree, dᵢ² are σᵢ² on
+// average. So
+//
+//     T = Σ dᵢ / √V,   V = ½ Σ (sᵢ² + dᵢ²)
+//
+// is standard normal for many pixels. With V = Σ sᵢ² alone, a block with one noisy pixel whose replicates happen to
+// agree would be found to differ: the chance is that of Cauchy's tail, some percent. With dᵢ² in V no single pixel can
+// raise |T| above √2, k pixels not above √(2k); and T's tails are lighter than the normal's: for normal differences of
+// one variance T²/(2k) has the Beta distribution of ½ and k − ½, and for any differences that are symmetric about 0,
+// P(|T′| > x) ≤ 2 exp(−x²/2), where V = Σ dᵢ² (Hoeffding 1963, Theorem 2, given the |dᵢ|). What a difference of the
+// means adds to V costs no power at 1024 pixels. Blocks are that large because Monte Carlo noise is skewed: with a
+// skewness γ of the differences, the odds of T beyond x are off by a factor of about exp(γ x³ / (6 √k)), for γ = 1,
+// k = 1024 and x = 4 (some hundred blocks) 1.4; of blocks of 8 × 8 it would be 4 and more. The smallest of all p-values
+// is corrected by Šidák's formula, which for correlated normals (the whole and its blocks) errs to the safe side
+// (Šidák 1967).
+
+namespace duet::compare {
+
+namespace {
+
+constexpr int kBlock = 32, kPoolRadius = 2;
+
+/// Two programs that compute the same number in single precision differ by up to about so much of it. That is no noise
+/// that averages out over a block: differences are taken to be smaller by it.
+constexpr double kRounding = 1e-5;
+
+/// The decision is made at this level, and the detectable difference found with one minus this probability.
+constexpr double kLevel = 0.01;
+
+struct Value {
+    double difference = 0, variance = 0;
+    bool tested = false;
+};
+using Values = Image<std::array<Value, 3>>;
+
+void check_sizes(const NoisyImage& a, const NoisyImage& b) {
+    const auto same = [&](const ImageRgb& image) {
+        return image.width() == a.values.width() && image.height() == a.values.height();
+    };
+    if (!same(b.values) || (!a.variance.empty() && !same(a.variance)) || (!b.variance.empty() && !same(b.variance)))
+        throw Error("the pictures or their variances differ in size");
+    if (a.variance.empty() && b.variance.empty()) throw Error("neither picture has variances");
+}
+
+double variance_at(const NoisyImage& image, std::size_t i, std::size_t c) {
+    return image.variance.empty() ? 0.0 : static_cast<double>(image.variance[i][c]);
+}
+
+Values differences(const NoisyImage& a, const NoisyImage& b) {
+    Values values(a.values.width(), a.values.height());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double va = static_cast<double>(a.values[i][c]), vb = static_cast<double>(b.values[i][c]);
+            const double variance = variance_at(a, i, c) + variance_at(b, i, c);
+            const double excess = std::abs(va - vb) - kRounding * std::max(std::abs(va), std::abs(vb));
+            const double difference = std::copysign(std::max(excess, 0.0), va - vb);
+            const bool finite = std::isfinite(va - vb) && std::isfinite(variance);
+            values[i][c] = {difference, variance, finite && (variance > 0 || excess > 0)};
+        }
+    return values;
+}
+
+/// The sums that decide, over some pixels.
+struct Sums {
+    double difference = 0, variance = 0;
+    std::int64_t count = 0;
+
+    void add(const Value& v) {
+        if (!v.tested) return;
+        difference += v.difference;
+        variance += (v.variance + sqr(v.difference)) / 2;
+        ++count;
+    }
+    void add(const Sums& s) {
+        difference += s.difference;
+        variance += s.variance;
+        count += s.count;
+    }
+    double z() const { return count > 0 ? difference / std::sqrt(variance) : 0; }
+};
+
+/// The variance of a pixel's difference, from the pixels around it: half from all the variances, half from the squared
+/// differences of the others, of which the pixel's own would hide it.
+double pooled_variance(const Values& values, int x, int y, std::size_t c) {
+    double variances = 0, squares = -sqr(values(x, y)[c].difference);
+    int count = 0;
+    for (int v = std::max(y - kPoolRadius, 0); v <= std::min(y + kPoolRadius, values.height() - 1); ++v)
+        for (int u = std::max(x - kPoolRadius, 0); u <= std::min(x + kPoolRadius, values.width() - 1); ++u)
+            if (values(u, v)[c].tested) {
+                variances += values(u, v)[c].variance;
+                squares += sqr(values(u, v)[c].difference);
+                ++count;
+            }
+    return count > 1 ? (variances / count + std::max(squares, 0.0) / (count - 1)) / 2 : variances;
+}
+
+void describe_pixels(ZTest& test, const Values& values) {
+    std::int64_t count = 0, over_2 = 0, over_3 = 0;
+    double squares = 0;
+    for (int y = 0; y < values.height(); ++y)
+        for (int x = 0; x < values.width(); ++x) {
+            bool any = false;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Value& value = values(x, y)[c];
+                if (!value.tested) continue;
+                any = true;
+                const double z = std::abs(value.difference) / std::sqrt(pooled_variance(values, x, y, c));
+                ++count;
+                over_2 += z > 2;
+                over_3 += z > 3;
+                squares += z * z;
+                if (z > test.largest) {
+                    test.largest = z;
+                    test.largest_x = x;
+                    test.largest_y = y;
+                }
+            }
+            test.pixels += any;
+        }
+    if (count == 0) return;
+    test.over_2 = static_cast<double>(over_2) / static_cast<double>(count);
+    test.over_3 = static_cast<double>(over_3) / static_cast<double>(count);
+    test.mean_square = squares / static_cast<double>(count);
+}
+
+struct Region {
+    int x, y, width, height;
+    std::array<Sums, 3> sums;
+};
+
+/// The blocks, and last the whole. Blocks at the right and lower border take what is left with them: none is smaller
+/// than 32 × 32 but in a picture that is.
+std::vector<Region> regions(const Values& values) {
+    std::vector<Region> list;
+    Region whole{0, 0, values.width(), values.height(), {}};
+    const int columns = std::max(values.width() / kBlock, 1), rows = std::max(values.height() / kBlock, 1);
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const int x0 = column * kBlock, x1 = column + 1 < columns ? x0 + kBlock : values.width();
+            const int y0 = row * kBlock, y1 = row + 1 < rows ? y0 + kBlock : values.height();
+            Region block{x0, y0, x1 - x0, y1 - y0, {}};
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x)
+                    for (std::size_t c = 0; c < 3; ++c) block.sums[c].add(values(x, y)[c]);
+            for (std::size_t c = 0; c < 3; ++c) whole.sums[c].add(block.sums[c]);
+            list.push_back(block);
+        }
+    list.push_back(whole);
+    return list;
+}
+
+/// The difference of means that is found where it is `threshold` standard errors. V holds the differences themselves: as
+/// k grows by itself, T = kδ / √(V + k·δ²/2) nears √(2k). Infinite where that is below the threshold: too few pixels.
+double detectable(const Sums& whole, double threshold) {
+    const double k = static_cast<double>(whole.count), room = k - sqr(threshold) / 2;
+    return room > 0 ? threshold * std::sqrt(whole.variance) / std::sqrt(k * room) : static_cast<double>(kInfinity);
+}
+
+void decide(ZTest& test, const std::vector<Region>& list) {
+    double smallest = 2;
+    for (const Region& region : list)
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (region.sums[c].count == 0) continue;
+            ++test.tests;
+            const double p = two_sided_p(region.sums[c].z());
+            if (p >= smallest) continue;
+            smallest = p;
+            test.x = region.x;
+            test.y = region.y;
+            test.width = region.width;
+            test.height = region.height;
+            test.channel = static_cast<int>(c);
+        }
+    if (test.tests == 0) return;
+    const double tests = static_cast<double>(test.tests);
+    test.p = sidak(smallest, tests);
+    const double threshold = upper_quantile(sidak_level(kLevel, tests) / 2) + upper_quantile(kLevel);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Sums& whole = list.back().sums[c];
+        test.mean_z[c] = whole.z();
+        if (whole.count > 0)
+            test.detectable[c] = detectable(whole, threshold);
+    }
+}
+
+} // namespace
+
+ZTest z_test(const NoisyImage& a, const NoisyImage& b) {
+    check_sizes(a, b);
+    const Values values = differences(a, b);
+    ZTest test;
+    describe_pixels(test, values);
+    decide(test, regions(values));
+    return test;
+}
+
+} // namespace duet::compare

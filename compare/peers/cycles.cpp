@@ -1,0 +1,138 @@
+#include "compare/peers/cycles.h"
+
+#include "common/image/image_file.h"
+#include "common/system/file.h"
+#include "compare/peers/subprocess.h"
+
+#include <charconv>
+#include <deque>
+#include <stdlib.h>
+
+namespace duet::compare {
+
+extern const std::string_view kCyclesScript; // compare/peers/cycles.py, by CMakeLists.txt
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with its owner.
+struct TemporaryFolder {
+    fs::path path;
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "duet-cycles-XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr) throw Error(message(name, ": cannot be made"), 1);
+        path = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
+/// The number behind `label` in a line of the log, or nothing.
+std::optional<double> number_after(const std::string& line, std::string_view label) {
+    const std::size_t at = line.find(label);
+    if (at == std::string::npos) return std::nullopt;
+    double value = 0;
+    const char* const begin = line.data() + at + label.size();
+    return std::from_chars(begin, line.data() + line.size(), value).ec == std::errc() ? std::optional(value)
+                                                                                      : std::nullopt;
+}
+
+} // namespace
+
+/// The folder goes last, after Blender has ended.
+class CyclesPeer::Process {
+public:
+    Process(const Scene& scene, const View& view, const ExportSettings& settings)
+        : notes_(export_scene(folder_.path, scene, view, settings)), blender_(command(folder_.path)) {}
+
+    const ExportNotes& notes() const { return notes_; }
+    fs::path picture() const { return folder_.path / "picture.exr"; }
+
+    void send(const std::string& line) {
+        if (!blender_.write_line(line)) fail();
+    }
+
+    /// Reads until the script says `word`; the last render time the log told on the way. Empty where stopped.
+    std::optional<double> wait_for(const std::string& word, const Control& control) {
+        double seconds = 0;
+        while (!control.stopped()) {
+            const Subprocess::Read read = blender_.read_line(std::chrono::milliseconds(100));
+            if (read.status == Subprocess::Status::kTimeout) continue;
+            if (read.status == Subprocess::Status::kEnd) { // perhaps by the signal that stops us
+                if (control.stopped()) break;
+                fail();
+            }
+            if (read.line == word) return seconds;
+            if (const auto time = number_after(read.line, "Render time (without synchronization): ")) seconds = *time;
+            last_.push_back(read.line);
+            if (last_.size() > 8) last_.pop_front();
+        }
+        return std::nullopt;
+    }
+
+private:
+    static std::vector<std::string> command(const fs::path& folder) {
+        const fs::path script = folder / "cycles.py";
+        write_file(script, kCyclesScript);
+        return {"blender", "-b",       "--factory-startup", "-noaudio", "--debug-cycles", "--python-exit-code",
+                "3",       "--python", script.string(),     "--",       folder.string()};
+    }
+
+    [[noreturn]] void fail() const {
+        std::string text = "Blender ended:";
+        for (const std::string& line : last_) text += " | " + line;
+        throw Error(text, 1);
+    }
+
+    TemporaryFolder folder_;
+    ExportNotes notes_;
+    Subprocess blender_;
+    std::deque<std::string> last_;
+};
+
+CyclesPeer::CyclesPeer(const Scene& scene, const View& view, const ExportSettings& settings)
+    : process_(std::make_unique<Process>(scene, view, settings)) {}
+
+CyclesPeer::~CyclesPeer() = default;
+
+const ExportNotes& CyclesPeer::notes() const { return process_->notes(); }
+
+Trial CyclesPeer::render(const Job& job, Control& control) {
+    if (!ready_ && !process_->wait_for("duet: ready", control)) return {};
+    ready_ = true;
+    const fs::path picture = process_->picture();
+    // Cycles' seeds are 31 bits.
+    process_->send(message(job.spp, ' ', job.seed % 0x7fffffff, ' ', job.adaptive ? 1 : 0, ' ', picture.string()));
+    const std::optional<double> seconds = process_->wait_for("duet: rendered", control);
+    if (!seconds) return {};
+    if (!(*seconds > 0)) throw Error("Blender's log tells no render time: another version than 3.x?", 1);
+    return {read_image(picture), *seconds, 0};
+}
+
+ImageRgb CyclesPeer::unbiased_picture(int spp, std::uint64_t seed, Control& control) {
+    DUET_CHECK_LE(2, spp);
+    const ImageRgb all = render({spp, seed, false}, control).picture;
+    const ImageRgb first = render({1, seed, false}, control).picture;
+    if (all.empty() || first.empty()) return {};
+    ImageRgb others(all.width(), all.height());
+    const double n = spp;
+    for (std::size_t i = 0; i < all.size(); ++i) others[i] = Rgb((Rgbd(all[i]) * n - Rgbd(first[i])) / (n - 1));
+    return others;
+}
+
+std::vector<Contender> cycles_contenders(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps) {
+    std::vector<Contender> contenders;
+    for (const bool adaptive : {false, true})
+        contenders.push_back({"cycles", adaptive ? "adaptive" : "fixed", "", spps,
+                              [peer, adaptive](int spp, std::uint64_t seed, Control& control) {
+                                  return peer->render({spp, seed, adaptive}, control);
+                              }});
+    return contenders;
+}
+
+} // namespace duet::compare

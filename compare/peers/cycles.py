@@ -1,0 +1,290 @@
+# Builds in Blender the scene that compare/peers/export_scene.cpp wrote, then renders it with Cycles as often as it is asked to.
+# Run by compare/peers/cycles.cpp: blender -b --factory-startup --debug-cycles --python cycles.py -- FOLDER
+# Blender's world is used as it is: y stays up, nothing is turned.
+import array
+import json
+import math
+import os
+import sys
+
+import bpy
+from mathutils import Matrix, Vector
+
+FOLDER = sys.argv[sys.argv.index("--") + 1]
+WHITE = (1.0, 1.0, 1.0, 1.0)
+
+
+def rgba(color):
+    return (color[0], color[1], color[2], 1.0)
+
+
+def read_array(typecode, part):
+    """Numbers of geometry.bin: part is [offset in bytes, count]."""
+    values = array.array(typecode)
+    with open(os.path.join(FOLDER, "geometry.bin"), "rb") as file:
+        file.seek(part[0])
+        values.fromfile(file, part[1])
+    return values
+
+
+class Nodes:
+    """A node tree, built bottom-up: add(...) returns an output socket."""
+
+    def __init__(self, owner):
+        owner.use_nodes = True
+        self.tree = owner.node_tree
+        self.tree.nodes.clear()
+
+    def add(self, kind, output=0, settings=None, **inputs):
+        node = self.tree.nodes.new(kind)
+        for name, value in (settings or {}).items():
+            setattr(node, name, value)
+        for name, value in inputs.items():
+            key = int(name[1:]) if name[0] == "_" and name[1:].isdigit() else name.replace("_", " ")
+            if isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, node.inputs[key])
+            else:
+                node.inputs[key].default_value = value
+        return node.outputs[output]
+
+    def math(self, operation, *values):
+        return self.add("ShaderNodeMath", 0, {"operation": operation}, **{f"_{i}": v for i, v in enumerate(values)})
+
+    def dot(self, a, b):
+        return self.add("ShaderNodeVectorMath", "Value", {"operation": "DOT_PRODUCT"}, _0=a, _1=b)
+
+    def mix(self, factor, a, b):
+        return self.add("ShaderNodeMixRGB", 0, {}, Fac=factor, Color1=a, Color2=b)
+
+    def multiply(self, a, b):
+        return self.add("ShaderNodeMixRGB", 0, {"blend_type": "MULTIPLY"}, Fac=1.0, Color1=a, Color2=b)
+
+
+def load_picture(name):
+    image = bpy.data.images.load(os.path.join(FOLDER, name))
+    image.colorspace_settings.name = "Non-Color"  # the file is linear, with our primaries: as it is
+    return image
+
+
+def texture(nodes, t):
+    uv = nodes.add("ShaderNodeUVMap", 0, {"uv_map": "uv"})
+    if t["type"] == "image":
+        scaled = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY"}, _0=uv, _1=(t["scale"][0], t["scale"][1], 1.0))
+        settings = {"image": load_picture(t["file"]), "interpolation": "Linear" if t["bilinear"] else "Closest"}
+        return nodes.add("ShaderNodeTexImage", "Color", settings, Vector=scaled)
+    place = nodes.add("ShaderNodeAttribute", "Vector", {"attribute_name": "p_object"}) if t["solid"] else uv
+    # Cycles' checker is over three dimensions, with its second colour where the sum of the cells' numbers is even.
+    shift = 1.0 / 4096 if t["solid"] else 0.0
+    moved = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY_ADD"}, _0=place, _1=(t["scale"],) * 3, _2=(shift,) * 3)
+    return nodes.add("ShaderNodeTexChecker", "Color", {}, Vector=moved, Scale=1.0, Color1=rgba(t["odd"]), Color2=rgba(t["even"]))
+
+
+def slot(nodes, s):
+    if s["texture"] is None:
+        return rgba(s["value"])
+    return nodes.multiply(texture(nodes, s["texture"]), rgba(s["value"]))
+
+
+def metal(nodes, m):
+    # Schlick's Fresnel term at the shading normal: exact for a mirror.
+    geometry = nodes.tree.nodes.new("ShaderNodeNewGeometry")
+    cosine = nodes.math("ABSOLUTE", nodes.dot(geometry.outputs["Incoming"], geometry.outputs["Normal"]))
+    grazing = nodes.math("POWER", nodes.math("SUBTRACT", 1.0, cosine), 5.0)
+    color = nodes.mix(grazing, slot(nodes, m["slot"]), WHITE)
+    smooth = m["roughness"] ** 2 < 1e-4
+    # Blender squares the roughness, too: alpha is its square.
+    return nodes.add("ShaderNodeBsdfGlossy", 0, {"distribution": "SHARP" if smooth else "GGX"}, Color=color,
+                     Roughness=0.0 if smooth else m["roughness"])
+
+
+def dielectric(nodes, m):
+    # Blender's own glass tints reflections, too.
+    through = nodes.add("ShaderNodeBsdfRefraction", 0, {"distribution": "SHARP"}, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=0.0)
+    back = nodes.add("ShaderNodeBsdfGlossy", 0, {"distribution": "SHARP"}, Color=WHITE, Roughness=0.0)
+    return nodes.add("ShaderNodeMixShader", 0, {}, Fac=nodes.add("ShaderNodeFresnel", 0, {}, IOR=m["ior"]), _1=through, _2=back)
+
+
+def emissive(nodes, m):
+    strength = 1.0
+    if not m["two_sided"]:
+        strength = nodes.math("SUBTRACT", 1.0, nodes.add("ShaderNodeNewGeometry", "Backfacing"))
+    light = nodes.add("ShaderNodeEmission", 0, {}, Color=rgba(m["radiance"]), Strength=strength)
+    if m["slot"]["texture"] is None and not any(m["slot"]["value"]):
+        return light
+    reflected = nodes.add("ShaderNodeBsdfDiffuse", 0, {}, Color=slot(nodes, m["slot"]), Roughness=0.0)
+    return nodes.add("ShaderNodeAddShader", 0, {}, _0=light, _1=reflected)
+
+
+def diffuse(nodes, m):
+    return nodes.add("ShaderNodeBsdfDiffuse", 0, {}, Color=slot(nodes, m["slot"]), Roughness=0.0)
+
+
+def make_material(m):
+    material = bpy.data.materials.new(m["name"])
+    nodes = Nodes(material)
+    surface = {"diffuse": diffuse, "metal": metal, "dielectric": dielectric, "emissive": emissive}[m["type"]](nodes, m)
+    output = nodes.tree.nodes.new("ShaderNodeOutputMaterial")
+    nodes.tree.links.new(surface, output.inputs["Surface"])
+    return material
+
+
+def make_mesh(name, part):
+    mesh = bpy.data.meshes.new(name)
+    positions, triangles = read_array("f", part["positions"]), read_array("i", part["triangles"])
+    count = len(triangles) // 3
+    mesh.vertices.add(len(positions) // 3)
+    mesh.vertices.foreach_set("co", positions)
+    mesh.loops.add(3 * count)
+    mesh.loops.foreach_set("vertex_index", triangles)
+    mesh.polygons.add(count)
+    mesh.polygons.foreach_set("loop_start", array.array("i", range(0, 3 * count, 3)))
+    mesh.polygons.foreach_set("loop_total", array.array("i", [3]) * count)
+    mesh.polygons.foreach_set("material_index", read_array("i", part["slots"]))
+    mesh.polygons.foreach_set("use_smooth", array.array("b", [1 if part["normals"] else 0]) * count)
+    if part["uvs"]:
+        mesh.uv_layers.new(name="uv").data.foreach_set("uv", read_array("f", part["uvs"]))
+    if part["p_object"]:
+        mesh.attributes.new("p_object", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", read_array("f", part["p_object"]))
+    mesh.update(calc_edges=True)
+    if part["normals"]:
+        normals = read_array("f", part["normals"])
+        mesh.use_auto_smooth = True
+        mesh.normals_split_custom_set([normals[i:i + 3] for i in range(0, len(normals), 3)])
+    if len(mesh.polygons) != count:
+        raise RuntimeError(f"{name}: Blender made {len(mesh.polygons)} of {count} triangles")
+    return mesh
+
+
+def make_objects(scene, materials):
+    meshes = [make_mesh(part["name"], part) for part in scene["meshes"]]
+    for o in scene["objects"]:
+        mesh = meshes[o["mesh"]]
+        while len(mesh.materials) < len(o["materials"]):
+            mesh.materials.append(None)
+        thing = bpy.data.objects.new(o["name"], mesh)
+        bpy.context.collection.objects.link(thing)
+        for i, index in enumerate(o["materials"]):
+            thing.material_slots[i].link = "OBJECT"
+            thing.material_slots[i].material = materials[index]
+        thing.matrix_world = Matrix(o["matrix"])
+        thing.cycles.shadow_terminator_offset = 0.0
+        thing.cycles.shadow_terminator_geometry_offset = 0.0
+
+
+def undo_spot_cosine(data, direction):
+    """Within its cone a spot of Cycles falls off with the cosine of the angle from its axis; ours does not."""
+    nodes = Nodes(data)
+    incoming = nodes.add("ShaderNodeNewGeometry", "Incoming")
+    cosine = nodes.math("ABSOLUTE", nodes.dot(incoming, direction))
+    light = nodes.add("ShaderNodeEmission", 0, {}, Color=WHITE, Strength=nodes.math("DIVIDE", 1.0, cosine))
+    nodes.tree.links.new(light, nodes.tree.nodes.new("ShaderNodeOutputLight").inputs["Surface"])
+
+
+def make_light(light, number):
+    data = bpy.data.lights.new(f"light {number}", {"point": "POINT", "spot": "SPOT", "sun": "SUN"}[light["type"]])
+    strength = max(light["color"])
+    data.color = [c / strength for c in light["color"]]
+    data.energy = strength if light["type"] == "sun" else 4 * math.pi * strength
+    if light["type"] == "sun":
+        data.angle = 0.0
+    else:
+        data.shadow_soft_size = 0.0
+    if light["type"] == "spot":
+        data.spot_size = 2 * math.acos(light["cos_outer"])
+        data.spot_blend = (light["cos_inner"] - light["cos_outer"]) / (1 - light["cos_outer"])
+        undo_spot_cosine(data, light["direction"])
+    thing = bpy.data.objects.new(data.name, data)
+    bpy.context.collection.objects.link(thing)
+    turn = Vector(light.get("direction", (0, 0, -1))).to_track_quat("-Z", "Y").to_matrix().to_4x4()
+    thing.matrix_world = Matrix.Translation(light.get("position", (0, 0, 0))) @ turn
+    data.cycles.max_bounces = 1024
+
+
+def make_environment(e):
+    world = bpy.data.worlds.new("environment")
+    bpy.context.scene.world = world
+    nodes = Nodes(world)
+    if e["type"] == "constant":
+        color = rgba(e["radiance"])
+    else:
+        direction = nodes.add("ShaderNodeTexCoord", "Generated")
+        if e["type"] == "sky":
+            height = nodes.math("MULTIPLY_ADD", nodes.dot(direction, (0.0, 1.0, 0.0)), 0.5, 0.5)
+            color = nodes.mix(height, rgba(e["down"]), rgba(e["up"]))
+        else:
+            turned = nodes.add("ShaderNodeCombineXYZ", 0, {}, **{axis: nodes.dot(direction, row) for axis, row in zip("XYZ", e["rows"])})
+            color = nodes.add("ShaderNodeTexEnvironment", 0, {"image": load_picture(e["file"]), "interpolation": "Linear"}, Vector=turned)
+    background = nodes.add("ShaderNodeBackground", 0, {}, Color=color, Strength=e.get("scale", 1.0))
+    output = nodes.tree.nodes.new("ShaderNodeOutputWorld")
+    nodes.tree.links.new(background, output.inputs["Surface"])
+
+
+def make_camera(c):
+    data = bpy.data.cameras.new("camera")
+    data.sensor_fit = "VERTICAL"
+    data.clip_start, data.clip_end = max(c["near"], 1e-6), 1e9
+    if c["orthographic"]:
+        data.type, data.ortho_scale = "ORTHO", c["height"]
+    else:
+        data.lens_unit = "FOV"
+        data.angle = math.radians(c["fov_degrees"])
+    if c["aperture_radius"] > 0:
+        data.dof.use_dof = True
+        data.dof.focus_distance = c["focus_distance"]
+        data.dof.aperture_fstop = 1e-3 * data.lens / (2 * c["aperture_radius"])
+    thing = bpy.data.objects.new("camera", data)
+    bpy.context.collection.objects.link(thing)
+    thing.matrix_world = Matrix(c["matrix"])
+    bpy.context.scene.camera = thing
+
+
+def set_up_render(settings):
+    scene = bpy.context.scene
+    render, cycles = scene.render, scene.cycles
+    render.engine = "CYCLES"
+    render.resolution_x, render.resolution_y, render.resolution_percentage = settings["width"], settings["height"], 100
+    render.threads_mode, render.threads = "FIXED", settings["threads"]
+    render.use_persistent_data = True  # the hierarchy is built once, as ours is
+    render.use_compositing = render.use_sequencer = render.use_motion_blur = False
+    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+    render.image_settings.color_mode = "RGB"
+    render.dither_intensity = 0.0
+    cycles.device = "CPU"
+    cycles.pixel_filter_type = "BOX"
+    # As efficient as the default, but scrambled by pixel: pixels are independent, which the bias check builds on.
+    cycles.sampling_pattern = "SOBOL"
+    bounces = settings["depth"] - 1  # Cycles counts the scatterings after the first
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0.0
+    cycles.blur_glossy = 0.0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.use_denoising = cycles.use_fast_gi = cycles.use_auto_tile = False
+
+
+def serve():
+    scene = bpy.context.scene
+    print("duet: ready", flush=True)
+    for line in sys.stdin:
+        spp, seed, adaptive, path = line.rstrip("\n").split(" ", 3)
+        scene.cycles.samples, scene.cycles.seed = int(spp), int(seed)
+        scene.cycles.use_adaptive_sampling = adaptive == "1"
+        scene.render.filepath = path
+        bpy.ops.render.render(write_still=True)
+        print("duet: rendered", flush=True)
+
+
+def main():
+    with open(os.path.join(FOLDER, "scene.json")) as file:
+        description = json.load(file)
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    make_objects(description, [make_material(m) for m in description["materials"]])
+    for number, light in enumerate(description["lights"]):
+        make_light(light, number)
+    make_environment(description["environment"])
+    make_camera(description["camera"])
+    set_up_render(description["render"])
+    serve()
+
+
+main()

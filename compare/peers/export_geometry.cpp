@@ -1,0 +1,107 @@
+#include "compare/peers/export_geometry.h"
+
+#include "common/geometry/sphere.h"
+
+#include <cmath>
+
+namespace duet::compare {
+
+namespace {
+
+/// Adds triangles given in an object's space.
+class SoupBuilder {
+public:
+    explicit SoupBuilder(const Mat4& to_world)
+        : to_world_(to_world), inverse_(inverse_affine(to_world_)), mirrors_(determinant3(to_world_) < 0) {}
+
+    struct Corner {
+        std::int32_t vertex = 0;
+        Vec3 p, n;
+        Vec2 uv;
+    };
+
+    std::int32_t add_vertex(Vec3 p) {
+        soup_.positions.push_back(Vec3(transform_point(to_world_, Vec3d(p))));
+        return static_cast<std::int32_t>(soup_.positions.size() - 1);
+    }
+    void add_triangle(Corner a, Corner b, Corner c, std::uint16_t slot, bool smooth) {
+        if (mirrors_) std::swap(b, c); // the front is the image of the front
+        for (const Corner& corner : {a, b, c}) {
+            soup_.triangles.push_back(corner.vertex);
+            soup_.uvs.push_back(corner.uv);
+            soup_.object_positions.push_back(corner.p);
+            if (smooth) soup_.normals.push_back(Vec3(normalize(transform_normal(inverse_, Vec3d(corner.n)))));
+        }
+        soup_.slots.push_back(slot);
+    }
+    TriangleSoup finish() { return std::move(soup_); }
+
+private:
+    Mat4d to_world_, inverse_;
+    bool mirrors_;
+    TriangleSoup soup_;
+};
+
+TriangleSoup mesh_triangles(const Mesh& mesh, const Mat4& to_world) {
+    SoupBuilder builder(to_world);
+    for (const Vec3 p : mesh.positions) builder.add_vertex(p);
+    constexpr Vec2 kOwn[] = {{0, 0}, {1, 0}, {0, 1}}; // what a mesh without texture coordinates has
+    const bool smooth = !mesh.normals.empty();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        std::array<SoupBuilder::Corner, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = mesh.triangles[t][k];
+            corners[k] = {static_cast<std::int32_t>(v), mesh.positions[v], smooth ? mesh.normals[v] : Vec3(),
+                          mesh.uvs.empty() ? kOwn[k] : mesh.uvs[v]};
+        }
+        const std::uint16_t slot = mesh.material_slots.empty() ? std::uint16_t{0} : mesh.material_slots[t];
+        builder.add_triangle(corners[0], corners[1], corners[2], slot, smooth);
+    }
+    return builder.finish();
+}
+
+TriangleSoup quad_triangles(const QuadList& list, const Mat4& to_world) {
+    SoupBuilder builder(to_world);
+    constexpr Vec2 kUv[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (const Quad& quad : list.quads) {
+        std::array<SoupBuilder::Corner, 4> c;
+        const std::array<Vec3, 4> p = corners(quad);
+        for (std::size_t k = 0; k < 4; ++k) c[k] = {builder.add_vertex(p[k]), p[k], Vec3(), kUv[k]};
+        builder.add_triangle(c[0], c[1], c[2], 0, false);
+        builder.add_triangle(c[0], c[2], c[3], 0, false);
+    }
+    return builder.finish();
+}
+
+} // namespace
+
+TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world) {
+    DUET_CHECK(!std::holds_alternative<Sphere>(shape));
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) return mesh_triangles(*mesh, to_world);
+    return quad_triangles(std::get<QuadList>(shape), to_world);
+}
+
+TriangleSoup sphere_triangles(int rings) {
+    SoupBuilder builder{Mat4()};
+    const int sectors = 2 * rings;
+    std::vector<SoupBuilder::Corner>
+        grid; // (rings + 1) × (sectors + 1): the seam and the poles have corners of their own
+    for (int j = 0; j <= rings; ++j)
+        for (int i = 0; i <= sectors; ++i) {
+            const Vec2 uv(static_cast<float>(i) / static_cast<float>(sectors),
+                          static_cast<float>(j) / static_cast<float>(rings));
+            const Vec3 p = sphere_direction({i == sectors ? 0.0f : uv.x, uv.y});
+            grid.push_back({builder.add_vertex(p), p, p, uv});
+        }
+    const auto corner = [&](int i, int j) { return grid[static_cast<std::size_t>(j * (sectors + 1) + i)]; };
+    for (int j = 0; j < rings; ++j)
+        for (int i = 0; i < sectors; ++i) {
+            // At a pole one edge of the cell is a point, and one triangle is none.
+            // Seen from outside u grows to the left.
+            if (j > 0) builder.add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i + 1, j), 0, true);
+            if (j + 1 < rings) builder.add_triangle(corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), 0, true);
+        }
+    return builder.finish();
+}
+
+} // namespace duet::compare

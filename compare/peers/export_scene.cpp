@@ -1,0 +1,249 @@
+#include "compare/peers/export_scene.h"
+
+#include "common/image/image_file.h"
+#include "common/program/statistics.h"
+#include "common/system/file.h"
+#include "compare/peers/export_geometry.h"
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+namespace duet::compare {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kSphereRings = 128;
+
+json rgb_json(Rgb c) { return {c.r, c.g, c.b}; }
+json vec_json(Vec3d v) { return {v.x, v.y, v.z}; }
+json matrix_json(const Mat4d& m) {
+    json rows = json::array();
+    for (std::size_t r = 0; r < 4; ++r) rows.push_back(m[r]);
+    return rows;
+}
+
+class SceneExport {
+public:
+    SceneExport(const fs::path& folder, const Scene& scene, const View& view, const ExportSettings& settings)
+        : folder_(folder), scene_(scene), view_(view), settings_(settings) {}
+
+    ExportNotes run() {
+        if (settings_.depth < 1) refuse("paths of depth 0: the peer scatters at least once");
+        const fs::path geometry = folder_ / "geometry.bin";
+        geometry_.open(geometry, std::ios::binary);
+        json file = {
+            {"materials", materials()}, {"lights", lights()}, {"environment", environment()}, {"camera", camera()}};
+        add_objects(file);
+        file["render"] = {{"width", view_.width},
+                          {"height", view_.height},
+                          {"depth", settings_.depth},
+                          {"threads", settings_.threads}};
+        geometry_.close();
+        if (!geometry_) throw Error(message(geometry.string(), ": cannot be written"), 1);
+        write_json(folder_ / "scene.json", file);
+        return {notes_.begin(), notes_.end()};
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& what) const {
+        throw Error(message(scene_.path.string(), ": cannot be exported: ", what));
+    }
+
+    // Materials ------------------------------------------------------------------------------------------------------
+
+    json texture(std::int32_t index) {
+        const Texture& t = scene_.textures.textures[static_cast<std::size_t>(index)];
+        if (std::holds_alternative<NoiseTexture>(t)) refuse("textures of noise have no counterpart");
+        if (const auto* checker = std::get_if<CheckerTexture>(&t))
+            return {{"type", "checker"},
+                    {"even", rgb_json(checker->even)},
+                    {"odd", rgb_json(checker->odd)},
+                    {"scale", checker->scale},
+                    {"solid", checker->solid}};
+        const auto& image = std::get<ImageTexture>(t);
+        const std::string name = message("texture-", image.image, ".exr");
+        write_image(folder_ / name, scene_.textures.images[image.image]);
+        return {
+            {"type", "image"}, {"file", name}, {"scale", {image.scale.x, image.scale.y}}, {"bilinear", image.bilinear}};
+    }
+
+    json material(const Material& m) {
+        const RgbSlot& slot = texture_slot(m);
+        json result = {
+            {"slot",
+             {{"value", rgb_json(slot.value)}, {"texture", slot.texture < 0 ? json(nullptr) : texture(slot.texture)}}}};
+        if (const auto* metal = std::get_if<Metal>(&m)) {
+            result["type"] = "metal";
+            result["roughness"] = metal->roughness;
+            if (!metal->at(scene_.textures, SurfacePoint{}).smooth())
+                notes_.insert("rough metal's Fresnel term is taken at the shading normal, not at the microfacet's");
+        } else if (const auto* glass = std::get_if<Dielectric>(&m)) {
+            result["type"] = "dielectric";
+            result["ior"] = glass->ior;
+        } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
+            result["type"] = "emissive";
+            result["radiance"] = rgb_json(emissive->radiance);
+            result["two_sided"] = emissive->two_sided;
+        } else {
+            result["type"] = "diffuse";
+        }
+        return result;
+    }
+
+    /// Those that no object shows are of no account: they may be what cannot be exported.
+    json materials() {
+        std::set<std::uint32_t> used;
+        for (const Object& o : scene_.objects) used.insert(o.materials.begin(), o.materials.end());
+        json list = json::array();
+        for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
+            json m = used.contains(i) ? material(scene_.materials[i]) : material(Diffuse{});
+            m["name"] = scene_.material_names[i];
+            list.push_back(std::move(m));
+        }
+        return list;
+    }
+
+    // Light ----------------------------------------------------------------------------------------------------------
+
+    json lights() const {
+        json list = json::array();
+        for (std::size_t i = 0; i < scene_.first_surface_light; ++i) {
+            const Light& light = scene_.lights[i];
+            if (const auto* point = std::get_if<PointLight>(&light)) {
+                if (!is_black(point->intensity))
+                    list.push_back({{"type", "point"},
+                                    {"position", vec_json(Vec3d(point->position))},
+                                    {"color", rgb_json(point->intensity)}});
+            } else if (const auto* sun = std::get_if<SunLight>(&light)) {
+                if (!is_black(sun->irradiance))
+                    list.push_back({{"type", "sun"},
+                                    {"direction", vec_json(Vec3d(sun->direction))},
+                                    {"color", rgb_json(sun->irradiance)}});
+            } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
+                if (spot->cos_outer < 0) refuse("a spot light wider than a half-space");
+                if (!is_black(spot->intensity))
+                    list.push_back({{"type", "spot"},
+                                    {"position", vec_json(Vec3d(spot->position))},
+                                    {"direction", vec_json(Vec3d(spot->direction))},
+                                    {"color", rgb_json(spot->intensity)},
+                                    {"cos_inner", spot->cos_inner},
+                                    {"cos_outer", spot->cos_outer}});
+            }
+        }
+        return list;
+    }
+
+    json environment() const {
+        if (const auto* constant = std::get_if<ConstantEnvironment>(&scene_.environment))
+            return {{"type", "constant"}, {"radiance", rgb_json(constant->radiance)}};
+        if (const auto* sky = std::get_if<SkyEnvironment>(&scene_.environment))
+            return {{"type", "sky"}, {"down", rgb_json(sky->down)}, {"up", rgb_json(sky->up)}};
+        // Cycles: u = ½ − atan2(y, x)/2π of the direction, its z up. Ours: u = ½ + (atan2(x, −z) + rotation)/2π. So
+        // the direction is turned by these rows first.
+        const auto& image = std::get<ImageEnvironment>(scene_.environment);
+        const double s = std::sin(static_cast<double>(image.rotation)),
+                     c = std::cos(static_cast<double>(image.rotation));
+        write_image(folder_ / "environment.exr", image.image);
+        return {{"type", "image"},
+                {"file", "environment.exr"},
+                {"scale", image.scale},
+                {"rows", {{-s, 0, -c}, {-c, 0, s}, {0, 1, 0}}}};
+    }
+
+    // Camera ---------------------------------------------------------------------------------------------------------
+
+    json camera() const {
+        const Camera& c = view_.camera;
+        const Pinhole view = CameraModel(view_).through();
+        const bool orthographic = c.projection == Camera::Projection::kOrthographic;
+        const Vec3d dx = orthographic ? view.origin_dx : view.direction_dx;
+        const Vec3d right = normalize(dx), back = view.forward * -1.0, up = cross(back, right);
+        const Vec3d eye(Vec3(c.eye)); // as CameraModel rounds it
+        Mat4d m;
+        for (std::size_t r = 0; r < 3; ++r) m[r] = {right[r], up[r], back[r], eye[r]};
+        const double focus = c.focus_distance > 0 ? c.focus_distance : length(c.look_at - c.eye);
+        return {{"matrix", matrix_json(m)},     {"near", view.near},
+                {"orthographic", orthographic}, {"height", c.height},
+                {"fov_degrees", c.fov_degrees}, {"aperture_radius", orthographic ? 0 : c.aperture_radius},
+                {"focus_distance", focus}};
+    }
+
+    // Objects --------------------------------------------------------------------------------------------------------
+
+    template <typename T> json stored(const std::vector<T>& values) {
+        constexpr std::size_t kNumber = 4; // floats and 32-bit integers, tightly packed
+        static_assert(sizeof(T) % kNumber == 0);
+        const auto offset = static_cast<std::uint64_t>(geometry_.tellp());
+        const std::size_t bytes = values.size() * sizeof(T);
+        geometry_.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(bytes));
+        return {offset, bytes / kNumber};
+    }
+
+    json mesh_json(const std::string& name, const TriangleSoup& soup) {
+        return {{"name", name},
+                {"positions", stored(soup.positions)},
+                {"triangles", stored(soup.triangles)},
+                {"slots", stored(soup.slots)},
+                {"normals", soup.normals.empty() ? json(nullptr) : stored(soup.normals)},
+                {"uvs", stored(soup.uvs)},
+                {"p_object", stored(soup.object_positions)}};
+    }
+
+    Mat4 placed(const Object& object) const {
+        if (!object.moving) return object.to_world;
+        if (view_.camera.shutter_open != view_.camera.shutter_close)
+            refuse(message("the object ", object.name, " moves while the shutter is open"));
+        return object_transform(object, static_cast<float>(view_.camera.shutter_open)).to_world;
+    }
+
+    void add_objects(json& file) {
+        json meshes = json::array(), objects = json::array();
+        std::optional<std::size_t> sphere_mesh; // one for all
+        for (const Object& o : scene_.objects) {
+            json object = {{"name", o.name}, {"materials", o.materials}};
+            Mat4d matrix;
+            if (const auto* sphere = std::get_if<Sphere>(&scene_.shapes[o.shape])) {
+                notes_.insert(message("spheres are meshes of ", 4 * kSphereRings * (kSphereRings - 1), " triangles"));
+                if (!sphere_mesh) {
+                    sphere_mesh = meshes.size();
+                    meshes.push_back(mesh_json("sphere", sphere_triangles(kSphereRings)));
+                }
+                const double r = static_cast<double>(sphere->radius);
+                matrix = Mat4d(placed(o)) * translation(Vec3d(sphere->center)) * scaling(Vec3d(r, r, r));
+                object["mesh"] = *sphere_mesh;
+            } else {
+                object["mesh"] = meshes.size();
+                const TriangleSoup soup = world_triangles(scene_.shapes[o.shape], placed(o));
+                if (!soup.normals.empty())
+                    notes_.insert("smooth normals: the peer bends directions at their horizon in its own way");
+                meshes.push_back(mesh_json(o.name, soup));
+            }
+            object["matrix"] = matrix_json(matrix);
+            objects.push_back(std::move(object));
+        }
+        file["meshes"] = std::move(meshes);
+        file["objects"] = std::move(objects);
+    }
+
+    const fs::path& folder_;
+    const Scene& scene_;
+    const View& view_;
+    const ExportSettings& settings_;
+    std::ofstream geometry_;
+    std::set<std::string> notes_;
+};
+
+} // namespace
+
+ExportNotes export_scene(const fs::path& folder, const Scene& scene, const View& view, const ExportSettings& settings) {
+    return SceneExport(folder, scene, view, settings).run();
+}
+
+} // namespace duet::compare

@@ -1,0 +1,107 @@
+#include "compare/peers/subprocess.h"
+
+#include "common/system/error.h"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace duet::compare {
+
+namespace {
+
+/// What the new process does first: one end of each pipe becomes its standard streams.
+class FileActions {
+public:
+    FileActions(int in, int out) {
+        ::posix_spawn_file_actions_init(&actions_);
+        ::posix_spawn_file_actions_adddup2(&actions_, in, STDIN_FILENO);
+        ::posix_spawn_file_actions_adddup2(&actions_, out, STDOUT_FILENO);
+        ::posix_spawn_file_actions_adddup2(&actions_, out, STDERR_FILENO);
+    }
+    ~FileActions() { ::posix_spawn_file_actions_destroy(&actions_); }
+    FileActions(const FileActions&) = delete;
+    FileActions& operator=(const FileActions&) = delete;
+    const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+private:
+    posix_spawn_file_actions_t actions_{};
+};
+
+} // namespace
+
+Subprocess::Subprocess(const std::vector<std::string>& command) {
+    // A socket instead of a pipe towards it: writing to one that nobody reads can be kept from raising SIGPIPE.
+    std::array<int, 2> in{}, out{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in.data()) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0)
+        throw Error(message(command.front(), ": cannot be started: ", std::strerror(errno)), 1);
+    std::vector<char*> arguments;
+    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
+    const FileActions actions(in[1], out[1]);
+    const int error = ::posix_spawnp(&pid_, arguments[0], actions.get(), nullptr, arguments.data(), environ);
+    ::close(in[1]);
+    ::close(out[1]);
+    to_ = in[0];
+    from_ = out[0];
+    if (error == 0) return;
+    ::close(to_);
+    ::close(from_);
+    throw Error(message(command.front(), ": cannot be started (is it installed?): ", std::strerror(error)));
+}
+
+Subprocess::~Subprocess() {
+    ::close(to_);
+    ::close(from_);
+    ::kill(pid_, SIGTERM);
+    for (int i = 0; i < 200; ++i) {
+        if (::waitpid(pid_, nullptr, WNOHANG) != 0) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+}
+
+bool Subprocess::write_line(const std::string& line) {
+    const std::string text = line + '\n';
+    for (std::size_t at = 0; at < text.size();) {
+        const ssize_t written = ::send(to_, text.data() + at, text.size() - at, MSG_NOSIGNAL);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        at += static_cast<std::size_t>(written);
+    }
+    return true;
+}
+
+Subprocess::Read Subprocess::read_line(std::chrono::milliseconds wait) {
+    const auto deadline = std::chrono::steady_clock::now() + wait;
+    for (;;) {
+        const std::size_t end = buffer_.find('\n');
+        if (end != std::string::npos) {
+            Read read{Status::kLine, buffer_.substr(0, end)};
+            buffer_.erase(0, end + 1);
+            return read;
+        }
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+        pollfd watched{from_, POLLIN, 0};
+        const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+        if (ready == 0 || (ready < 0 && errno == EINTR)) return {Status::kTimeout};
+        std::array<char, 4096> bytes{};
+        const ssize_t count = ::read(from_, bytes.data(), bytes.size());
+        if (count <= 0) return {Status::kEnd};
+        buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+}
+
+} // namespace duet::compare

@@ -1,0 +1,62 @@
+#include "compare/report/html.h"
+
+#include "common/system/error.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+using nlohmann::json;
+
+/// The template with each {{mark}} replaced by its value, in one pass: what a value holds is no mark.
+std::string fill_in(std::string_view page, const std::map<std::string_view, std::string_view>& values) {
+    std::string text;
+    for (std::size_t at = 0;;) {
+        const std::size_t open = page.find("{{", at);
+        text += page.substr(at, open - at);
+        if (open == std::string_view::npos) return text;
+        const std::size_t close = page.find("}}", open);
+        DUET_CHECK(close != std::string_view::npos);
+        text += values.at(page.substr(open + 2, close - open - 2));
+        at = close + 2;
+    }
+}
+
+std::string escape_html(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) switch (c) {
+        case '&':
+            escaped += "&amp;";
+            break;
+        case '<':
+            escaped += "&lt;";
+            break;
+        case '>':
+            escaped += "&gt;";
+            break;
+        default:
+            escaped += c;
+        }
+    return escaped;
+}
+
+/// JSON that can stand in a script element: no text in it can end the element.
+std::string script_json(const json& value) {
+    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
+}
+
+} // namespace
+
+std::string make_page(const PageSource& source, const std::string& title, const json& data) {
+    const std::string escaped_title = escape_html(title), embedded = script_json(data);
+    return fill_in(source.html,
+                   {{"title", escaped_title}, {"css", source.css}, {"data", embedded}, {"js", source.js}});
+}
+
+} // namespace duet::compare

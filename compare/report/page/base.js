@@ -1,0 +1,98 @@
+// ---- base.js: what all pages of the compare tool share: their data, elements, the theme, numbers as text.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const element = id => document.getElementById(id);
+const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
+
+// An element with attributes and children (strings become text: nothing from the data is ever read as HTML).
+function make(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children);
+  return node;
+}
+function fill(id, ...children) { element(id).replaceChildren(...children); }
+
+// ---- the theme: the system's, or the one chosen by the button #theme; the page's address remembers it (#theme=dark)
+
+const themes = { auto: "light", light: "dark", dark: "auto" }; // each with the one after it
+const themeNow = () => document.documentElement.dataset.theme || "auto";
+
+function showTheme(theme) {
+  if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
+  else delete document.documentElement.dataset.theme;
+  element("theme").textContent = `Theme: ${themeNow()}`;
+}
+
+// Replaces the part of the address behind the # by these [key, value] pairs, and the theme where one is chosen.
+function setAddress(pairs) {
+  const parts = [...pairs, ...(themeNow() === "auto" ? [] : [["theme", themeNow()]])].map(([key, value]) => `${key}=${encodeURIComponent(value)}`);
+  history.replaceState(null, "", parts.length ? "#" + parts.join("&") : location.pathname + location.search);
+}
+const addressPairs = () => [...new URLSearchParams(location.hash.slice(1))].filter(([key]) => key !== "theme");
+
+// `themeChanged` is called after the button has changed the theme: for pictures that are drawn in its colours.
+function startTheme(themeChanged = () => {}) {
+  const read = () => { showTheme(new URLSearchParams(location.hash.slice(1)).get("theme")); themeChanged(); };
+  read();
+  window.addEventListener("hashchange", read);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => themeChanged());
+  element("theme").addEventListener("click", () => {
+    showTheme(themes[themeNow()]);
+    setAddress(addressPairs());
+    themeChanged();
+  });
+}
+
+// The value of one of base.css's colours in the present theme: themeColor("raster").
+const themeColor = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// ---- numbers as text, with a real minus sign
+
+const minus = text => String(text).replaceAll("-", "−");
+
+// A radiance in four significant digits or so.
+function radianceText(v) {
+  if (Number.isNaN(v)) return "NaN";
+  if (!Number.isFinite(v)) return v > 0 ? "∞" : "−∞";
+  const size = Math.abs(v);
+  return minus(size === 0 ? "0" : size >= 1000 ? v.toFixed(0) : size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2)
+    : size >= 1 ? v.toFixed(3) : size >= 0.00005 ? v.toFixed(4) : v.toExponential(0));
+}
+const signedText = v => (v > 0 ? "+" : "") + radianceText(v);
+
+const superscripts = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const powerText = exponent => `10${[...String(exponent)].map(d => superscripts[d]).join("")}`;
+
+// A figure of a metric: three or four digits, small and large ones with a power of ten.
+function figure(v) {
+  if (v === null || v === undefined) return "none";
+  const size = Math.abs(v);
+  if (size !== 0 && (size < 0.001 || size >= 1e6)) {
+    const [factor, exponent] = v.toExponential(2).split("e");
+    return (factor === "1.00" ? "" : `${minus(factor)}\u00a0·\u00a0`) + powerText(Number(exponent));
+  }
+  return minus(size === 0 ? "0" : size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2) : size >= 1 ? v.toFixed(3) : size >= 0.01 ? v.toFixed(4) : v.toPrecision(3));
+}
+
+// A round number as it is: 0.5, −1, 10⁻⁵.
+const roundText = v => v !== 0 && Math.abs(v) < 0.001 ? figure(v) : minus(String(Number(v.toPrecision(3))));
+
+// A share of 1 in per cent, never rounded to all or nothing.
+function percentText(share) {
+  if (share === 0 || share === 1) return `${share * 100} %`;
+  if (share > 0 && share < 0.0001) return "< 0.01 %";
+  return minus(share > 0.999 && share < 1 ? `${(Math.floor(share * 1e5) / 1e3).toFixed(3)} %` : `${(share * 100).toFixed(2)} %`);
+}
+
+function secondsText(s) {
+  if (s < 0.0005) return `${(s * 1e6).toFixed(0)} µs`;
+  if (s < 0.01) return `${(s * 1e3).toFixed(1)} ms`;
+  if (s < 0.9995) return `${(s * 1e3).toFixed(0)} ms`;
+  if (s < 59.95) return `${s.toFixed(s < 10 ? 2 : 1)} s`;
+  const whole = Math.round(s);
+  return whole < 3600 ? `${Math.floor(whole / 60)} min ${String(whole % 60).padStart(2, "0")} s`
+    : `${Math.floor(whole / 3600)} h ${String(Math.floor(whole / 60) % 60).padStart(2, "0")} min`;
+}
+const ratioText = r => r >= 10 ? r.toFixed(0) : r.toFixed(1);
+const countText = n => Number(n).toLocaleString("en").replaceAll(",", "\u2009");

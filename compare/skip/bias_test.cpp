@@ -1,0 +1,108 @@
+#include "compare/skip/bias_test.h"
+
+#include "compare/metrics/normal.h"
+
+#include <algorithm>
+#include <limits>
+
+// The R differences of a channel have the mean m, the standard deviation s and the skewness γ. Student's T = √R m / s
+// is skewed where they are, and they are: Russian roulette takes a little from most pictures and gives much to a few.
+// Hall's transformation takes the skewness out («On the Removal of Skewness by Transformation», 1992, §2):
+//
+//     g = T + γ T² / (3 √R) + γ² T³ / (27 R) + γ / (6 √R)
+//
+// is normal to the next order in 1/√R, and grows with T. That s is estimated makes its tails heavier; of
+// S = g / √(1 + g²/R), which for γ = 0 is the sum of differences over the root of the sum of their squares, they are
+// lighter than the normal's beyond √3 (S²/R has the Beta distribution of ½ and (R − 1)/2): false alarms are rarer than
+// kFalseAlarm.
+//
+// A bias is found where |S| exceeds z, the quantile of kFalseAlarm for three channels: where T is beyond some T₀,
+// for the sign which the skewness hides more. A bias μ moves T by √R μ / s, from which it differs by more than the
+// quantile of kMiss with the probability kMiss. So μ = (T₀ + z(kMiss)) s / √R is found with 1 − kMiss. s is only
+// estimated; it is taken at the upper end of its band, its relative error being 1/√(2(R − 1)).
+
+namespace duet::compare {
+
+namespace {
+
+constexpr double kChannels = 3;
+
+double threshold() { return upper_quantile(sidak_level(kFalseAlarm, kChannels) / 2); } // 2.93
+
+/// S of T.
+double without_skewness(double t, double skewness, double count) {
+    const double a = skewness / std::sqrt(count);
+    const double g = t + a * t * t / 3 + a * a * t * t * t / 27 + a / 6;
+    return g / std::sqrt(1 + g * g / count);
+}
+
+/// T₀; infinite where no T is enough.
+double least_found(double skewness, double count) {
+    double low = 0, high = 1e3;
+    for (int i = 0; i < 60; ++i) {
+        const double t = (low + high) / 2;
+        const bool found =
+            std::min(without_skewness(t, skewness, count), -without_skewness(-t, skewness, count)) > threshold();
+        (found ? high : low) = t;
+    }
+    return high < 1e3 ? high : std::numeric_limits<double>::infinity();
+}
+
+} // namespace
+
+void BiasTest::add(Rgbd with, Rgbd without) {
+    differences_.push_back(with - without);
+    without_ += without;
+}
+
+BiasTest::Moments BiasTest::moments(std::size_t c) const {
+    const double count = pairs();
+    double sum = 0, squares = 0, cubes = 0;
+    for (const Rgbd& d : differences_) sum += d[c];
+    for (const Rgbd& d : differences_) {
+        const double deviation = d[c] - sum / count;
+        squares += sqr(deviation);
+        cubes += deviation * sqr(deviation);
+    }
+    const double deviation = std::sqrt(squares / (count - 1));
+    return {sum / count, deviation, deviation > 0 ? cubes / count / (deviation * sqr(deviation)) : 0};
+}
+
+Rgbd BiasTest::bias() const {
+    Rgbd sum;
+    for (const Rgbd& d : differences_) sum += d;
+    for (std::size_t c = 0; c < 3; ++c) sum[c] = without_[c] > 0 ? sum[c] / without_[c] : 0;
+    return sum;
+}
+
+double BiasTest::detectable() const {
+    if (pairs() < kFewestPairs) return std::numeric_limits<double>::infinity();
+    const double count = pairs(), upper = 1 + upper_quantile(kMiss) / std::sqrt(2 * (count - 1));
+    double largest = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Moments m = moments(c);
+        if (!(without_[c] > 0) || m.deviation == 0) continue; // what there is of a bias has no noise to hide in
+        const double t = least_found(m.skewness, count) + upper_quantile(kMiss);
+        largest = std::max(largest, t * m.deviation * upper / std::sqrt(count) / (without_[c] / count));
+    }
+    return largest;
+}
+
+double BiasTest::p() const {
+    double smallest = 1;
+    for (std::size_t c = 0; c < 3 && pairs() > 1; ++c) {
+        const Moments m = moments(c);
+        if (m.mean == 0) continue;
+        const double count = pairs(), t = std::sqrt(count) * m.mean / m.deviation;
+        const double s = m.deviation > 0 ? without_skewness(t, m.skewness, count) : std::sqrt(count);
+        smallest = std::min(smallest, two_sided_p(s));
+    }
+    return sidak(smallest, kChannels);
+}
+
+double BiasTest::pairs_needed(double bias) const {
+    const double now = detectable();
+    return std::isfinite(now) ? std::max<double>(kFewestPairs, pairs() * sqr(now / bias)) : kFewestPairs;
+}
+
+} // namespace duet::compare

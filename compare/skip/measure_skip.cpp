@@ -1,0 +1,103 @@
+#include "compare/skip/measure_skip.h"
+
+#include "common/system/stopwatch.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace duet::compare {
+
+namespace {
+
+std::int64_t pixels_that_differ(const ImageRgb& a, const ImageRgb& b) {
+    DUET_CHECK_EQ(a.size(), b.size());
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(Rgb)) != 0;
+    return count;
+}
+
+Rgbd mean_color(const ImageRgb& image) {
+    Rgbd sum;
+    for (const Rgb& pixel : image) sum += Rgbd(pixel);
+    return sum / static_cast<double>(image.size());
+}
+
+SkipMeasurement::Seconds summary(std::vector<double> seconds) {
+    std::sort(seconds.begin(), seconds.end());
+    const std::size_t n = seconds.size();
+    return {(seconds[(n - 1) / 2] + seconds[n / 2]) / 2, seconds.front()};
+}
+
+std::int64_t rays(const Rendering& rendering) {
+    return rendering.statistics.indirect_rays + rendering.statistics.shadow_rays;
+}
+
+std::string reason_of(const SkipCase& skip, const Rendering& rendering) {
+    for (const Skipped& s : rendering.statistics.skipped)
+        if (s.what == skip.statistic) return s.count < 0 ? s.why : message(s.count, ": ", s.why);
+    return skip.statistic.empty() ? "" : "this scene has none to leave out";
+}
+
+/// The order changes from pair to pair, so neither way always comes first to a warm cache.
+void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& view, const MeasureOptions& options,
+                    Control& control) {
+    std::vector<double> seconds[2];
+    for (int repeat = 0; repeat < options.repeats; ++repeat) {
+        Rendering pictures[2];
+        for (const int turn : {0, 1}) {
+            const int with = (turn + repeat) % 2;
+            const Stopwatch watch;
+            Control inner{control.stop, {}};
+            pictures[with] = skip.render(view, options.seed + static_cast<std::uint64_t>(repeat), with == 1, inner);
+            seconds[with].push_back(watch.seconds());
+        }
+        if (control.stopped()) return;
+        ++result.pictures;
+        result.pixels_differ += pixels_that_differ(pictures[0].radiance, pictures[1].radiance);
+        result.rays_saved += rays(pictures[0]) - rays(pictures[1]);
+        result.reason = reason_of(skip, pictures[1]);
+        control.report(0.2 * (repeat + 1) / options.repeats);
+    }
+    result.without = summary(seconds[0]);
+    result.with = summary(seconds[1]);
+}
+
+/// Pairs until the bias would be found, or the budget is spent. The number of pairs follows from the spread of the
+/// differences, not from their mean: stopping does not favour a verdict.
+BiasTest find_bias(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control) {
+    constexpr int kBatch = 32;
+    BiasTest test;
+    const Stopwatch watch;
+    const std::uint64_t first_seed = options.seed + static_cast<std::uint64_t>(options.repeats);
+    Control inner{control.stop, {}};
+    while (!control.stopped() && watch.seconds() < options.budget) {
+        for (int i = 0; i < kBatch && !control.stopped(); ++i) {
+            const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(test.pairs());
+            const ImageRgb with = skip.render(view, seed, true, inner).radiance;
+            const ImageRgb without = skip.render(view, seed, false, inner).radiance;
+            if (control.stopped()) break;
+            test.add(mean_color(with), mean_color(without));
+            const double done =
+                std::max(test.pairs() / test.pairs_needed(options.bias), watch.seconds() / options.budget);
+            control.report(0.2 + 0.8 * std::min(done, 1.0));
+        }
+        if (test.detectable() <= options.bias) break;
+    }
+    return test;
+}
+
+} // namespace
+
+SkipMeasurement measure_skip(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control) {
+    SkipMeasurement result;
+    render_repeats(result, skip, view, options, control);
+    if (control.stopped()) return result;
+    result.proved = result.pixels_differ == 0;
+    if (!result.proved && skip.proof == SkipProof::kNoBias) {
+        result.bias = find_bias(skip, view, options, control);
+        result.proved = result.bias->detectable() <= options.bias && result.bias->p() >= kFalseAlarm;
+    }
+    return result;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,185 @@
+#include "compare/skip/skip.h"
+
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+using nlohmann::json;
+
+struct Row {
+    SkipCase skip;
+    SkipMeasurement measured;
+};
+
+std::string full_name(const SkipCase& skip) { return skip.pipeline + "/" + skip.name; }
+
+std::vector<SkipCase> chosen(std::vector<SkipCase> all, const std::vector<std::string>& only) {
+    if (only.empty()) return all;
+    std::string known;
+    for (const SkipCase& skip : all) known += (known.empty() ? "" : ", ") + full_name(skip);
+    const auto meant = [](const SkipCase& skip, const std::string& name) {
+        return name == skip.name || name == full_name(skip);
+    };
+    for (const std::string& name : only)
+        if (std::none_of(all.begin(), all.end(), [&](const SkipCase& skip) { return meant(skip, name); }))
+            throw Error(message("--only: found ", name, ", expected one of ", known));
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const SkipCase& skip) {
+                                 return std::none_of(only.begin(), only.end(),
+                                                     [&](const std::string& name) { return meant(skip, name); });
+                             }),
+              all.end());
+    return all;
+}
+
+View view_of(const Scene& scene, PictureSize size) {
+    constexpr double kLongerSide = 128;
+    const double scale = kLongerSide / std::max(scene.width, scene.height);
+    const auto pixels = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
+    return {scene.camera, size.width > 0 ? size.width : pixels(scene.width),
+            size.height > 0 ? size.height : pixels(scene.height)};
+}
+
+double largest_bias(const BiasTest& test) {
+    const Rgbd bias = test.bias();
+    return std::max({std::abs(bias.r), std::abs(bias.g), std::abs(bias.b)});
+}
+
+std::string percent(double share) {
+    std::ostringstream out;
+    out << std::setprecision(2) << 100 * share << " %";
+    return out.str();
+}
+
+/// What was proved, or why not.
+std::string verdict(const SkipMeasurement& m, double wanted) {
+    if (m.pixels_differ == 0) return "same bits";
+    if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.pictures, " pictures differ");
+    const BiasTest& test = *m.bias;
+    const std::string found =
+        message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", std::setprecision(2), test.p());
+    if (test.p() < kFalseAlarm) return "BIASED by " + found;
+    if (!std::isfinite(test.detectable()))
+        return message("NOT PROVED: ", test.pairs(), " pairs in the time given say nothing yet: a longer --budget is needed");
+    const std::string power = "one of " + percent(test.detectable()) + " would be found";
+    if (!m.proved)
+        return message("NOT PROVED: no bias, but only ", power, " (", found, "): ", percent(wanted),
+                       " needs a longer --budget");
+    return "no bias: " + power + " (" + found + ")";
+}
+
+json row_json(const Row& row) {
+    const SkipMeasurement& m = row.measured;
+    const auto seconds = [](const SkipMeasurement::Seconds& s) { return json{{"median", s.median}, {"min", s.min}}; };
+    json result = {{"pipeline", row.skip.pipeline},
+                   {"name", row.skip.name},
+                   {"left_out", row.skip.left_out},
+                   {"reason", m.reason},
+                   {"seconds_with", seconds(m.with)},
+                   {"seconds_without", seconds(m.without)},
+                   {"saved", m.without.median > 0 ? json(1 - m.with.median / m.without.median) : json(nullptr)},
+                   {"rays_saved", m.rays_saved},
+                   {"pictures", m.pictures},
+                   {"pixels_differ", m.pixels_differ},
+                   {"proof", m.pixels_differ == 0 ? "same bits"
+                             : m.bias             ? "no bias"
+                                                  : "none"},
+                   {"proved", m.proved}};
+    if (m.bias) {
+        const Rgbd bias = m.bias->bias();
+        const double detectable = m.bias->detectable();
+        result["bias"] = {{"pairs", m.bias->pairs()},
+                          {"bias", {bias.r, bias.g, bias.b}},
+                          {"detectable", std::isfinite(detectable) ? json(detectable) : json(nullptr)},
+                          {"p", m.bias->p()}};
+    }
+    return result;
+}
+
+json report_json(const SkipOptions& options, const View& view, const std::vector<Row>& rows) {
+    json list = json::array(), missing = json::array();
+    for (const Row& row : rows) list.push_back(row_json(row));
+    for (const MissingSkip& skip : missing_skips())
+        missing.push_back({{"pipeline", skip.pipeline}, {"name", skip.name}});
+    return {{"scene", options.scene.string()},
+            {"width", view.width},
+            {"height", view.height},
+            {"raster_samples_per_pixel", options.settings.raster_spp},
+            {"raytrace_samples_per_pixel", options.settings.raytrace_spp},
+            {"repeats", options.measure.repeats},
+            {"skips", list},
+            {"not_built", missing}};
+}
+
+void print_table(std::ostream& out, const SkipOptions& options, const View& view, const std::vector<Row>& rows) {
+    const auto milliseconds = [](double seconds) {
+        std::ostringstream text;
+        text << std::fixed << std::setprecision(seconds < 0.01 ? 2 : 1) << 1000 * seconds;
+        return text.str();
+    };
+    const auto line = [&](const std::string& name, const std::array<std::string, 4>& numbers, const std::string& rest) {
+        out << std::left << std::setw(27) << name << std::right;
+        for (const std::string& number : numbers) out << std::setw(9) << number;
+        out << "  " << rest << '\n';
+    };
+    const auto saved = [](double with, double without) {
+        return message(std::lround(100 * (1 - with / without)), " %");
+    };
+    out << "medians of " << options.measure.repeats << " pictures each way of " << view.width << "x" << view.height
+        << " pixels, in turns, and what is saved by medians and by minima\n";
+    line("skip", {"with ms", "without", "saved", "by min"}, "proof; what is left out (why)");
+    for (const Row& row : rows) {
+        const SkipMeasurement& m = row.measured;
+        line(full_name(row.skip),
+             {milliseconds(m.with.median), milliseconds(m.without.median), saved(m.with.median, m.without.median),
+              saved(m.with.min, m.without.min)},
+             verdict(m, options.measure.bias) + "; " + row.skip.left_out +
+                 (m.reason.empty() ? "" : " (" + m.reason + ")") +
+                 (m.rays_saved > 0 ? message(", ", m.rays_saved, " rays") : ""));
+    }
+    for (const MissingSkip& skip : missing_skips())
+        line(skip.pipeline + "/-", {"-", "-", "-", "-"}, skip.name + ": not built");
+}
+
+} // namespace
+
+int skip(const SkipOptions& options) {
+    check_json_path(options.stats);
+    const InterruptFlag interrupt;
+    const Scene scene = load_scene(options.scene);
+    const View view = view_of(scene, options.size);
+    const std::vector<SkipCase> cases = chosen(skip_cases(scene, options.settings), options.only);
+    std::vector<Row> rows;
+    {
+        ProgressBar bar("skips", options.quiet);
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            Control control{&interrupt.flag(), [&](double fraction) {
+                                bar.update((static_cast<double>(i) + fraction) / static_cast<double>(cases.size()));
+                            }};
+            rows.push_back({cases[i], measure_skip(cases[i], view, options.measure, control)});
+            if (interrupt.raised()) return kExitInterrupted;
+        }
+    }
+    if (!options.quiet && options.stats != "-") print_table(std::cout, options, view, rows);
+    if (!options.stats.empty()) write_json(options.stats, report_json(options, view, rows));
+    int code = kExitOk;
+    for (const Row& row : rows)
+        if (!row.measured.proved) {
+            std::cerr << "compare: " << full_name(row.skip) << ": " << verdict(row.measured, options.measure.bias)
+                      << '\n';
+            code = kExitFailed;
+        }
+    return code;
+}
+
+} // namespace duet::compare

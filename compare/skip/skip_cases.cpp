@@ -1,0 +1,100 @@
+#include "compare/skip/skip_cases.h"
+
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+namespace duet::compare {
+
+namespace {
+
+constexpr AovSet kAllAovs{
+    .depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
+
+/// A skip that is a switch of Skips.
+struct Switch {
+    const char* name;
+    bool Skips::*member;
+    const char* left_out;
+    const char* statistic = "";
+    SkipProof proof = SkipProof::kSameBits;
+};
+
+// At a silhouette a sample that only the snapped outline covers belongs to a front and a back face; rounding says which
+// is nearer. So without culling a pixel in some 100,000 of a dense mesh may show the back face, at the same place and
+// distance: mostly the bits are the same, and where they are not the bias is tested.
+constexpr Switch kRaster[] = {
+    {"frustum", &Skips::frustum, "objects and triangles that no pixel can see", "outside the frustum"},
+    {"back_faces", &Skips::back_faces, "back faces of closed, opaque meshes", "backfaces", SkipProof::kNoBias},
+    {"subpixel", &Skips::subpixel, "triangles between the samples", "sub-pixel"},
+    {"degenerate", &Skips::degenerate, "triangles of no area on the grid", "degenerate"},
+    {"lens", &Skips::lens, "a pass for each point of the lens", "lens"},
+    {"motion", &Skips::motion, "a pass for each moment", "motion"},
+    {"environment", &Skips::environment, "light of a black environment", "environment"},
+};
+
+constexpr Switch kRaytrace[] = {
+    {"textures", &Skips::textures, "making a material's BSDF anew at each hit", "textures"},
+    {"lens", &Skips::lens, "sampling the lens", "lens samples"},
+    {"motion", &Skips::motion, "sampling the time", "time samples"},
+    {"environment", &Skips::environment, "looking up a black environment", "environment"},
+    {"light_samples", &Skips::light_samples, "light samples that nothing sends or takes", "light samples"},
+    {"mirror_light", &Skips::mirror_light, "light samples at mirrors and glass"},
+    {"emission", &Skips::emission, "emission of surfaces where none emits"},
+    {"last_bounce", &Skips::last_bounce, "last rays that can find no light", "last bounce"},
+    {"shadow_rays", &Skips::shadow_rays, "shadow rays to light that is not reflected"},
+};
+
+/// set(settings, with) turns the skip on or off.
+template <typename Settings, typename Prepared, typename Set>
+SkipCase make_case(const char* pipeline, const Switch& s, const Prepared& prepared, const Settings& settings,
+                   const Set& set) {
+    return {pipeline,
+            s.name,
+            s.left_out,
+            s.statistic,
+            s.proof,
+            [prepared, settings, set](const View& view, std::uint64_t seed, bool with, Control& control) {
+                Settings one = settings;
+                one.seed = seed;
+                set(one, with);
+                return render(prepared, view, one, control);
+            }};
+}
+
+/// The pipeline's switches, and the auxiliary pictures, which are asked for or not.
+template <typename Settings, typename Prepared, std::size_t N>
+void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const Switch (&switches)[N],
+               const Prepared& prepared, const Settings& settings) {
+    for (const Switch& s : switches)
+        cases.push_back(make_case(pipeline, s, prepared, settings,
+                                  [member = s.member](Settings& one, bool with) { one.skips.*member = with; }));
+    constexpr Switch kAuxiliary{"auxiliary", nullptr, "auxiliary pictures that are not asked for"};
+    cases.push_back(make_case(pipeline, kAuxiliary, prepared, settings,
+                              [](Settings& one, bool with) { one.aovs = with ? AovSet{} : kAllAovs; }));
+}
+
+} // namespace
+
+std::vector<SkipCase> skip_cases(const Scene& scene, const SkipSettings& settings) {
+    std::vector<SkipCase> cases;
+    raster::Settings raster;
+    raster.samples_per_pixel = settings.raster_spp;
+    raster.threads = settings.threads;
+    add_cases(cases, "raster", kRaster, raster::prepare(scene, raster), raster);
+
+    raytrace::Settings raytrace;
+    raytrace.samples_per_pixel = settings.raytrace_spp;
+    raytrace.threads = settings.threads;
+    const raytrace::Prepared prepared = raytrace::prepare(scene, raytrace);
+    add_cases(cases, "raytrace", kRaytrace, prepared, raytrace);
+    constexpr Switch kRoulette{"russian_roulette", nullptr, "most of the dim paths", "", SkipProof::kNoBias};
+    cases.push_back(make_case("raytrace", kRoulette, prepared, raytrace,
+                              [](raytrace::Settings& one, bool with) { one.russian_roulette = with; }));
+    return cases;
+}
+
+std::vector<MissingSkip> missing_skips() {
+    return {{"raster", "occluded triangles, tiles by hierarchical depth"}, {"raytrace", "converged pixels"}};
+}
+
+} // namespace duet::compare

@@ -1,0 +1,162 @@
+// Which of two surfaces is before the other: a few units in the last place apart, and at the same place.
+#include "common/vec/robust.h"
+#include "compare/stress/book_raster.h"
+#include "compare/stress/projection_runs.h"
+#include "compare/stress/projection_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::compare {
+
+namespace {
+
+constexpr int kSide = 8; // pixels a side of a trial's window
+
+// Depth order --------------------------------------------------------------------------------------------------------
+
+constexpr float kNear = 1e-3f, kFar = 1e5f;
+
+/// A quadrilateral about the window as two triangles, upright or tilted, at `depth` in the window's middle.
+Mesh random_layer(TrialRandom& random, const TrialView& v, double depth) {
+    const raster::PixelRect& r = v.window.rect;
+    const double margin = static_cast<double>(random.magnitude(1, 100));
+    const double tilt_x = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin(),
+                 tilt_y = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin();
+    const auto corner = [&](double x, double y) { // 1/depth is linear over the picture where the surface is plane
+        return point_at(v.pinhole, {lerp(r.x0 - margin, r.x1 + margin, x), lerp(r.y0 - margin, r.y1 + margin, y)},
+                        depth / (1 + tilt_x * (x - 0.5) + tilt_y * (y - 0.5)));
+    };
+    Mesh layer;
+    layer.positions = {corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)};
+    layer.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return layer;
+}
+
+/// The same, each corner `steps` floats nearer along the view.
+Mesh moved_nearer(Mesh layer, int steps) {
+    for (Vec3& p : layer.positions)
+        for (int i = 0; i < steps; ++i) p.z = next_up(p.z);
+    return layer;
+}
+
+/// The layer's depth at a pixel; none close to its diagonal.
+std::optional<double> depth_at(const Mesh& layer, const Pinhole& pinhole, Vec2d pixel) {
+    for (const auto& t : layer.triangles) {
+        const ProjectedTriangle half(pinhole, {layer.positions[t[0]], layer.positions[t[1]], layer.positions[t[2]]});
+        if (half.inside(pixel) > 1.0 / 64) return half.at(pixel).depth;
+    }
+    return std::nullopt;
+}
+
+// Draw order ---------------------------------------------------------------------------------------------------------
+
+/// Triangles over the window, some of them twice, or at the same depth as others.
+std::vector<raster::SetupTriangle> random_pile(TrialRandom& random, const TrialView& v) {
+    Mesh mesh;
+    const auto add = [&](const std::array<Vec3, 3>& corners) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    };
+    const std::uint32_t count = 2 + random.below(10);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double depth = v.pinhole.near * static_cast<double>(2 + random.below(3));
+        const auto corner = [&] {
+            return point_at(v.pinhole,
+                            pixel_in(random, v.window) + Vec2d(Vec2(random.uniform(-9, 9), random.uniform(-9, 9))),
+                            depth);
+        };
+        const Vec3 a = corner(), b = corner(), c = corner();
+        add({a, b, c});
+        if (random.coin()) add({a, b, c});
+    }
+    return set_up(mesh, v.view, v.window.offset);
+}
+
+template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
+    for (std::size_t i = items.size(); i > 1; --i)
+        std::swap(items[i - 1], items[random.below(static_cast<std::uint32_t>(i))]);
+}
+
+/// What a sample sees: the primitive, by two rules for equal nearness.
+struct Seen {
+    float nearness = 0;
+    std::uint32_t lowest = kNoObject; ///< ours
+    std::uint32_t first = kNoObject;  ///< the books': whoever came first stays
+};
+
+/// Each triangle drawn by itself, then the nearest chosen.
+Image<Seen> choose_nearest(const std::vector<raster::SetupTriangle>& pile, const TrialView& v) {
+    Image<Seen> seen(kSide, kSide);
+    for (const raster::SetupTriangle& triangle : pile) {
+        const raster::HitTile alone = draw({triangle}, v.view, v.window);
+        v.window.for_each([&](int x, int y) {
+            Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
+            const float nearness = alone.nearness(x, y);
+            if (nearness > here.nearness)
+                here = {nearness, triangle.primitive, triangle.primitive};
+            else if (nearness > 0 && nearness == here.nearness)
+                here.lowest = min(here.lowest, triangle.primitive);
+        });
+    }
+    return seen;
+}
+
+} // namespace
+
+StressResult depth_order(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        TrialRandom& random = trial.random;
+        TrialView v = random_view(random, kSide, static_cast<double>(kNear));
+        v.view.camera.eye = {0, 0, 0}; // along −z from the origin, so that a corner's z is its depth
+        v.view.camera.look_at = {0, 0, -1};
+        v.view.camera.up = {0, 1, 0};
+        v.pinhole = CameraModel(v.view).through();
+        const double depth = static_cast<double>(random.magnitude(4 * kNear, kFar / 4));
+        const int steps = static_cast<int>(random.magnitude(1, 64));
+        // The one behind has the lower number: a tie would go to it.
+        const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
+        std::vector<raster::SetupTriangle> triangles = set_up(before, v.view, v.window.offset);
+        for (raster::SetupTriangle& triangle : triangles) triangle.object = 1;
+        const std::vector<raster::SetupTriangle> others = set_up(behind, v.view, v.window.offset);
+        triangles.insert(random.coin() ? triangles.begin() : triangles.end(), others.begin(), others.end());
+        const raster::HitTile tile = draw(triangles, v.view, v.window);
+
+        trial.note("corners ", exact(behind.positions[0]), ", ", exact(behind.positions[1]), ", ",
+                   exact(behind.positions[2]), "; others ", steps, " floats nearer");
+        v.window.for_each([&](int x, int y) {
+            const Vec2d pixel = v.window.offset.position(x, y);
+            const std::optional<double> far = depth_at(behind, v.pinhole, pixel),
+                                        near = depth_at(before, v.pinhole, pixel);
+            constexpr double kResolved = 0x1p-23 * (1 + 1e-6);
+            if (!far || !near || *far / *near - 1 < kResolved) return;
+            trial.careful_wrong(tile.hit(x, y).object != 1);
+            const auto z = [](double d) { return book_z(static_cast<float>(d), kNear, kFar); };
+            trial.naive_wrong(!(z(*near) < z(*far)));
+        });
+    });
+}
+
+StressResult draw_order(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const TrialView v = random_view(trial.random, kSide);
+        std::vector<raster::SetupTriangle> pile = random_pile(trial.random, v);
+        shuffle(pile, trial.random);
+        const raster::HitTile tile = draw(pile, v.view, v.window);
+        const Image<Seen> seen = choose_nearest(pile, v);
+        int wrong = 0, naive_wrong = 0;
+        v.window.for_each([&](int x, int y) {
+            const Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
+            const Hit& hit = tile.hit(x, y);
+            wrong += (hit.valid() ? hit.primitive : kNoObject) != here.lowest;
+            naive_wrong += here.first != here.lowest;
+        });
+        trial.note(pile.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (", v.window.rect.x0,
+                   ", ", v.window.rect.y0, ')');
+        trial.careful(wrong);
+        trial.naive(naive_wrong);
+    });
+}
+
+} // namespace duet::compare

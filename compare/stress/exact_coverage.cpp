@@ -1,0 +1,36 @@
+#include "compare/stress/exact_coverage.h"
+
+namespace duet::compare {
+
+namespace {
+
+__extension__ typedef __int128 Int128; // ISO C++ has no name for it
+
+/// On which side of the line from a to b the point lies: positive to the right of one who walks it in the picture.
+Int128 side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
+    const Int128 dx = Int128{b.x} - a.x, dy = Int128{b.y} - a.y;
+    return dx * (Int128{y} - a.y) - dy * (Int128{x} - a.x);
+}
+
+int sign(Int128 value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+
+/// The side on which the moved point lies: where the point itself is on the line, the first of the steps that leaves it
+/// decides.
+int moved_side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
+    const Int128 here = side(a, b, x, y), step_right = Int128{a.y} - b.y, step_down = Int128{b.x} - a.x;
+    return sign(here != 0 ? here : step_right != 0 ? step_right : step_down);
+}
+
+} // namespace
+
+int winding(const GridTriangle& t) { return sign(side(t[0], t[1], t[2].x, t[2].y)); }
+
+bool covers(const GridTriangle& t, std::int64_t x, std::int64_t y) {
+    const int turn = winding(t);
+    if (turn == 0) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (moved_side(t[i], t[(i + 1) % 3], x, y) != turn) return false;
+    return true;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,189 @@
+// Closed surfaces let no ray through, wherever it is aimed, whatever their size and place.
+#include "common/geometry/triangle.h"
+#include "compare/stress/naive.h"
+#include "compare/stress/stage.h"
+#include "compare/stress/trials.h"
+
+namespace duet::compare {
+
+namespace {
+
+/// A closed mesh somewhere, and the numbers that trials need of it.
+struct Vessel {
+    Stage stage;
+    float scale;
+    Vec3 center;
+
+    explicit Vessel(float scale_, Vec3 center_)
+        : stage(make_scene({placed(ball(2, 0.1f), scale_, center_)})), scale(scale_), center(center_) {}
+    const Mesh& mesh() const { return std::get<Mesh>(stage.scene->shapes[0]); }
+};
+
+/// Around the origin from 1e-6 to 1e6, and of size 1 about 1e5 away, along the diagonal and along one axis.
+std::vector<Vessel> vessels() {
+    std::vector<Vessel> all;
+    for (const float scale : {1e-6f, 1e-4f, 1e-2f, 1.0f, 1e2f, 1e4f, 1e6f}) all.emplace_back(scale, Vec3());
+    all.emplace_back(1.0f, Vec3(1e5f, -1e5f, 1e5f));
+    all.emplace_back(1.0f, Vec3(0, 1e5f, 0));
+    return all;
+}
+
+bool hit_by_any(const Mesh& mesh, const Ray& ray) {
+    for (const auto& [a, b, c] : mesh.triangles)
+        if (naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c])) return true;
+    return false;
+}
+
+/// A ray from inside must hit, and the accelerator must find what testing all triangles finds.
+void judge(Trial& trial, const Vessel& vessel, const Ray& ray) {
+    const Hit expected = hit_by_testing_all(*vessel.stage.scene, ray), found = vessel.stage.accelerator.closest(ray);
+    trial.note("mesh of size ", exact(vessel.scale), " at ", exact(vessel.center), ", ray from ", exact(ray.origin),
+               " along ", exact(ray.direction), ": primitive ", found.primitive, " at ", exact(found.t),
+               ", testing all: ", expected.primitive, " at ", exact(expected.t));
+    trial.careful_wrong(!found.valid() || !(found == expected));
+    trial.naive_wrong(!hit_by_any(vessel.mesh(), ray));
+}
+
+const Vessel& chosen(const std::vector<Vessel>& all, Trial& trial) {
+    return all[static_cast<std::size_t>(trial.number()) % all.size()];
+}
+
+Vec3 inside(const Vessel& vessel, Trial& trial) {
+    return vessel.center + trial.random.vector() * (0.4f * vessel.scale);
+}
+
+StressResult leak_random(const StressTest& test, const StressSetting& setting) {
+    const std::vector<Vessel> all = vessels();
+    return run_trials(test, setting, [&](Trial& trial) {
+        const Vessel& vessel = chosen(all, trial);
+        judge(trial, vessel, {inside(vessel, trial), trial.random.direction()});
+    });
+}
+
+Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize_scaled(target - origin)}; }
+
+StressResult leak_edges(const StressTest& test, const StressSetting& setting) {
+    const std::vector<Vessel> all = vessels();
+    return run_trials(test, setting, [&](Trial& trial) {
+        const Vessel& vessel = chosen(all, trial);
+        const Mesh& mesh = vessel.mesh();
+        const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+        const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial.random.uniform());
+        judge(trial, vessel, towards(inside(vessel, trial), target));
+    });
+}
+
+StressResult leak_vertices(const StressTest& test, const StressSetting& setting) {
+    const std::vector<Vessel> all = vessels();
+    return run_trials(test, setting, [&](Trial& trial) {
+        const Vessel& vessel = chosen(all, trial);
+        const auto& positions = vessel.mesh().positions;
+        const Vec3 vertex = positions[trial.random.below(static_cast<std::uint32_t>(positions.size()))];
+        judge(trial, vessel, towards(inside(vessel, trial), vertex));
+    });
+}
+
+StressResult leak_from_outside(const StressTest& test, const StressSetting& setting) {
+    std::vector<Stage> stages;
+    constexpr std::array<float, 5> kScales{1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f};
+    for (const float scale : kScales) stages.emplace_back(make_scene({placed(ball(2), scale, {})}));
+    return run_trials(test, setting, [&](Trial& trial) {
+        const std::size_t which = static_cast<std::size_t>(trial.number()) % kScales.size();
+        const Mesh& mesh = std::get<Mesh>(stages[which].scene->shapes[0]);
+        // Aimed at vertices and edges that face the eye: what is hit first must face it, too.
+        const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+        const float along = trial.random.coin() ? 0.0f : trial.random.uniform();
+        const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], along);
+        const Vec3 outwards = normalize_scaled(target);
+        const Vec3 side = normalize(outwards + trial.random.direction() * 0.6f);
+        const Ray ray = towards(target + side * (kScales[which] * trial.random.magnitude(0.1f, 1e3f)), target);
+        const auto leaks = [&](std::optional<std::uint32_t> primitive) {
+            if (!primitive) return true;
+            const auto& [a, b, c] = mesh.triangles[*primitive];
+            return dot(mesh.positions[a] + mesh.positions[b] + mesh.positions[c], ray.direction) > 0;
+        };
+        const Hit hit = stages[which].accelerator.closest(ray);
+        std::optional<std::uint32_t> naive_hit;
+        float nearest = kInfinity;
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const auto& [a, b, c] = mesh.triangles[i];
+            const auto found = naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+            if (found && *found < nearest) nearest = *found, naive_hit = i;
+        }
+        trial.note("ball of size ", exact(kScales[which]), ", ray from ", exact(ray.origin), " along ",
+                   exact(ray.direction), ": primitive ", hit.primitive, " at ", exact(hit.t));
+        trial.careful_wrong(leaks(hit.valid() ? std::optional(hit.primitive) : std::nullopt));
+        trial.naive_wrong(leaks(naive_hit));
+    });
+}
+
+/// Boxes are six quads: each with its own corners.
+StressResult leak_boxes(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        TrialRandom& random = trial.random;
+        const float scale = random.magnitude(1e-6f, 1e6f);
+        const Vec3 middle = random.vector() * (scale * (trial.number() % 2 ? 1.0f : 100.0f));
+        const Vec3 half = Vec3(random.uniform(0.1f, 1), random.uniform(0.1f, 1), random.uniform(0.1f, 1)) * scale;
+        const Vec3 low = middle - half, high = middle + half;
+        const Stage stage(make_scene({box_quads(low, high)}));
+        for (int shot = 0; shot < 16; ++shot) {
+            Vec3 target(random.coin() ? low.x : high.x, random.coin() ? low.y : high.y, random.coin() ? low.z : high.z);
+            const std::uint32_t axis = random.below(4); // 3: a corner
+            if (axis < 3) target[axis] = lerp(low[axis], high[axis], random.uniform());
+            const Ray ray = towards(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
+            const Hit hit = stage.accelerator.closest(ray);
+            if (!hit.valid())
+                trial.note("box ", exact(low), " to ", exact(high), ", ray from ", exact(ray.origin), " along ",
+                           exact(ray.direction));
+            trial.careful_wrong(!hit.valid());
+        }
+    });
+}
+
+StressResult leak_instances(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [mesh = ball(1, 0.1f)](Trial& trial) {
+        TrialRandom& random = trial.random;
+        const float scale = random.magnitude(1e-6f, 1e6f);
+        const Mat4 to_world(
+            translation(Vec3d(random.vector()) * static_cast<double>(scale) * 100.0) *
+            rotation(normalize(Vec3d(random.direction())), static_cast<double>(random.uniform(0, 6))) *
+            scaling(Vec3d(static_cast<double>(random.uniform(0.2f, 1)), -1, 2) * static_cast<double>(scale)));
+        const Stage stage(make_scene(mesh, {to_world, to_world * Mat4(scaling(Vec3(3, 3, 3)))}));
+        for (int shot = 0; shot < 64; ++shot) {
+            const auto& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+            const Vec3 on_edge = lerp(mesh.positions[t[0]], mesh.positions[t[1]], random.coin() ? 0 : random.uniform());
+            const Ray ray =
+                towards(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
+            const Hit hit = stage.accelerator.closest(ray), expected = hit_by_testing_all(*stage.scene, ray);
+            const bool wrong = hit.object != 0 || !(hit == expected);
+            if (wrong)
+                trial.note("scale ", exact(scale), ", ray from ", exact(ray.origin), " along ", exact(ray.direction),
+                           ": object ", hit.object, ", testing all: ", expected.object);
+            trial.careful_wrong(wrong);
+        }
+    });
+}
+
+constexpr std::string_view kWatertight = "Woop, Benthin and Wald 2013, §3; judged by testing every triangle";
+constexpr std::string_view kMollerTrumbore = "Möller and Trumbore 1997, epsilon 1e-6";
+
+constexpr StressTest kTests[] = {
+    {"leak/random", "rays from inside a closed mesh hit it: of sizes 1e-6 to 1e6, and 1e5 away", 0, "wrong",
+     kWatertight, kMollerTrumbore, 100'000, leak_random},
+    {"leak/edges", "the same, aimed at its edges", 0, "wrong", kWatertight, kMollerTrumbore, 100'000, leak_edges},
+    {"leak/vertices", "the same, aimed at its vertices", 0, "wrong", kWatertight, kMollerTrumbore, 100'000,
+     leak_vertices},
+    {"leak/from-outside", "rays from 0.1 to 1000 radii outside, aimed at edges and vertices, hit the side they see", 0,
+     "wrong", "Woop, Benthin and Wald 2013, §3; a ball's near side faces the eye", kMollerTrumbore, 100'000,
+     leak_from_outside},
+    {"leak/boxes", "rays from inside a box of any size and place hit it at its edges and corners", 0, "wrong",
+     "neighbouring quads have the very same corners", "", 20'000, leak_boxes},
+    {"leak/instances", "rays from inside a turned, stretched and mirrored instance hit it, not the larger one around",
+     0, "wrong", kWatertight, "", 3'000, leak_instances},
+};
+
+} // namespace
+
+std::span<const StressTest> leak_tests() { return kTests; }
+
+} // namespace duet::compare

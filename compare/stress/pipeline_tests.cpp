@@ -1,0 +1,222 @@
+// The pipelines as a whole: the same Hits from both, and the same bits for any number of threads.
+#include "compare/hits/hit_agreement.h"
+#include "compare/pipeline.h"
+#include "compare/stress/book_trace.h"
+#include "compare/stress/random_scene.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+#include <algorithm>
+#include <span>
+
+namespace duet::compare {
+
+namespace {
+
+// Hits ---------------------------------------------------------------------------------------------------------------
+
+constexpr int kWidth = 32, kHeight = 24;
+
+bool same_primitive(const Hit& a, const Hit& b) {
+    return a.object == b.object && (!a.valid() || a.primitive == b.primitive);
+}
+
+/// `hits` in `most` of the pixels that differ from `reference`, chosen at random, and the reference elsewhere: to judge
+/// a pixel that is wrong takes thousands of rays, and a trial with many of them has failed all the same.
+Image<Hit> some_differences(const Image<Hit>& hits, const Image<Hit>& reference, std::size_t most,
+                            TrialRandom& random) {
+    std::vector<std::size_t> different;
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (!same_primitive(hits[i], reference[i])) different.push_back(i);
+    Image<Hit> result = reference;
+    for (std::size_t k = 0; k < std::min(most, different.size()); ++k) {
+        std::swap(different[k], different[k + random.below(static_cast<std::uint32_t>(different.size() - k))]);
+        result[different[k]] = hits[different[k]];
+    }
+    return result;
+}
+
+Image<Hit> book_hits(const TrialScene& trial) {
+    const BookTracer book(trial.scene);
+    const CameraModel camera(trial.view);
+    Image<Hit> hits(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) hits(x, y) = book.nearest(camera.ray({x + 0.5, y + 0.5}));
+    return hits;
+}
+
+std::string describe(const UnexplainedPixel& p) {
+    const auto hit = [](const auto& h) { return message("object ", h.object, " primitive ", h.primitive, " t ", h.t); };
+    return message("pixel (", p.x, ", ", p.y, "): raster sees ", hit(p.raster), ", raytrace ", hit(p.raytrace),
+                   ", double precision ", hit(p.exact));
+}
+
+/// By how much rounding the corners as seen from the eye may move a triangle's or quad's plane, as a multiple of one
+/// corner's rounding: in proportion to the farthest of them, and to how much longer it is than wide. (A float test of a
+/// ray and a triangle errs so, and not in proportion to the hit's distance: Pharr, Jakob and Humphreys 2023, §6.8.7.)
+double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
+    if (corners.empty()) return 0; // a sphere
+    double reach = 0, longest_squared = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        reach = max(reach, length(corners[i] - eye));
+        longest_squared = max(longest_squared, length_squared(corners[i] - corners[(i + 1) % corners.size()]));
+    }
+    const double doubled_area = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return reach * max(1.0, longest_squared / doubled_area);
+}
+
+/// Pixels in which both see the same primitive at different distances.
+int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hit>& raster,
+                          const Image<Hit>& raytrace) {
+    const ExactTracer tracer(random.scene, 0);
+    const Pinhole pinhole = CameraModel(random.view).through();
+    int apart = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const Hit &a = raster(x, y), &b = raytrace(x, y);
+            if (!a.valid() || !same_primitive(a, b)) continue;
+            const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
+            const double ta = a.t, tb = b.t;
+            const double error = std::abs(ta - tb) * tracer.cosine(ray, a.object, a.primitive, tb);
+            const double reach = plane_reach(tracer.corners(a.object, a.primitive), ray.origin);
+            if (error <= kDepthTolerance * max(ta, reach)) continue;
+            ++apart;
+            trial.note("pixel (", x, ", ", y, "): object ", a.object, " primitive ", a.primitive,
+                       ", raster's distance ", exact(a.t), ", raytrace's ", exact(b.t));
+        }
+    return apart;
+}
+
+void judge_hits(Trial& trial, const TrialScene& random) {
+    Control control;
+    const PipelineSettings settings{.threads = 1}; // trials run side by side
+    const Image<Hit> raster = raster_pipeline(random.scene, settings).hits(random.view, control).hit;
+    const Image<Hit> raytrace = raytrace_pipeline(random.scene, settings).hits(random.view, control).hit;
+    const auto judge = [&](const Image<Hit>& hits, std::size_t most) {
+        const Image<Hit> judged = some_differences(hits, raytrace, most, trial.random);
+        return compare_hits(random.scene, random.view, judged, raytrace, 1);
+    };
+    const HitAgreement agreement = judge(raster, 16), book = judge(book_hits(random), 4);
+    if (!agreement.listed.empty()) trial.note(describe(agreement.listed.front()));
+    const int apart = count_distances_apart(trial, random, raster, raytrace);
+    trial.careful(static_cast<double>(agreement.unexplained + apart));
+    trial.naive(static_cast<double>(book.unexplained));
+}
+
+template <SceneParts parts> StressResult hits_of(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting,
+                      [](Trial& trial) { judge_hits(trial, random_scene(trial.random, parts, {}, kWidth, kHeight)); });
+}
+
+constexpr SceneParts kAll{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
+
+StressResult hits_at_scales(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const Placement placement{.offset = {}, .scale = trial.random.magnitude(1e-6f, 1e6f)};
+        trial.note("scale ", exact(placement.scale));
+        judge_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
+    });
+}
+
+StressResult hits_far_away(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const Placement placement{.offset = trial.random.vector() * 1e5f, .scale = 1};
+        trial.note("at ", exact(placement.offset));
+        judge_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
+    });
+}
+
+// Threads ------------------------------------------------------------------------------------------------------------
+
+template <typename Pixel> bool same_bits(const Image<Pixel>& a, const Image<Pixel>& b) {
+    return std::ranges::equal(std::as_bytes(std::span(a.pixels())), std::as_bytes(std::span(b.pixels())));
+}
+bool same_bits(const Rendering& a, const Rendering& b) {
+    return same_bits(a.radiance, b.radiance) && same_bits(a.depth, b.depth) && same_bits(a.normal, b.normal) &&
+           same_bits(a.albedo, b.albedo) && same_bits(a.hit, b.hit) && same_bits(a.variance, b.variance) &&
+           same_bits(a.samples, b.samples);
+}
+
+template <typename Settings> Settings with_everything(int threads) {
+    Settings settings;
+    settings.threads = threads;
+    settings.samples_per_pixel = 6;
+    settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
+    return settings;
+}
+Rendering render_raster(const TrialScene& trial, int threads) {
+    Control control;
+    const auto settings = with_everything<raster::Settings>(threads);
+    return raster::render(raster::prepare(trial.scene, settings), trial.view, settings, control);
+}
+Rendering render_raytrace(const TrialScene& trial, int threads) {
+    Control control;
+    const auto settings = with_everything<raytrace::Settings>(threads);
+    return raytrace::render(raytrace::prepare(trial.scene, settings), trial.view, settings, control);
+}
+
+template <Rendering (*render)(const TrialScene&, int)>
+StressResult threads(const StressTest& test, const StressSetting& setting) {
+    StressSetting one_by_one = setting;
+    one_by_one.threads = 1; // a trial has its own threads
+    return run_trials(test, one_by_one, [](Trial& trial) {
+        const TrialScene random = random_lit_scene(trial.random, 100, 75);
+        const Rendering one = render(random, 1);
+        int different = 0;
+        for (const int count : {2, 3, 7}) different += !same_bits(render(random, count), one);
+        trial.careful(different);
+    });
+}
+
+constexpr std::string_view kJudge = "where they differ (16 such pixels a trial at most), rays in double precision "
+                                    "within 1/128 pixel see the one and the "
+                                    "other, or a tie (compare/hits); distances within 1e-5 of the primitive's reach";
+constexpr std::string_view kBook = "Moeller-Trumbore and t > 0.001 in float; four such pixels a trial at most";
+
+constexpr StressTest row(std::string_view name, std::string_view what, std::int64_t trials,
+                         StressResult (*run)(const StressTest&, const StressSetting&)) {
+    return {name, what, 0, "unexplained pixels", kJudge, kBook, trials, run};
+}
+
+constexpr std::string_view kSameBits =
+    "the definition: numbers depend on pixel and sample, sums are made in their order";
+
+constexpr StressTest kTests[] = {
+    row("pipeline/hits-soup",
+        "both pipelines see the same in a soup of triangles of all sizes, before the eye and behind", 2000,
+        hits_of<SceneParts{.soup = true}>),
+    row("pipeline/hits-meshes", "both pipelines see the same of closed meshes, from outside and within", 500,
+        hits_of<SceneParts{.meshes = true}>),
+    row("pipeline/hits-spheres", "both pipelines see the same of spheres and ellipsoids, from outside and within", 1500,
+        hits_of<SceneParts{.spheres = true, .instances = true}>),
+    row("pipeline/hits-quads", "both pipelines see the same of boxes and walls", 1500,
+        hits_of<SceneParts{.quads = true}>),
+    row("pipeline/hits-instances", "both pipelines see the same of all shapes turned, stretched and mirrored", 300,
+        hits_of<kAll>),
+    row("pipeline/hits-scales", "both pipelines see the same in scenes of all shapes at scales from 1e-6 to 1e6", 300,
+        hits_at_scales),
+    row("pipeline/hits-far", "both pipelines see the same in scenes of all shapes up to 1e5 metres from the origin",
+        300, hits_far_away),
+    {.name = "pipeline/threads-raster",
+     .what = "2, 3 and 7 threads give the rasterizer's bits of one, in the picture and all auxiliary ones",
+     .bound = 0,
+     .unit = "different",
+     .source = kSameBits,
+     .naive = "",
+     .trials = 8,
+     .run = threads<render_raster>},
+    {.name = "pipeline/threads-raytrace",
+     .what = "2, 3 and 7 threads give the path tracer's bits of one, in the picture and all auxiliary ones",
+     .bound = 0,
+     .unit = "different",
+     .source = kSameBits,
+     .naive = "",
+     .trials = 8,
+     .run = threads<render_raytrace>},
+};
+
+} // namespace
+
+std::span<const StressTest> pipeline_tests() { return kTests; }
+
+} // namespace duet::compare

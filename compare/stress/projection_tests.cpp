@@ -1,0 +1,240 @@
+// What is seen of triangles, and where on them: against the ray through each pixel in extended precision.
+#include "compare/stress/book_raster.h"
+#include "compare/stress/errors.h"
+#include "compare/stress/projection_runs.h"
+#include "compare/stress/projection_scenes.h"
+
+namespace duet::compare {
+
+namespace {
+
+constexpr int kSide = 12; // pixels a side of a trial's window
+
+using MakeTriangle = std::array<Vec3, 3> (*)(TrialRandom&, const TrialView&);
+
+BookTriangle as_book(const Pinhole& pinhole, const std::array<Vec3, 3>& corners) {
+    const Mat4 matrix(pinhole.world_to_pixel);
+    return {book_project(matrix, corners[0]), book_project(matrix, corners[1]), book_project(matrix, corners[2])};
+}
+
+void note_trial(Trial& trial, const TrialView& v, const std::array<Vec3, 3>& corners) {
+    const Camera& camera = v.view.camera;
+    trial.note("triangle ", exact(corners[0]), ", ", exact(corners[1]), ", ", exact(corners[2]), " from ",
+               exact(Vec3(camera.eye)), " near ", camera.near, ", ", v.view.width, "x", v.view.height,
+               " pixels, samples at (", v.window.offset.x, ", ", v.window.offset.y, ") in 1/256 of the pixels from (",
+               v.window.rect.x0, ", ", v.window.rect.y0, ")");
+}
+
+// Coverage -----------------------------------------------------------------------------------------------------------
+
+/// Whether all that a hit says can be: within the triangle and beyond the near plane.
+bool possible(const Hit& hit, double depth, double near) {
+    return hit.u >= 0 && hit.v >= 0 && hit.u <= 1 && hit.v <= 1 && depth >= near * (1 - 0x1p-20) && depth < 1e30;
+}
+
+template <MakeTriangle make> StressResult displaced(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const TrialView v = random_view(trial.random, kSide);
+        const std::array<Vec3, 3> corners = make(trial.random, v);
+        const ProjectedTriangle exact_triangle(v.pinhole, corners);
+        if (exact_triangle.edge_on()) return;
+        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const BookTriangle book = as_book(v.pinhole, corners);
+        double worst = 0, book_worst = 0;
+        v.window.for_each([&](int x, int y) {
+            const Vec2d pixel = v.window.offset.position(x, y);
+            const Hit& hit = tile.hit(x, y);
+            worst = max(worst, displacement(exact_triangle, pixel, hit.valid()));
+            if (hit.valid() && !possible(hit, tile.depth(x, y), v.pinhole.near))
+                worst = std::numeric_limits<double>::infinity();
+            book_worst = max(book_worst, displacement(exact_triangle, pixel, book_covers(book, Vec2(pixel))));
+        });
+        note_trial(trial, v, corners);
+        trial.careful(worst);
+        trial.naive(book_worst);
+    });
+}
+
+// Attributes ---------------------------------------------------------------------------------------------------------
+
+/// Calls judge(x, y, pixel, truth) for the window's samples well inside the triangle, where snapped corners have no
+/// say, and where double precision loses less than a hundredth of a float's roundoff.
+template <typename Judge>
+void for_each_inside(const TrialView& v, const ProjectedTriangle& triangle, const raster::HitTile& tile,
+                     const Judge& judge) {
+    v.window.for_each([&](int x, int y) {
+        const Vec2d pixel = v.window.offset.position(x, y);
+        constexpr double kWell = 1.0 / 16, kCondition = 1e5; // 1e5 · 2^-53 times a few = 0.001 · 2^-24
+        if (triangle.inside(pixel) >= kWell && triangle.condition(pixel) <= kCondition && tile.hit(x, y).valid())
+            judge(x, y, pixel, triangle.at(pixel));
+    });
+}
+
+template <MakeTriangle make> StressResult barycentrics(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const TrialView v = random_view(trial.random, kSide);
+        const std::array<Vec3, 3> corners = make(trial.random, v);
+        const ProjectedTriangle exact_triangle(v.pinhole, corners);
+        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const BookTriangle book = as_book(v.pinhole, corners);
+        note_trial(trial, v, corners);
+        for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
+            const auto error = [&](float u, float w) {
+                return in_roundoffs(
+                    worse(std::abs(static_cast<double>(u) - truth.u), std::abs(static_cast<double>(w) - truth.v)));
+            };
+            trial.careful(error(tile.hit(x, y).u, tile.hit(x, y).v));
+            const Vec3 affine = book_barycentrics(book, Vec2(pixel));
+            trial.naive(error(affine.y, affine.z));
+        });
+    });
+}
+
+/// How far from its sample the point of each hit is seen, in pixels.
+StressResult points_aside(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const TrialView v = random_view(trial.random, kSide);
+        const std::array<Vec3, 3> corners = random_sliver(trial.random, v);
+        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const BookTriangle book = as_book(v.pinhole, corners);
+        note_trial(trial, v, corners);
+        const auto aside = [&](Vec2d pixel, double u, double w) {
+            const Vec3d a(corners[0]), ab = Vec3d(corners[1]) - a, ac = Vec3d(corners[2]) - a;
+            const Vec3d seen = v.pinhole.project(a + ab * u + ac * w);
+            return std::hypot(seen.x - pixel.x, seen.y - pixel.y);
+        };
+        v.window.for_each([&](int x, int y) {
+            const Hit& hit = tile.hit(x, y);
+            if (!hit.valid()) return;
+            const Vec2d pixel = v.window.offset.position(x, y);
+            trial.careful(possible(hit, tile.depth(x, y), v.pinhole.near)
+                              ? aside(pixel, static_cast<double>(hit.u), static_cast<double>(hit.v))
+                              : std::numeric_limits<double>::infinity());
+            const Vec3 affine = book_barycentrics(book, Vec2(pixel));
+            trial.naive(aside(pixel, static_cast<double>(affine.y), static_cast<double>(affine.z)));
+        });
+    });
+}
+
+constexpr float kBookNear = 0.1f, kBookFar = 1e5f;
+
+/// The depth that a book's z-buffer holds at a pixel: z/w linear over the screen, from −1 at 0.1 m to 1 at 1e5 m.
+double book_depth(const BookTriangle& t, Vec2 pixel) {
+    const Vec3 b = book_barycentrics(t, pixel);
+    const auto z = [&](std::size_t i) { return book_z(t[i].depth, kBookNear, kBookFar); };
+    const float here = b.x * z(0) + b.y * z(1) + b.z * z(2);
+    return 2.0 * static_cast<double>(kBookFar * kBookNear) /
+           (static_cast<double>(kBookFar + kBookNear) -
+            static_cast<double>(here) * static_cast<double>(kBookFar - kBookNear));
+}
+
+template <MakeTriangle make> StressResult depths(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        const TrialView v = random_view(trial.random, kSide, static_cast<double>(kBookNear));
+        const std::array<Vec3, 3> corners = make(trial.random, v);
+        const ProjectedTriangle exact_triangle(v.pinhole, corners);
+        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const BookTriangle book = as_book(v.pinhole, corners);
+        note_trial(trial, v, corners);
+        for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
+            const double distance = truth.depth * v.pinhole.ray(pixel).t_min / v.pinhole.near;
+            trial.careful(in_roundoffs(relative_error(static_cast<double>(tile.hit(x, y).t), distance)));
+            trial.careful(
+                in_roundoffs(relative_error(static_cast<double>(tile.nearness(x, y)), v.pinhole.near / truth.depth)));
+            trial.naive(in_roundoffs(relative_error(book_depth(book, Vec2(pixel)), truth.depth)));
+        });
+    });
+}
+
+constexpr std::string_view kNoClip = "division by any w, then barycentrics >= 0 in float, as tinyrenderer";
+constexpr std::string_view kRounding =
+    "one rounding to float, of a number up to 1; the volumes in extended precision; 0.01 for double's share";
+
+constexpr StressTest kTests[] = {
+    {.name = "projection/near-plane",
+     .what = "triangles with corners before the eye, behind it, exactly on its plane and on the near plane cover what "
+             "rays see of them, at points beyond the near plane",
+     .bound = 0.0029,
+     .unit = "pixels",
+     .source = "snapping moves an outline by at most sqrt(2)/512 = 0.00276 pixel; double's rounding of corners cut at "
+               "the near plane 0.0001; the volumes in extended precision",
+     .naive = kNoClip,
+     .trials = 50'000,
+     .run = displaced<random_straddling>},
+    {.name = "projection/guard-band",
+     .what = "triangles that reach 1e4 to 1e7 pixels beyond the window cover what rays see of them",
+     .bound = 0.00277,
+     .unit = "pixels",
+     .source = "snapping moves an outline by at most sqrt(2)/512 = 0.00276 pixel; the volumes in extended precision",
+     .naive = kNoClip,
+     .trials = 50'000,
+     .run = displaced<random_beyond_guard>},
+    {.name = "projection/once-clipped",
+     .what =
+         "a floor of folded triangles under the eye and behind it, cut at the near plane and the guard band, covers "
+         "each sample that sees it once, or twice more for each fold, and the others not",
+     .bound = 0,
+     .unit = "wrong samples",
+     .source = "parity: as coverage/once-grids, orientation being lost; the floor's outline in extended precision",
+     .naive = kNoClip,
+     .trials = 10'000,
+     .run = clipped_floor},
+    {.name = "projection/barycentrics",
+     .what = "u and v are perspective-correct on triangles whose corners are up to 1000 times as far as others",
+     .bound = 0.51,
+     .unit = "2^-24",
+     .source = kRounding,
+     .naive = "affine: ratios of areas on the screen",
+     .trials = 30'000,
+     .run = barycentrics<random_well_seen>},
+    {.name = "projection/barycentrics-straddling",
+     .what = "u and v are perspective-correct on triangles that pass through the near plane and the eye's",
+     .bound = 0.51,
+     .unit = "2^-24",
+     .source = kRounding,
+     .naive = "affine: ratios of areas on the screen",
+     .trials = 50'000,
+     .run = barycentrics<random_straddling>},
+    {.name = "projection/slivers",
+     .what = "a sample that only the snapped outline of a sliver covers gets a point of the sliver next to it",
+     .bound = 0.0058,
+     .unit = "pixels",
+     .source = "the sliver is within snapping's sqrt(2)/512 pixel, and a mirrored sample no farther from it: 0.0055 in "
+               "all; u and v rounded to float: 0.0003",
+     .naive = "affine: ratios of areas on the screen",
+     .trials = 50'000,
+     .run = points_aside},
+    {.name = "projection/depth",
+     .what = "distance and nearness (near/depth) are right on triangles whose corners are up to 1000 times as far as "
+             "others",
+     .bound = 1.01,
+     .unit = "2^-24 of itself",
+     .source = "one rounding to float; the volumes in extended precision; 0.01 for double's share",
+     .naive = "a float z-buffer, z/w in [-1, 1] between 0.1 and 1e5 metres",
+     .trials = 30'000,
+     .run = depths<random_well_seen>},
+    {.name = "projection/depth-order",
+     .what =
+         "between 1e-3 and 1e5 metres, of two parallel surfaces a few floats apart the nearer is seen, whichever is "
+         "drawn first",
+     .bound = 0,
+     .unit = "wrong",
+     .source = "near/depth rounds monotonically, by 2^-24 of itself at most: depths 2^-23 apart keep their order",
+     .naive = "a float z-buffer, z/w in [-1, 1]",
+     .trials = 20'000,
+     .run = depth_order},
+    {.name = "projection/draw-order",
+     .what = "of triangles at the same place and depth the one of the lowest number is seen, in any order of drawing",
+     .bound = 0,
+     .unit = "wrong samples",
+     .source = "each triangle drawn by itself, and the rule applied by hand: of equal nearness the lower number",
+     .naive = "nearer replaces, else whoever came first stays",
+     .trials = 10'000,
+     .run = draw_order},
+};
+
+} // namespace
+
+std::span<const StressTest> projection_tests() { return kTests; }
+
+} // namespace duet::compare

@@ -1,0 +1,160 @@
+#include "compare/stress/suite.h"
+
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/error.h"
+#include "common/system/stopwatch.h"
+#include "compare/stress/sabotage.h"
+#include "compare/stress/stress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+using nlohmann::json;
+
+std::string readable(double value) {
+    std::ostringstream out;
+    out << std::setprecision(3) << value;
+    return out.str();
+}
+
+/// The terminal's table: widths are those of the names at hand.
+class Table {
+public:
+    Table(const std::vector<StressTest>& tests, bool visible) : visible_(visible) {
+        for (const StressTest& test : tests) {
+            name_ = std::max(name_, test.name.size());
+            bound_ = std::max(bound_, bound_text(test).size());
+        }
+    }
+
+    void head() const {
+        row({"", "test", "trials", "failures", "worst", "bound", "books' failures", "worst",
+             "source of the bound; the books' way"});
+    }
+    void add(const StressTest& test, const StressResult& result) const {
+        row({result.failed() ? "FAILED" : "ok", std::string(test.name), message(result.trials),
+             message(result.careful.failures), readable(result.careful.worst), bound_text(test),
+             result.naive ? message(result.naive->failures) : "", result.naive ? readable(result.naive->worst) : "",
+             std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
+    }
+
+private:
+    static std::string bound_text(const StressTest& test) {
+        return readable(test.bound) + " " + std::string(test.unit);
+    }
+    struct Row {
+        std::string verdict, name, trials, failures, worst, bound, naive_failures, naive_worst, source;
+    };
+    void row(const Row& r) const {
+        if (!visible_) return;
+        std::cout << std::left << std::setw(7) << r.verdict << std::setw(static_cast<int>(name_)) << r.name
+                  << std::right << std::setw(9) << r.trials << std::setw(9) << r.failures << std::setw(10) << r.worst
+                  << "  " << std::left << std::setw(static_cast<int>(bound_)) << r.bound << std::right << std::setw(16)
+                  << r.naive_failures << std::setw(10) << r.naive_worst << "  " << r.source << '\n'
+                  << std::flush;
+    }
+
+    bool visible_;
+    std::size_t name_ = 4, bound_ = 5;
+};
+
+/// What is needed to see a failure again.
+void explain(const StressTest& test, const StressResult& result, const StressOptions& options) {
+    std::cerr << "compare: " << test.name << ": ";
+    if (result.trials == 0) {
+        std::cerr << "no trial judged anything\n";
+        return;
+    }
+    std::cerr << result.careful.failures << " of " << result.trials << " trials failed, the first being number "
+              << result.careful.first_failure << " of seed " << options.seed;
+    if (!result.account.empty()) std::cerr << ": " << result.account;
+    std::cerr << "\n  what must hold: " << test.what << "\n  the bound's source: " << test.source << '\n';
+}
+
+/// A number as JSON holds it: one that is not finite as a string.
+json number(double value) { return std::isfinite(value) ? json(value) : json(readable(value)); }
+
+json as_json(const StressTest& test, const StressResult& result) {
+    json row = {{"name", test.name},
+                {"what", test.what},
+                {"trials", result.trials},
+                {"failures", result.careful.failures},
+                {"worst", number(result.careful.worst)},
+                {"bound", test.bound},
+                {"unit", test.unit},
+                {"source", test.source}};
+    if (result.careful.failures > 0) {
+        row["first_failure"] = result.careful.first_failure;
+        row["account"] = result.account;
+    }
+    if (result.naive)
+        row["naive"] = {
+            {"what", test.naive}, {"failures", result.naive->failures}, {"worst", number(result.naive->worst)}};
+    return row;
+}
+
+void print_list(const std::vector<StressTest>& tests) {
+    for (const StressTest& test : tests) {
+        std::cout << test.name << "\n  " << test.what << "\n  bound: " << readable(test.bound) << ' ' << test.unit
+                  << " (" << test.source << ")\n";
+        if (!test.naive.empty()) std::cout << "  the books' way: " << test.naive << '\n';
+        std::cout << "  trials: " << test.trials << '\n';
+    }
+    if constexpr (kSabotageBuild)
+        for (const Sabotage& sabotage : sabotages())
+            std::cout << "sabotage " << sabotage.name << ' ' << sabotage.test << '\n';
+}
+
+} // namespace
+
+int stress(const StressOptions& options) {
+    const std::vector<StressTest> tests = select_stress_tests(options.only);
+    if (options.list) {
+        print_list(tests);
+        return kExitOk;
+    }
+    check_json_path(options.stats); // found out before a long run, not after
+    if (!options.sabotage.empty()) remove_guard(options.sabotage);
+    const InterruptFlag interrupt;
+    const Stopwatch watch;
+    const Table table(tests, !options.quiet && options.stats != "-");
+    table.head();
+    json rows = json::array();
+    std::size_t failed = 0;
+    ProgressBar bar("stress", options.quiet);
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+        const auto whole = [&](double part) {
+            bar.update((static_cast<double>(i) + part) / static_cast<double>(tests.size()));
+        };
+        const StressSetting setting{options.seed, options.factor, options.threads, {&interrupt.flag(), whole}};
+        const StressResult result = tests[i].run(tests[i], setting);
+        bar.finish();
+        if (interrupt.raised()) return kExitInterrupted;
+        table.add(tests[i], result);
+        if (result.failed()) {
+            explain(tests[i], result, options);
+            ++failed;
+        }
+        rows.push_back(as_json(tests[i], result));
+    }
+    if (!options.stats.empty())
+        write_json(options.stats, {{"program", "compare stress"},
+                                   {"version", DUET_VERSION},
+                                   {"seed", options.seed},
+                                   {"factor", options.factor},
+                                   {"tests", rows}});
+    if (!options.quiet)
+        std::cerr << tests.size() << " tests in " << readable_seconds(watch.seconds()) << ", " << failed << " failed\n";
+    return failed > 0 ? kExitFailed : kExitOk;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,28 @@
+// The rasterizer's shading, for hits that its caller has found: its light split into parts, for those who ask where
+// light comes from.
+#pragma once
+
+#include "common/scene/scene.h"
+#include "raster/render.h"
+
+namespace duet::raster {
+
+/// Radiance towards the viewer, as Shading::kLit approximates it: the parts add up to what a picture shows. A part that
+/// Settings::parts leaves out is black.
+struct LightParts {
+    Rgb emission;    ///< seen directly: emissive surfaces, and the environment behind all
+    Rgb direct;      ///< from Scene::lights by diffuse surfaces and rough metal, unshadowed
+    Rgb environment; ///< from the environment by diffuse surfaces, unoccluded
+    Rgb reflection;  ///< the environment alone, by way of metal and glass
+
+    Rgb sum() const { return emission + direct + environment + reflection; }
+};
+
+/// How a picture of these settings would show what `ray`, of unit direction, hits; the background where that is
+/// nothing.
+LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit);
+/// The same of a surface point whose BSDF the caller has worked out. to_viewer: unit, in the world.
+LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
+                         const Bsdf& bsdf, Vec3 to_viewer);
+
+} // namespace duet::raster

@@ -1,0 +1,32 @@
+// One part of the light alone, for a look at it, and for its price: paths go on only where they can find it.
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/vertex.h"
+
+namespace duet::raytrace {
+
+namespace {
+
+bool is_diffuse(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    return std::holds_alternative<DiffuseBsdf>(make_vertex(plan, ray, hit).bsdf);
+}
+
+} // namespace
+
+// The plan ends paths after one scattering.
+Rgb lights_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
+    const LightParts parts = path_parts(plan, ray, hit, sampler, counts);
+    return parts.emission + parts.direct;
+}
+
+// The plan samples the environment alone, and ends paths after one scattering.
+Rgb environment_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
+    if (plan.environment == nullptr || !hit.valid() || !is_diffuse(plan, ray, hit)) return Rgb();
+    return path_parts(plan, ray, hit, sampler, counts).environment;
+}
+
+Rgb reflection_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
+    if (!hit.valid() || is_diffuse(plan, ray, hit)) return Rgb();
+    return path_parts(plan, ray, hit, sampler, counts).reflection;
+}
+
+} // namespace duet::raytrace

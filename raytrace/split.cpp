@@ -1,0 +1,30 @@
+#include "raytrace/split.h"
+
+#include "common/system/error.h"
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/vertex.h"
+#include "raytrace/pass.h"
+
+namespace duet::raytrace {
+
+SplitTracer::SplitTracer(const Prepared& prepared, const View& view, const Settings& settings)
+    : prepared_(prepared), settings_(settings), plan_(prepared_.data(), view, settings_), camera_(view) {
+    DUET_CHECK(settings.integrator == Integrator::kPath || settings.integrator == Integrator::kDirect);
+}
+
+CameraSample SplitTracer::sample(int x, int y, std::uint32_t index) const {
+    Sampler sampler(settings_.sampler, settings_.seed, settings_.samples_per_pixel);
+    sampler.start(x, y, index);
+    CameraSample result;
+    result.ray = camera_ray(plan_, camera_, x, y, sampler);
+    result.hit = plan_.prepared.accelerator.closest(result.ray);
+    if (result.hit.valid()) {
+        const Vertex vertex = make_vertex(plan_, result.ray, result.hit);
+        result.surface = FirstSurface{vertex.point, vertex.bsdf};
+    }
+    RayCounts counts;
+    result.light = path_parts(plan_, result.ray, result.hit, sampler, counts);
+    return result;
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,21 @@
+// tests/golden/image-metrics.csv: figures of other programs on the pairs of test_pictures.h.
+#pragma once
+
+#include "common/system/error.h"
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace duet::compare {
+
+/// Throws Error where the file has no line `pair,metric,…`.
+inline double golden_figure(const std::string& pair, const std::string& metric) {
+    std::ifstream file(std::string(DUET_SOURCE_DIR) + "/tests/golden/image-metrics.csv");
+    const std::string wanted = pair + "," + metric + ",";
+    for (std::string line; std::getline(file, line);)
+        if (line.rfind(wanted, 0) == 0) return std::stod(line.substr(wanted.size()));
+    throw Error(message("image-metrics.csv has no line ", wanted));
+}
+
+} // namespace duet::compare

@@ -1,0 +1,102 @@
+// Our pictures against Cycles' of the same scenes. Cases are skipped where Blender is not installed.
+#include "compare/peers/cycles.h"
+
+#include "common/system/file.h"
+#include "compare/bench/bias_check.h"
+#include "compare/bench/render_reference.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <unistd.h>
+
+using namespace duet;
+using namespace duet::compare;
+using nlohmann::json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Scratch {
+    fs::path path = fs::temp_directory_path() / message("duet-cycles-test-", ::getpid());
+    Scratch() { fs::create_directories(path); }
+    ~Scratch() { fs::remove_all(path); }
+};
+
+bool blender_is_installed() {
+    const bool found = std::system("command -v blender >/dev/null 2>&1") == 0;
+    if (!found) MESSAGE("skipped: Blender is not installed");
+    return found;
+}
+
+/// The z-test of block means of both renderers' pictures.
+BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
+    const Scratch scratch;
+    const Scene scene = load_scene(path);
+    const View view{scene.camera, width, height};
+    const ReferenceSettings settings{scratch.path, spp, 64, 2};
+    CyclesPeer peer(scene, view, {settings.depth, settings.threads});
+    Control control;
+    const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_picture(n, seed, control); };
+    const KeptReference cycles =
+        reference_by_seeds("cycles", kCyclesExportVersion, scene, view, settings, render, control);
+    const KeptReference ours = reference_by("path", scene, view, settings, control);
+    const BiasCheck check = check_bias(ours.reference, cycles.reference);
+    MESSAGE(path.filename().string(), ": largest |z| ", std::abs(check.worst_z), ", p ", check.p_value, ", detectable ",
+            check.detectable);
+    return check;
+}
+
+/// everything.json without what Cycles has not: noise and motion.
+void make_exportable(json& value, const fs::path& folder) {
+    if (value.is_object()) {
+        value.erase("transform_end");
+        if (value.contains("file")) value["file"] = (folder / value["file"].get<std::string>()).string();
+        if (value.contains("type") && value["type"] == "noise") value = {{"type", "checker"}, {"scale", 40}};
+    }
+    if (value.is_structured())
+        for (json& member : value) make_exportable(member, folder);
+}
+
+} // namespace
+
+TEST_SUITE("image") {
+
+    // A false alarm: once in 1000 (BiasCheck::kSignificance), with fixed seeds.
+    TEST_CASE("the Cornell box: both pictures agree within their noise") {
+        if (!blender_is_installed()) return;
+        const BiasCheck check = against_cycles(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json", 48, 48, 512);
+        CHECK(check.consistent());
+        CHECK(check.detectable < 0.01);
+    }
+
+    // All materials, lights, textures but noise, an environment picture, a thin lens, mirrored and instanced meshes.
+    TEST_CASE("everything that can be exported: both pictures agree within their noise") {
+        if (!blender_is_installed()) return;
+        const Scratch scratch;
+        const fs::path models = fs::path(DUET_SOURCE_DIR) / "models";
+        json scene = json::parse(read_file(models / "everything.json"));
+        make_exportable(scene, models);
+        write_file(scratch.path / "everything.json", scene.dump());
+        const BiasCheck check = against_cycles(scratch.path / "everything.json", 64, 48, 512);
+        CHECK(check.consistent());
+        CHECK(check.detectable < 0.02);
+    }
+
+    TEST_CASE("Blender's time is its render's, and a stop ends it") {
+        if (!blender_is_installed()) return;
+        const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
+        CyclesPeer peer(scene, {scene.camera, 32, 32}, {8, 1});
+        Control control;
+        peer.render({1, 1, false}, control);
+        const double few = peer.render({16, 1, false}, control).seconds;
+        const double many = peer.render({256, 1, false}, control).seconds;
+        CHECK(few > 0);
+        CHECK(many > 4 * few); // 16 times the samples: no fixed cost worth the name is in it
+        const std::atomic<bool> stop{true};
+        Control stopped{&stop, {}};
+        CHECK(peer.render({1 << 20, 1, false}, stopped).picture.empty());
+    }
+}

@@ -1,0 +1,156 @@
+// Shares of a difference: pictures made by hand, whose shares are known.
+#include "compare/ladder/shares.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace duet;
+using namespace duet::compare;
+
+namespace {
+
+/// A ladder of one picture at all steps.
+LadderPictures level(const ImageRgb& picture) {
+    LadderPictures pictures;
+    pictures.first = picture;
+    for (auto& half : pictures.halves) half.fill(picture);
+    return pictures;
+}
+
+/// Light added to steps k and above (k from 1), in one half or both.
+void rise(LadderPictures& pictures, std::size_t k, Rgb by, std::size_t pixel, int half = -1) {
+    for (int h = 0; h < 2; ++h)
+        for (std::size_t step = k; (half < 0 || half == h) && step <= kRungCount; ++step)
+            pictures.halves[static_cast<std::size_t>(h)][step - 1][pixel] += by;
+}
+
+LadderPictures random_pictures(int width, int height, unsigned seed) {
+    std::mt19937 generator(seed);
+    std::exponential_distribution<float> light(0.7f);
+    LadderPictures pictures = level(ImageRgb(width, height));
+    const auto fill = [&](ImageRgb& picture) {
+        for (Rgb& pixel : picture.pixels()) pixel = {light(generator), light(generator), light(generator) * 1000};
+    };
+    fill(pictures.first);
+    for (auto& half : pictures.halves)
+        for (ImageRgb& picture : half) fill(picture);
+    return pictures;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("shares add up to 1 whatever the pictures, by computation: to 1e-12") {
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            const Shares s = shares(random_pictures(61, 43, seed));
+            CHECK(std::abs(s.sum - 1) < 1e-12);
+            CHECK(s.share[kNoise] > 0.01);
+            CHECK_FALSE(s.none);
+        }
+    }
+
+    TEST_CASE("one step that changes: all of the difference is its share, and all pixels are its own") {
+        for (std::size_t k = 1; k <= kRungCount; ++k) {
+            LadderPictures pictures = level(ImageRgb(8, 4, Rgb(0.25f)));
+            for (std::size_t i = 0; i < 16; ++i) rise(pictures, k, Rgb(0.5f, 0, 0.125f), i);
+            const Shares s = shares(pictures);
+            CHECK(s.share[k - 1] == doctest::Approx(1).epsilon(1e-14));
+            CHECK(s.rms == doctest::Approx(std::sqrt((0.25 + 0.015625) / 3 / 2)).epsilon(1e-12));
+            const CauseMap map = map_causes(pictures);
+            CHECK(map.visible == 0.5);
+            CHECK(map.pixels[k - 1] == 1);
+            CHECK(map.cause[0] == k - 1);
+            CHECK(map.steps[0] == 88); // sRGB: 0.25 is 137, 0.75 is 225
+            CHECK(map.steps[31] == 0);
+        }
+    }
+
+    TEST_CASE("steps that cancel have shares of both signs: +2 and −1 of a change of 1") {
+        LadderPictures pictures = level(ImageRgb(1, 1, Rgb(4)));
+        rise(pictures, 3, Rgb(2), 0);
+        rise(pictures, 6, Rgb(-1), 0);
+        const Shares s = shares(pictures);
+        CHECK(s.share[2] == doctest::Approx(2));
+        CHECK(s.share[5] == doctest::Approx(-1));
+        CHECK(s.sum == doctest::Approx(1));
+    }
+
+    TEST_CASE("what the halves do not agree on is noise: ±n about a change d have shares d² and n² of d² + … each") {
+        // Half A is too bright by n, half B too dark by n: D = d, ⟨Dᴬ, Dᴮ⟩ = d² − n².
+        const double d = 2, n = 0.5;
+        LadderPictures pictures = level(ImageRgb(3, 3, Rgb(4)));
+        for (std::size_t i = 0; i < 9; ++i) {
+            rise(pictures, 4, Rgb(2), i);
+            rise(pictures, 7, Rgb(0.5f), i, 0);
+            rise(pictures, 7, Rgb(-0.5f), i, 1);
+        }
+        const Shares s = shares(pictures);
+        CHECK(s.share[kNoise] == doctest::Approx(n * n / (d * d)));
+        CHECK(s.share[3] == doctest::Approx(1)); // ½ (d(d − n) + d(d + n)) / d²
+        CHECK(s.share[6] == doctest::Approx(-n * n / (d * d)));
+        CHECK(std::abs(s.sum - 1) < 1e-14);
+    }
+
+    TEST_CASE("noise without a difference is the noise's, not the last rung's") {
+        std::mt19937 generator(3);
+        std::normal_distribution<float> noise(0, 0.1f);
+        LadderPictures pictures = level(ImageRgb(64, 64, Rgb(1)));
+        for (std::size_t i = 0; i < pictures.first.size(); ++i)
+            for (int half = 0; half < 2; ++half) rise(pictures, 7, Rgb(noise(generator)), i, half);
+        const Shares s = shares(pictures);
+        // ‖(A − B)/2‖² and ‖(A + B)/2‖² are sums of 4096 independent squares of equal variance: their ratio has a
+        // standard error of 3 %.
+        CHECK(s.share[kNoise] == doctest::Approx(1).epsilon(0.15));
+        CHECK(std::abs(s.share[6]) < 0.15);
+    }
+
+    TEST_CASE("equal pictures, and such as differ by rounding, have nothing to share out") {
+        LadderPictures pictures = level(ImageRgb(5, 5, Rgb(0.5f)));
+        CHECK(shares(pictures).none);
+        rise(pictures, 3, Rgb(1e-7f), 7);
+        CHECK(shares(pictures).none);
+        rise(pictures, 3, Rgb(0.01f), 7);
+        CHECK_FALSE(shares(pictures).none);
+        CHECK(shares(level(ImageRgb(5, 5))).none); // black
+        CHECK(map_causes(level(ImageRgb(5, 5))).visible == 0);
+    }
+
+    TEST_CASE("a pixel's causes add up to the square of its difference") {
+        const LadderPictures pictures = random_pictures(7, 5, 1);
+        const ImageRgb last = pictures.picture(kRungCount);
+        for (std::size_t i = 0; i < last.size(); ++i) {
+            double sum = 0, square = 0;
+            for (const double cause : pixel_causes(pictures, i)) sum += cause;
+            for (std::size_t c = 0; c < 3; ++c)
+                square += sqr(static_cast<double>(pictures.first[i][c]) - static_cast<double>(last[i][c]));
+            CHECK(sum == doctest::Approx(square).epsilon(1e-4)); // `last` is rounded to float
+        }
+    }
+
+    TEST_CASE("the largest cause is that of a pixel and its neighbours; a share, that of each pixel by itself") {
+        LadderPictures pictures = level(ImageRgb(5, 5, Rgb(0.1f)));
+        for (std::size_t i = 0; i < 25; ++i) rise(pictures, i == 12 ? 6 : 4, Rgb(0.5f), i);
+        CauseMap map = map_causes(pictures);
+        CHECK(map.cause(2, 2) == 3);
+        CHECK(map.pixels[3] == 1);
+        CHECK(shares(pictures).share[5] == doctest::Approx(1.0 / 25));
+        rise(pictures, 6, Rgb(1.5f), 12); // 2² outweighs 8 · 0.5², and reaches as far as the neighbours
+        map = map_causes(pictures);
+        for (int y = 0; y < 5; ++y)
+            for (int x = 0; x < 5; ++x) CHECK(map.cause(x, y) == (x % 4 > 0 && y % 4 > 0 ? 5 : 3));
+    }
+
+    TEST_CASE("the picture of causes: full colours where much is to be seen, dark where nothing is") {
+        LadderPictures pictures = level(ImageRgb(2, 1, Rgb(0.1f)));
+        rise(pictures, 4, Rgb(0.5f), 0);
+        const ImageRgb picture = cause_picture(map_causes(pictures));
+        CHECK(picture(0, 0).b > picture(0, 0).r); // blue: shadows
+        CHECK(picture(0, 0).b > 0.3f);
+        CHECK(max_component(picture(1, 0)) < 0.02f);
+        for (std::size_t a = 0; a < kCauseCount; ++a)
+            for (std::size_t b = 0; b < a; ++b) CHECK(cause_color(a) != cause_color(b));
+    }
+}

@@ -1,0 +1,61 @@
+// Pairs of pictures made by code, in whole numbers, so that other programs can make the same: tests/golden/README.md.
+#pragma once
+
+#include "common/image/image.h"
+
+#include <cstdint>
+
+namespace duet::compare {
+
+struct TestPair {
+    ImageRgb test, reference;
+};
+
+/// 0 to 2^24 − 1, even.
+inline std::uint32_t pixel_noise(std::uint32_t x, std::uint32_t y, std::uint32_t c) {
+    std::uint32_t h = (x * 73856093u) ^ (y * 19349663u) ^ (c * 83492791u);
+    h = h * 1664525u + 1013904223u;
+    h ^= h >> 15;
+    h *= 2246822519u;
+    h ^= h >> 13;
+    return h >> 8;
+}
+
+/// A checkerboard of slopes of different colours, 0 to 255.
+inline int pattern(int x, int y, int c) {
+    return ((x / 12 + y / 9) % 2 * 110 + x * (1 + c) / 2 + y * (3 - c) / 2) % 256;
+}
+
+/// 8-bit values / 255; the test picture has noise of up to ±24 added.
+inline TestPair encoded_pair(int width = 96, int height = 70) {
+    TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
+                const int value = pattern(x, y, c);
+                const int noise = static_cast<int>(pixel_noise(u(x), u(y), u(c)) * std::uint64_t{49} >> 24) - 24;
+                pair.reference(x, y)[u(c)] = static_cast<float>(value) / 255.0f;
+                pair.test(x, y)[u(c)] = static_cast<float>(clamp(value + noise, 0, 255)) / 255.0f;
+            }
+    return pair;
+}
+
+/// Linear values up to 4, and a lamp of 30; the test picture's are these times 0.5 to 1.5.
+inline TestPair linear_pair(int width = 96, int height = 70) {
+    TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
+                const int value = pattern(x, y, c);
+                const bool lamp = x / 8 == 5 && y / 8 == 3;
+                const float radiance = lamp ? 30.0f : static_cast<float>(value * value) / 16384.0f; // exact
+                const float factor = 0.5f + static_cast<float>(pixel_noise(u(x), u(y), u(c))) / 16777216.0f;
+                pair.reference(x, y)[u(c)] = radiance;
+                pair.test(x, y)[u(c)] = radiance * factor; // rounded to float
+            }
+    return pair;
+}
+
+} // namespace duet::compare
