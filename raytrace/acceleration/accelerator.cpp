@@ -148,19 +148,19 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
             inside = to_object_space(ray, object.to_world, object.to_object);
         }
         if (!traceable(inside)) return false;
-        return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
+        const Bvh& shape = shapes_[instance.shape];
+        if constexpr (kAny)
+            return find_any(shape, inside, instance.object, so_far, no_instance);
+        else
+            return find_closest(shape, inside, instance.object, so_far, no_instance);
     };
-}
-
-template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
-    if (!traceable(ray)) return false;
-    return traverse<kAny>(world_, ray, kNoObject, best, instance_test<kAny>(ray));
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
-    return traverse_scene<false>(ray, best) ? best : Hit{};
+    if (!traceable(ray)) return {};
+    return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
 }
 
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -181,8 +181,7 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
-    Hit best = end;
-    return traverse_scene<true>(ray, best);
+    return traceable(ray) && find_any(world_, ray, kNoObject, end, instance_test<true>(ray));
 }
 
 std::int64_t Accelerator::memory_bytes() const {

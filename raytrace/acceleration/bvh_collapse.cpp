@@ -51,7 +51,7 @@ private:
             children[count++] = opened.right;
         }
 
-        check_index(bvh_.nodes.size());
+        check_index(bvh_.nodes.size() * (sizeof(BvhNode) / BvhRef::kNodeUnit));
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.push_back(BvhNode{});
         for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {

@@ -98,6 +98,14 @@ private:
     [[gnu::always_inline]] bool triangles(const TriangleBlock& block, Hit& best) {
         const BlockTest test(sheared_.shear, block, best.t);
         if (test.candidates() == 0) return false;
+        if constexpr (kAny) {
+            using Batch = FloatBatch<TriangleBlock::kSize>;
+            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
+            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
+            }
+        }
         const Lanes t(test.t()), u(test.u()), v(test.v());
         for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));

@@ -1,5 +1,5 @@
 // Sending a packet of coherent rays through a hierarchy together: each box and each triangle is fetched once and tested
-// against all of them. The hits are those of `traverse`, to the bit.
+// against all of them. The hits are those of `find_closest`, to the bit.
 #pragma once
 
 #include "raytrace/acceleration/bvh_traverse.h"
@@ -141,8 +141,8 @@ private:
     std::array<Interval, 3> near_interval_, far_interval_;
 };
 
-/// The closest hits of a coherent packet's rays, as `traverse` finds them for each. `instance(ray)` makes what
-/// `traverse` asks for instances' hits.
+/// The closest hits of a coherent packet's rays, as `find_closest` finds them for each. `instance(ray)` makes what
+/// `find_closest` asks for instances' hits.
 template <typename Instance> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
