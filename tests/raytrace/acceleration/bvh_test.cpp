@@ -373,7 +373,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("each primitive lies in one leaf, inside its box; kinds are not mixed; threads don't matter") {
         Random random(11);
-        std::vector<BuildItem> items;
+        BuildItems items;
         for (std::size_t i = 0; i < 20000; ++i) {
             const Vec3 p = random.vector();
             items.push_back(
@@ -389,7 +389,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("degenerate sets of boxes build quickly and not too deep") {
-        std::vector<std::vector<BuildItem>> sets(7);
+        std::vector<BuildItems> sets(7);
         Random random(13);
         for (std::size_t i = 0; i < 100000; ++i) {
             const Vec3 p = random.vector();
