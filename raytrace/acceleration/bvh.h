@@ -21,7 +21,7 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance }
 
 /// Triangles that are tested at once. Absent ones are NaN, which nothing hits.
 struct alignas(32) TriangleBlock {
-    static constexpr std::size_t kSize = 8;
+    static constexpr std::size_t kSize = kSimdLanes;
     template <typename T> using Lanes = std::array<T, kSize>;
 
     std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
@@ -99,7 +99,7 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 struct Bvh {
     /// The longest way from the root to a leaf: bounds a traversal's stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = 8; ///< primitives
+    static constexpr std::uint32_t kMaxLeaf = TriangleBlock::kSize; ///< primitives
 
     BvhRef root = BvhRef::node(0);
     Box3 bounds;
