@@ -7,33 +7,28 @@
 #include "compare/bench/render_reference.h"
 #include "compare/metrics/error_metrics.h"
 #include "raytrace/render.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-bench-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
-
-BenchOptions small_bench(const Scratch& scratch) {
+BenchOptions small_bench(const ScratchFolder& scratch) {
     BenchOptions options;
     options.scenes = {fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json"};
-    options.folder = scratch.path / "report";
-    options.references = scratch.path / "references";
+    options.folder = scratch / "report";
+    options.references = scratch / "references";
     options.size = {16, 16};
     options.choice.techniques = {"raster", "path"};
     options.choice.samplers = {"sobol"};
@@ -259,7 +254,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a bench writes its three files, with the promised keys; the reference is rendered once") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         options.excluded = {parse_excluded_rectangle("0.3,0,0.7,0.3")};
         REQUIRE(bench(options) == 0);
@@ -277,7 +272,7 @@ TEST_SUITE("unit") {
         }
         // The figures do not depend on threads: seeds and pictures are the same.
         options.choice.threads = 1;
-        options.folder = scratch.path / "again";
+        options.folder = scratch / "again";
         REQUIRE(bench(options) == 0);
         const json again = json::parse(read_file(options.folder / "report.json"));
         CHECK(again["scenes"][0]["reference"]["rendered"] == false);
@@ -285,7 +280,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a wrong picture of the independent estimator fails the bench") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         REQUIRE(bench(options) == 0);
         const Scene scene = load_scene(options.scenes[0]);
@@ -298,7 +293,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("unknown techniques and samplers are refused before anything is rendered") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         options.choice.techniques = {"path", "radiosity"};
         CHECK_THROWS_AS(bench(options), Error);
