@@ -41,12 +41,6 @@ grep -q "raster/frustum.*same bits" "$scratch/stdout" || fail "compare skip prin
 expect 2 "$bin/compare" skip models/cornell.json --only nothing
 one_line_error raster/back_faces
 
-"$bin/compare" run models/cornell.json -o "$scratch/interrupted" --size 64x64 --spp 10000000 --quiet &
-process=$!
-sleep 2
-kill -TERM $process
-code=0
-wait $process || code=$?
-[ "$code" -eq 130 ] || fail "SIGTERM: exit code $code, expected 130"
-[ -z "$(ls -A "$scratch/interrupted")" ] || fail "SIGTERM: $(ls -A "$scratch/interrupted") was left behind"
+terminated 2 "$bin/compare" run models/cornell.json -o "$scratch/interrupted" --size 64x64 --spp 10000000 --quiet
+nothing_in "$scratch/interrupted"
 finish
