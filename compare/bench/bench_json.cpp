@@ -59,7 +59,10 @@ json row_json(const Measurement& m, bool with_rest) {
 }
 
 json reference_json(const KeptReference& r) {
-    return {{"estimator", r.estimator}, {"file", r.file.string()}, {"rendered", r.rendered}, {"mse", number(r.mse)}};
+    return {{"estimator", r.estimator},
+            {"file", r.file.string()},
+            {"rendered", r.rendered},
+            {"mse", number(r.reference.mse())}};
 }
 
 json check_json(const IndependentCheck& c) {

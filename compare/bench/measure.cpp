@@ -57,13 +57,6 @@ template <typename Figure> Estimate mean_over(const std::vector<TrialFigures>& t
     return mean_of(values);
 }
 
-/// The reference's error as its own variance has it: what a perfect picture would be charged with.
-double reference_mse(const Reference& reference) {
-    double sum = 0;
-    for (const Rgb& variance : reference.variance) sum += average(Rgbd(variance));
-    return sum / static_cast<double>(reference.variance.size());
-}
-
 Measurement finish(Running& running, double reference_error) {
     Measurement m = std::move(running.measurement);
     std::vector<double> seconds;
@@ -162,7 +155,7 @@ std::vector<Measurement> measure(const std::vector<Contender>& contenders, const
                 std::max(done / (round_work * settings.repeats), std::min(watch.seconds() / settings.time_limit, 1.0)));
         }
     }
-    const double reference_error = reference_mse(reference);
+    const double reference_error = reference.mse();
     std::vector<Measurement> results;
     for (Running& r : running) results.push_back(finish(r, reference_error));
     return results;

@@ -14,6 +14,9 @@ namespace duet::compare {
 struct Reference {
     ImageRgb mean;
     ImageRgb variance; ///< of `mean`, estimated in each pixel by itself with one degree of freedom or more
+
+    /// Its own error, estimated: the mean of its variance. A perfect picture would be charged with it.
+    double mse() const;
 };
 
 /// Everything that decides what a reference shows and how well. Equal keys, equal pictures.

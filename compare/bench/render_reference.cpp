@@ -17,12 +17,6 @@ std::uint64_t reference_seed(const std::string& estimator) {
     return seed;
 }
 
-double mean_variance(const Reference& reference) {
-    double sum = 0;
-    for (const Rgb& v : reference.variance) sum += average(Rgbd(v));
-    return sum / static_cast<double>(reference.variance.size());
-}
-
 /// Sums of pictures and of their squares, in double.
 class MeanOfPictures {
 public:
@@ -63,7 +57,7 @@ KeptReference found_or_rendered(const std::string& estimator, int version, const
                            settings.depth,          settings.spp};
     const std::string name = scene.path.stem().string();
     const ReferenceCache cache(settings.folder);
-    KeptReference kept{{}, estimator, cache.path(name, key), false, 0};
+    KeptReference kept{{}, estimator, cache.path(name, key), false};
     if (std::optional<Reference> found = cache.find(name, key)) {
         kept.reference = std::move(*found);
     } else {
@@ -73,7 +67,6 @@ KeptReference found_or_rendered(const std::string& estimator, int version, const
         kept.rendered = true;
         cache.store(name, key, kept.reference);
     }
-    kept.mse = mean_variance(kept.reference);
     return kept;
 }
 

@@ -25,7 +25,6 @@ struct KeptReference {
     std::string estimator;
     std::filesystem::path file;
     bool rendered = false; ///< now; else it was in the cache
-    double mse = 0;        ///< its own, estimated: the mean of its variance
 
     explicit operator bool() const { return !reference.mean.empty(); }
 };
