@@ -69,7 +69,9 @@ Measurement finish(Running& running, double reference_error) {
     m.rest_relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.relmse; });
     m.seconds = median_of(std::move(seconds));
     m.efficiency = efficiency_of(m.mse, m.seconds);
+    m.relmse_efficiency = efficiency_of(m.relmse, m.seconds);
     m.rest_efficiency = efficiency_of(m.rest_mse, m.seconds);
+    m.rest_relmse_efficiency = efficiency_of(m.rest_relmse, m.seconds);
     m.reference_share = m.mse.value > 0 ? reference_error / m.mse.value : 0;
     return m;
 }
@@ -93,10 +95,10 @@ void widen_efficiency(std::vector<Measurement>& rows, double drift, double share
     const double lost = share > 0 && share < 1 ? -std::log(share) : 0;
     constexpr double kManyDegrees = 1e6; // assumed, not estimated
     const Estimate pace{1, std::hypot(std::log1p(drift), lost) / 2, kManyDegrees};
-    for (Measurement& m : rows) {
-        m.efficiency = ratio_of(m.efficiency, pace);
-        m.rest_efficiency = ratio_of(m.rest_efficiency, pace);
-    }
+    for (Measurement& m : rows)
+        for (Estimate* const efficiency :
+             {&m.efficiency, &m.relmse_efficiency, &m.rest_efficiency, &m.rest_relmse_efficiency})
+            *efficiency = ratio_of(*efficiency, pace);
 }
 
 double processor_share(const std::vector<Measurement>& rows, int threads) {

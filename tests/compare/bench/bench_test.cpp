@@ -150,9 +150,12 @@ TEST_SUITE("unit") {
     TEST_CASE("bands of efficiency hold what a machine does between runs") {
         std::vector<Measurement> rows = measured({synthetic("us", 0, 0.1)});
         const double own = rows[0].efficiency.relative_error, value = rows[0].efficiency.value;
+        const double pace = std::hypot(std::log(1.15), std::log(2.0)) / 2;
         widen_efficiency(rows, 0.15, 0.5); // half of the processors' time was someone else's
         CHECK(rows[0].efficiency.value == value);
-        const double pace = std::hypot(std::log(1.15), std::log(2.0)) / 2;
+        CHECK(rows[0].relmse_efficiency.value == doctest::Approx(1 / (rows[0].relmse.value * rows[0].seconds.value)));
+        CHECK(rows[0].relmse_efficiency.relative_error ==
+              doctest::Approx(std::hypot(rows[0].relmse.relative_error, rows[0].seconds.relative_error, pace)));
         CHECK(rows[0].efficiency.relative_error == doctest::Approx(std::hypot(own, pace)));
         CHECK(rows[0].seconds.relative_error < 0.01);
         CHECK(rows[0].efficiency.high() / value > 1.9);
@@ -266,7 +269,7 @@ TEST_SUITE("unit") {
         REQUIRE(scene["rows"].size() == 4);
         for (const json& row : scene["rows"]) {
             CHECK(row["trials"].size() == 3);
-            for (const char* const key : {"mse", "relmse", "seconds", "efficiency"})
+            for (const char* const key : {"mse", "relmse", "seconds", "efficiency", "relmse_efficiency"})
                 CHECK(row[key]["low"] <= row[key]["high"]);
             CHECK(row["rest"]["mse"]["value"] < row["mse"]["value"]); // the lamp's edge is left out
         }
