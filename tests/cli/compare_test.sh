@@ -30,6 +30,7 @@ for seed in 1 2; do
     expect 0 "$bin/raytrace" models/cornell.json -o "$scratch/$seed.exr" --size 32x32 --spp 16 --aov variance --seed $seed --quiet
 done
 expect 0 "$bin/compare" images "$scratch/1.exr" "$scratch/2.exr" --fail-above z_p=1e-6 --fail-above psnr=3
+grep -q "alpha" "$scratch/stdout" && fail "the table speaks of an alpha that neither picture has"
 grep -q "no difference but noise" "$scratch/stdout" || fail "two seeds of one scene differ, or the table does not say"
 expect 1 "$bin/compare" images "$scratch/1.exr" "$scratch/2.exr" --fail-above mse=0 --fail-above ssim=1 --fail-above flip=0
 [ "$(wc -l <"$scratch/stderr")" -eq 3 ] || fail "three limits exceeded are not three lines"

@@ -143,6 +143,21 @@ TEST_SUITE("unit") {
         CHECK(found["mse"] == 0);
     }
 
+    TEST_CASE("compare images: alpha is not compared, and where there is one other than 1 the figures say so") {
+        const ScratchFolder scratch;
+        const std::vector<float> value{0.5f, 0.25f, 1.0f};
+        const auto write = [&](const char* name, const std::vector<float>& alpha) {
+            write_exr(scratch / name, 3, 1,
+                      {{"A", alpha, {}}, {"B", value, {}}, {"G", value, {}}, {"R", value, {}}});
+        };
+        write("a.exr", {1, 0.5f, 0});
+        write("b.exr", {1, 1, 1});
+        const json figures = figures_of(comparison(scratch, "a.exr", "b.exr"));
+        CHECK(figures["mse"] == 0);
+        CHECK(figures["transparent"]["a"] == 2);
+        CHECK(figures["transparent"]["b"] == 0);
+    }
+
     TEST_CASE("compare images: variances of an EXR file lead to a z-test") {
         const ScratchFolder scratch;
         const TestPair pair = linear_pair(24, 20);
