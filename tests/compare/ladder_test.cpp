@@ -250,7 +250,7 @@ TEST_SUITE("unit") {
             CHECK(report["rungs"][k]["quantities"].empty());
             CHECK(report["rungs"][k]["note"].get<std::string>().find("The scene has no") == 0);
         }
-        CHECK(report["rungs"][3]["note"].get<std::string>().find("no shadows yet") != std::string::npos);
+        CHECK(report["rungs"][3]["note"].get<std::string>().find("Direct light is unshadowed.") != std::string::npos);
         for (const std::string& name : pictures) CHECK_MESSAGE(read_image(options.folder / name).width() == 24, name);
         std::size_t files = 0;
         for (const fs::directory_entry& entry : fs::directory_iterator(options.folder))
