@@ -57,7 +57,7 @@ double Reference::mse() const {
 
 std::string ReferenceKey::text() const {
     return message("scene ", scene_hash, ", estimator ", estimator, " ", version, ", ", width, "x", height, ", depth ",
-                   depth, ", ", spp, " samples a pixel");
+                   depth, ", ", spp, " samples a pixel", program.empty() ? "" : ", by ", program);
 }
 
 std::string hash_scene_files(const Scene& scene) {

@@ -27,6 +27,7 @@ struct ReferenceKey {
     int width = 0, height = 0;
     int depth = 0; ///< scattering events at most
     int spp = 0;
+    std::string program = {}; ///< another's name and version, which decide, too: "Blender 3.4.1"; empty: ours
 
     /// All of it in one line, which the file keeps.
     std::string text() const;

@@ -95,7 +95,7 @@ TEST_SUITE("unit") {
         CHECK(std::equal(found->mean.begin(), found->mean.end(), stored.mean.begin()));
         CHECK(std::equal(found->variance.begin(), found->variance.end(), stored.variance.begin()));
 
-        std::vector<ReferenceKey> others(7, key);
+        std::vector<ReferenceKey> others(8, key);
         others[0].scene_hash[15] = '0';
         others[1].estimator = "naive";
         others[2].version = 2;
@@ -103,6 +103,7 @@ TEST_SUITE("unit") {
         others[4].height = 9;
         others[5].depth = 63;
         others[6].spp = 255;
+        others[7].program = "Blender 3.4.1";
         for (const ReferenceKey& other : others) {
             CHECK_FALSE(cache.find("s", other));
             // Even where the file's name says otherwise.

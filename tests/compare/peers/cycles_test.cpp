@@ -35,8 +35,10 @@ BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
     CyclesPeer peer(scene, view, {settings.depth, settings.threads});
     Control control;
     const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_picture(n, seed, control); };
+    const std::string program = peer.program(control);
+    CHECK(program.starts_with("Blender "));
     const KeptReference cycles =
-        reference_by_seeds("cycles", kCyclesExportVersion, scene, view, settings, render, control);
+        reference_by_seeds({"cycles", kCyclesExportVersion, program}, scene, view, settings, render, control);
     const KeptReference ours = reference_by("path", scene, view, settings, control);
     const BiasCheck check = check_bias(ours.reference, cycles.reference);
     MESSAGE(path.filename().string(), ": largest |z| ", std::abs(check.worst_z), ", p ", check.p_value, ", detectable ",
