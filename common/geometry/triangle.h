@@ -1,9 +1,14 @@
 // Ray and triangle.
 #pragma once
 
+#include "common/system/sabotage.h"
+#include "common/vec/box.h"
 #include "common/vec/ray.h"
+#include "common/vec/robust.h"
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace duet {
@@ -18,10 +23,81 @@ struct TriangleHit {
 struct ShearedRay {
     Vec3 origin, direction;
     std::size_t kx, ky, kz;
+    Vec3 turned; ///< the origin, its axes in that order
     float sx, sy, sz;
     float t_min, t_max;
 
-    explicit ShearedRay(const Ray& ray);
+    explicit ShearedRay(const Ray& ray) : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
+        // Without a branch: the axes of incoherent rays cannot be predicted.
+        constexpr std::uint8_t kNext[] = {1, 2, 0};
+        const float d[] = {direction.x, direction.y, direction.z}, o[] = {origin.x, origin.y, origin.z};
+        kz = longest_axis(abs(direction));
+        const std::size_t next = kNext[kz], after = kNext[next];
+        const bool swap = d[kz] < 0; // keeps the triangle's winding
+        kx = swap ? after : next;
+        ky = swap ? next : after;
+        turned = {o[kx], o[ky], o[kz]};
+        sx = d[kx] / d[kz];
+        sy = d[ky] / d[kz];
+        sz = 1 / d[kz];
+    }
+};
+
+/// What a ray meets of triangles, T being a number or a batch of them: the vertices sheared, the edge functions (twice
+/// the signed areas that the ray's foot spans with the edges) in T's precision.
+template <typename T> struct TriangleTest {
+    Vec3T<T> at, bt, ct; ///< vertices in the ray's frame: it runs along +z from the origin
+    T e0, e1, e2;        ///< of the edges opposite a, b and c
+
+    /// a, b, c: the vertices; what a component has at index 0, 1, 2.
+    template <typename Vertex> TriangleTest(const ShearedRay& ray, const Vertex& a, const Vertex& b, const Vertex& c) {
+        // Relative to the origin and sheared, the test is one of the origin in a 2D triangle. The same edge gives the
+        // same numbers in both of its triangles: no ray slips between.
+        const auto sheared = [&](const Vertex& p) {
+            const T x = p[ray.kx] - T(ray.turned.x), y = p[ray.ky] - T(ray.turned.y), z = p[ray.kz] - T(ray.turned.z);
+            return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
+        };
+        at = sheared(a);
+        bt = sheared(b);
+        ct = sheared(c);
+        const auto edge = [](const Vec3T<T>& p, const Vec3T<T>& q) {
+            using std::fma;
+            if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
+            return p.x * q.y - p.y * q.x;
+        };
+        e0 = edge(ct, bt);
+        e1 = edge(at, ct);
+        e2 = edge(bt, at);
+    }
+
+    T det() const { return e0 + e1 + e2; }
+    /// The distance along the ray; inv_det = 1 / det().
+    T distance(T inv_det) const { return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z; }
+
+    /// The bound on the error of that distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products
+    /// ordered so that they stay in range wherever the edge functions do.
+    T distance_error(T inv_det) const {
+        const T gamma2(gamma_bound(2)), gamma3(gamma_bound(3)), gamma5(gamma_bound(5));
+        const T max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
+        const T delta_z = gamma3 * max_z;
+        const T max_x = max(max(abs(at.x), abs(bt.x)), abs(ct.x));
+        const T max_y = max(max(abs(at.y), abs(bt.y)), abs(ct.y));
+        const T delta_x = gamma5 * (max_x + max_z);
+        const T delta_y = gamma5 * (max_y + max_z);
+        const T delta_e = T(2) * (gamma2 * max_x * max_y + delta_y * max_x + delta_x * max_y) * abs(inv_det);
+        const T max_e = max(max(abs(e0), abs(e1)), abs(e2)) * abs(inv_det);
+        return T(3) * (gamma3 * max_e * max_z + delta_e * max_z + delta_z * max_e);
+    }
+
+    /// Whether the triangle is a needle as the ray sees it, so that the distance may be off by more than that. The
+    /// sheared coordinates are off by some u·max_z, an edge function by that times the triangle's width: the hit moves
+    /// along the triangle by as much over det, across depths of `spread`. That is no more than z's own rounding, but
+    /// where the triangle is much thinner than it is deep.
+    auto is_needle(T inv_det) const {
+        const T width = max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
+        const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
+        return width * abs(inv_det) * spread > T(sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f);
+    }
 };
 
 /// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides

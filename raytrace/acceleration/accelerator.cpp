@@ -5,6 +5,7 @@
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <span>
 
 namespace duet::raytrace {
 
@@ -39,26 +40,55 @@ public:
 
     Bvh build(int threads) {
         const BinaryTree tree = build_binary_tree(std::move(items_), threads);
-        Bvh bvh = collapse(tree);
-        for (const BuildItem& item : tree.items) switch (item.kind) {
+        Collapsed collapsed = collapse(tree);
+        Bvh& bvh = collapsed.bvh;
+        bvh.triangles.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kTriangle)]);
+        for (const LeafItems& leaf : collapsed.leaves) {
+            const std::span items(tree.items.data() + leaf.first, leaf.count);
+            switch (items[0].kind) {
             case PrimitiveKind::kTriangle:
-                bvh.triangles.push_back(triangles_[item.index]);
+                bvh.triangles.push_back(block(items));
                 break;
             case PrimitiveKind::kQuad:
-                bvh.quads.push_back(quads_[item.index]);
+                for (const BuildItem& item : items) bvh.quads.push_back(quads_[item.index]);
                 break;
             case PrimitiveKind::kSphere:
-                bvh.spheres.push_back(spheres_[item.index]);
+                for (const BuildItem& item : items) bvh.spheres.push_back(spheres_[item.index]);
                 break;
             case PrimitiveKind::kInstance:
-                bvh.instances.push_back(instances_[item.index]);
+                for (const BuildItem& item : items) bvh.instances.push_back(instances_[item.index]);
                 break;
             }
-        return bvh;
+        }
+        return std::move(bvh);
     }
 
 private:
-    void add_triangle(const BvhTriangle& triangle) {
+    struct Triangle {
+        Vec3 a, b, c;
+        std::uint32_t object, primitive;
+    };
+
+    TriangleBlock block(std::span<const BuildItem> items) const {
+        TriangleBlock result;
+        for (auto& corner : result.corner)
+            for (auto& axis : corner) axis.fill(std::numeric_limits<float>::quiet_NaN());
+        result.object.fill(kNoObject);
+        result.primitive.fill(0);
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            const Triangle& t = triangles_[items[i].index];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                result.corner[0][axis][i] = t.a[axis];
+                result.corner[1][axis][i] = t.b[axis];
+                result.corner[2][axis][i] = t.c[axis];
+            }
+            result.object[i] = t.object;
+            result.primitive[i] = t.primitive;
+        }
+        return result;
+    }
+
+    void add_triangle(const Triangle& triangle) {
         Box3 box;
         for (const Vec3& p : {triangle.a, triangle.b, triangle.c}) box.extend(p);
         add(PrimitiveKind::kTriangle, box, triangles_, triangle);
@@ -75,7 +105,7 @@ private:
     }
 
     std::vector<BuildItem> items_;
-    std::vector<BvhTriangle> triangles_;
+    std::vector<Triangle> triangles_;
     std::vector<BvhQuad> quads_;
     std::vector<BvhSphere> spheres_;
     std::vector<BvhInstance> instances_;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "common/geometry/shape.h"
+#include "common/system/huge_pages.h"
 #include "common/vec/box.h"
+#include "common/vec/simd.h"
 
 #include <array>
 #include <cstdint>
@@ -16,9 +18,14 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance }
 
 // Primitives are kept in the order of the leaves, with all that their test needs: a leaf reads consecutive memory.
 // `object` and `primitive` are what a Hit names; in the hierarchy of an instanced shape `object` is the instance's.
-struct BvhTriangle {
-    Vec3 a, b, c;
-    std::uint32_t object, primitive;
+
+/// Triangles that are tested at once. Absent ones are NaN, which nothing hits.
+struct alignas(32) TriangleBlock {
+    static constexpr std::size_t kSize = 8;
+    template <typename T> using Lanes = std::array<T, kSize>;
+
+    std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
+    Lanes<std::uint32_t> object, primitive;
 };
 struct BvhQuad {
     Quad quad;
@@ -32,36 +39,59 @@ struct BvhInstance {
     std::uint32_t object, shape; ///< indices into Scene::objects and Scene::shapes
 };
 
-/// A child of a node, or the root: an inner node, or a leaf of `count` primitives. (Without initializers: a traversal's
-/// stack is an array of these, which nobody should clear for each ray.)
-struct BvhRef {
-    std::uint32_t first; ///< index of the node, or of the first primitive in the list of its kind
-    std::uint16_t count; ///< 0: an inner node
-    PrimitiveKind kind;
+/// A child of a node, or the root: an inner node, or a leaf of primitives of one kind. (Without initializers: a
+/// traversal's stack is an array of these, which nobody should clear for each ray.)
+class BvhRef {
+public:
+    /// Nodes, and elements of each kind's list: indices are below this.
+    static constexpr std::size_t kMaxIndex = std::size_t{1} << 26;
+    static constexpr std::uint32_t kMaxCount = 8;
 
-    bool leaf() const { return count > 0; }
+    BvhRef() = default;
+    static constexpr std::size_t kNodeUnit = 32;
+    static BvhRef node(std::uint32_t index);
+    /// `count` elements from `first` in the list of the kind, 1 to kMaxCount.
+    static BvhRef leaf(PrimitiveKind kind, std::uint32_t first, std::uint32_t count) {
+        return BvhRef(kLeaf | static_cast<std::uint32_t>(kind) << 29 | (count - 1) << 26 | first);
+    }
+    static BvhRef from_bits(std::uint32_t bits) { return BvhRef(bits); }
+
+    bool is_leaf() const { return (bits_ & kLeaf) != 0; }
+    std::uint32_t index() const { return bits_ & (kMaxIndex - 1); }
+    std::uint32_t count() const { return (bits_ >> 26 & 7) + 1; }
+    PrimitiveKind kind() const { return static_cast<PrimitiveKind>(bits_ >> 29 & 3); }
+    std::uint32_t bits() const { return bits_; }
+
+private:
+    explicit BvhRef(std::uint32_t bits) : bits_(bits) {}
+    static constexpr std::uint32_t kLeaf = 1u << 31;
+    std::uint32_t bits_;
 };
 
-/// A node with the boxes of up to kWidth children, each of their six planes in an array of its own: one loop tests all
-/// children against a ray, and the compiler turns it into vector instructions. Children are dense; the boxes of absent
-/// ones are empty and hit by no ray.
-struct alignas(64) BvhNode {
-    static constexpr std::size_t kWidth = 8;
+/// A node with the boxes of up to kWidth children, each of their six planes in an array of its own: one instruction
+/// tests a plane of all children against a ray. Children are dense; the boxes of absent ones are empty and hit by no
+/// ray.
+struct alignas(32) BvhNode {
+    static constexpr std::size_t kWidth = kSimdLanes;
     using Lanes = std::array<float, kWidth>;
 
     std::array<Lanes, 6> planes; ///< low x, y, z, high x, y, z
     std::array<BvhRef, kWidth> children;
 };
 
+inline BvhRef BvhRef::node(std::uint32_t index) {
+    return BvhRef(index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
+}
+
 struct Bvh {
     /// The longest way from the root to a leaf: bounds a traversal's stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = 4;
+    static constexpr std::uint32_t kMaxLeaf = 8; ///< primitives
 
-    BvhRef root{};
+    BvhRef root = BvhRef::node(0);
     Box3 bounds;
-    std::vector<BvhNode> nodes;
-    std::vector<BvhTriangle> triangles;
+    std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
+    std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<BvhQuad> quads;
     std::vector<BvhSphere> spheres;
     std::vector<BvhInstance> instances;

@@ -35,9 +35,21 @@ struct BinaryTree {
 /// threads (0: all).
 BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads);
 
+/// Items [first, first + count) of the tree: those of one leaf.
+struct LeafItems {
+    std::uint32_t first, count;
+};
+
+/// A hierarchy whose lists of primitives are still to be filled: leaf by leaf in the order given, triangles as one
+/// block a leaf.
+struct Collapsed {
+    Bvh bvh;
+    std::vector<LeafItems> leaves;
+    std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
+};
+
 /// Packs the tree into nodes of BvhNode::kWidth children (Wald, Benthin and Boulos 2008, «Getting Rid of Packets»,
-/// §2.2): fills `nodes`, `root` and `bounds` of a hierarchy. The leaves' primitives are consecutive in tree.items, by
-/// kind: the i-th item of a kind is to become the i-th element of that kind's list.
-Bvh collapse(const BinaryTree& tree);
+/// §2.2). Throws Error where there are more than BvhRef can name.
+Collapsed collapse(const BinaryTree& tree);
 
 } // namespace duet::raytrace

@@ -8,20 +8,28 @@ namespace {
 
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, Bvh& bvh) : tree_(tree), bvh_(bvh), rank_(tree.items.size()) {
-        std::array<std::uint32_t, 4> count{};
-        for (std::size_t i = 0; i < tree.items.size(); ++i)
-            rank_[i] = count[static_cast<std::size_t>(tree.items[i].kind)]++;
-    }
+    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
-        if (node.leaf())
-            return {rank_[node.first], static_cast<std::uint16_t>(node.count), tree_.items[node.first].kind};
-        return {pack(index), 0, PrimitiveKind::kTriangle};
+        return node.leaf() ? leaf(node) : BvhRef::node(pack(index));
     }
 
 private:
+    BvhRef leaf(const BinaryNode& node) {
+        leaves_.push_back({node.first, node.count});
+        const PrimitiveKind kind = tree_.items[node.first].kind;
+        const std::uint32_t elements = kind == PrimitiveKind::kTriangle ? 1 : node.count; // triangles: one block
+        const std::size_t first = elements_[static_cast<std::size_t>(kind)];
+        elements_[static_cast<std::size_t>(kind)] += elements;
+        check_index(first + elements);
+        return BvhRef::leaf(kind, static_cast<std::uint32_t>(first), elements);
+    }
+
+    static void check_index(std::size_t index) {
+        if (index >= BvhRef::kMaxIndex) throw Error("too many primitives for a hierarchy");
+    }
+
     // A wide node takes the place of a binary one and of those below it: of its children so far the one of the largest
     // area, which a ray hits first, is replaced by its two, until the node is full.
     std::uint32_t pack(std::uint32_t index) {
@@ -43,6 +51,7 @@ private:
             children[count++] = opened.right;
         }
 
+        check_index(bvh_.nodes.size());
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.push_back(BvhNode{});
         for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
@@ -61,20 +70,21 @@ private:
 
     const BinaryTree& tree_;
     Bvh& bvh_;
-    std::vector<std::uint32_t> rank_; // of an item among those of its kind
+    std::vector<LeafItems>& leaves_;
+    std::array<std::size_t, 4>& elements_; // so far in the list of each kind
 };
 
-template <typename T> std::size_t bytes(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) { return v.capacity() * sizeof(T); }
 
 } // namespace
 
-Bvh collapse(const BinaryTree& tree) {
-    Bvh bvh;
-    if (tree.nodes.empty()) return bvh;
-    bvh.bounds = tree.nodes[0].box;
-    bvh.root = Collapser(tree, bvh).ref(0);
-    bvh.nodes.shrink_to_fit();
-    return bvh;
+Collapsed collapse(const BinaryTree& tree) {
+    Collapsed result;
+    if (tree.nodes.empty()) return result;
+    result.bvh.bounds = tree.nodes[0].box;
+    result.bvh.root = Collapser(tree, result).ref(0);
+    result.bvh.nodes.shrink_to_fit();
+    return result;
 }
 
 std::int64_t Bvh::memory_bytes() const {

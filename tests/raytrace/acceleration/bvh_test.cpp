@@ -411,7 +411,7 @@ TEST_SUITE("unit") {
             std::size_t leaves = 0;
             for (const BinaryNode& node : tree.nodes) leaves += node.count;
             CHECK(leaves == sets[i].size());
-            CHECK(collapse(tree).nodes.size() <= tree.nodes.size());
+            CHECK(collapse(tree).bvh.nodes.size() <= tree.nodes.size());
         }
     }
 
