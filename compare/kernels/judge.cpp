@@ -10,7 +10,8 @@ namespace duet::compare {
 
 namespace {
 
-constexpr int kDirections = 16; ///< in which a ray is displaced to look for what it just misses
+constexpr double kGrazing = 1e-3; ///< the cosine below which a ray runs in a surface rather than through it
+constexpr int kDirections = 16;   ///< in which a ray is displaced to look for what it just misses
 
 Rayd in_double(const Ray& ray) {
     return {Vec3d(ray.origin), Vec3d(ray.direction), static_cast<double>(ray.t_min), static_cast<double>(ray.t_max),
@@ -50,10 +51,12 @@ double Judge::edge_distance(const Rayd& ray, std::uint32_t triangle) const {
 // Whether the triangle is where the answer says, on the ray or as near as rounding allows.
 bool Judge::nearly_meets(const Rayd& ray, const Answer& answer) const {
     const double t = answer.t;
-    const ExactHit hit = exact().intersect(ray, 0, answer.triangle);
+    Rayd line = ray; // the surface that a ray starts from may be found on either side of its start
+    line.t_min = -slack(ray, 0) / kGrazing;
+    const ExactHit hit = exact().intersect(line, 0, answer.triangle);
     if (hit.valid()) {
         const double cosine = exact().cosine(ray, 0, answer.triangle, hit.t);
-        if (std::abs(hit.t - t) * cosine <= slack(ray, t)) return t >= ray.t_min - slack(ray, t);
+        if (std::abs(hit.t - t) * cosine <= slack(ray, t)) return true;
     }
     if (edge_distance(ray, answer.triangle) > slack(ray, t)) return false;
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;

@@ -97,8 +97,11 @@ void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays
 }
 #endif
 
+/// Embree's rays include their start, ours do not: what matters where they start at 0, on a surface.
+float start_of(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
+
 RTCRay as_embree(const Ray& ray) {
-    return {ray.origin.x,    ray.origin.y, ray.origin.z, ray.t_min,    ray.direction.x, ray.direction.y,
+    return {ray.origin.x,    ray.origin.y, ray.origin.z, start_of(ray), ray.direction.x, ray.direction.y,
             ray.direction.z, 0,            ray.t_max,    0xffffffffu, 0,               0};
 }
 
@@ -118,7 +121,7 @@ template <int kWidth> std::vector<PacketRays<kWidth>> packets_of(std::span<const
         packet.org_x[lane] = ray.origin.x, packet.org_y[lane] = ray.origin.y, packet.org_z[lane] = ray.origin.z;
         packet.dir_x[lane] = ray.direction.x, packet.dir_y[lane] = ray.direction.y;
         packet.dir_z[lane] = ray.direction.z;
-        packet.tnear[lane] = ray.t_min, packet.tfar[lane] = ray.t_max;
+        packet.tnear[lane] = start_of(ray), packet.tfar[lane] = ray.t_max;
         packet.valid[lane] = i < rays.size() ? -1 : 0;
     }
     return packets;
@@ -167,8 +170,7 @@ std::function<void(std::size_t, Answer*)> packet_function(RTCScene scene, std::s
 } // namespace
 
 EmbreeDevice::EmbreeDevice(const Mesh& mesh, int threads) : handle_(std::make_shared<Handle>()) {
-    // simd512 allows AVX-512 where the processor has it, which Embree otherwise leaves unused on processors it does not
-    // know.
+    // simd512: AVX-512 wherever the processor has it, whatever clock frequency Embree thinks it costs there.
     handle_->device = rtcNewDevice(message("threads=", threads, ",frequency_level=simd512").c_str());
     fail_on_error(handle_->device);
     rtcSetDeviceMemoryMonitorFunction(
