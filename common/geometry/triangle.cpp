@@ -18,8 +18,9 @@ TriangleHit needle_hit(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c, const Tria
     e0 = max(sign * e0, 0.0), e1 = max(sign * e1, 0.0), e2 = max(sign * e2, 0.0);
     const double det = e0 + e1 + e2;
     if (!(det > 0)) return rounded;
-    const double z = (e0 * pa[ray.kz] + e1 * pb[ray.kz] + e2 * pc[ray.kz]) / det;
-    return {static_cast<float>(z / d[ray.kz]), static_cast<float>(e1 / det), static_cast<float>(e2 / det)};
+    const std::size_t z_axis = ray.shear.kz;
+    const double z = (e0 * pa[z_axis] + e1 * pb[z_axis] + e2 * pc[z_axis]) / det;
+    return {static_cast<float>(z / d[z_axis]), static_cast<float>(e1 / det), static_cast<float>(e2 / det)};
 }
 
 // The distance to the triangle's plane in double, from the unrounded differences: its sign is right even for an origin
@@ -33,7 +34,7 @@ double plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
 } // namespace
 
 std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
-    TriangleTest<float> test(ray, a, b, c);
+    TriangleTest<float> test(ray.shear, a, b, c);
     float &e0 = test.e0, &e1 = test.e1, &e2 = test.e2;
     if (e0 == 0 || e1 == 0 || e2 == 0) { // exactly on an edge, or rounded to it: double decides (Woop et al., §3.2)
         const auto cross2 = [](Vec3 p, Vec3 q) {

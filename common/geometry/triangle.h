@@ -18,43 +18,47 @@ struct TriangleHit {
     float t, u, v;
 };
 
-/// A ray prepared for watertight tests: its largest axis becomes z, and a shear takes its direction to (0, 0, 1)
-/// (Woop, Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
+/// The axes and the shear that take a ray, or each ray of a batch, to (0, 0, 1): its largest axis becomes z (Woop,
+/// Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
+template <typename T> struct Shear {
+    std::size_t kx, ky, kz; ///< axes of the world; x and y swapped where z runs backwards, to keep triangles' winding
+    Vec3T<T> origin;        ///< of the rays, its axes in that order
+    T sx, sy, sz;
+};
+
+/// A ray prepared for watertight tests.
 struct ShearedRay {
     Vec3 origin, direction;
-    std::size_t kx, ky, kz;
-    Vec3 turned; ///< the origin, its axes in that order
-    float sx, sy, sz;
     float t_min, t_max;
+    Shear<float> shear;
 
-    explicit ShearedRay(const Ray& ray) : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
+    explicit ShearedRay(const Ray& ray)
+        : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
         // Without a branch: the axes of incoherent rays cannot be predicted.
         constexpr std::uint8_t kNext[] = {1, 2, 0};
         const float d[] = {direction.x, direction.y, direction.z}, o[] = {origin.x, origin.y, origin.z};
-        kz = longest_axis(abs(direction));
-        const std::size_t next = kNext[kz], after = kNext[next];
-        const bool swap = d[kz] < 0; // keeps the triangle's winding
-        kx = swap ? after : next;
-        ky = swap ? next : after;
-        turned = {o[kx], o[ky], o[kz]};
-        sx = d[kx] / d[kz];
-        sy = d[ky] / d[kz];
-        sz = 1 / d[kz];
+        const std::size_t kz = longest_axis(abs(direction)), next = kNext[kz], after = kNext[next];
+        const bool swap = d[kz] < 0;
+        const std::size_t kx = swap ? after : next, ky = swap ? next : after;
+        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz]};
     }
 };
 
-/// What a ray meets of triangles, T being a number or a batch of them: the vertices sheared, the edge functions (twice
-/// the signed areas that the ray's foot spans with the edges) in T's precision.
+/// What a ray meets of triangles, T being a number or a batch of them, of one ray and many triangles or the other way
+/// round: the vertices sheared, the edge functions (twice the signed areas that the ray's foot spans with the edges) in
+/// T's precision.
 template <typename T> struct TriangleTest {
     Vec3T<T> at, bt, ct; ///< vertices in the ray's frame: it runs along +z from the origin
     T e0, e1, e2;        ///< of the edges opposite a, b and c
 
-    /// a, b, c: the vertices; what a component has at index 0, 1, 2.
-    template <typename Vertex> TriangleTest(const ShearedRay& ray, const Vertex& a, const Vertex& b, const Vertex& c) {
+    /// a, b, c: the vertices; their components at index 0, 1, 2.
+    template <typename S, typename Vertex>
+    TriangleTest(const Shear<S>& ray, const Vertex& a, const Vertex& b, const Vertex& c) {
         // Relative to the origin and sheared, the test is one of the origin in a 2D triangle. The same edge gives the
         // same numbers in both of its triangles: no ray slips between.
         const auto sheared = [&](const Vertex& p) {
-            const T x = p[ray.kx] - T(ray.turned.x), y = p[ray.ky] - T(ray.turned.y), z = p[ray.kz] - T(ray.turned.z);
+            const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
+                    z = T(p[ray.kz]) - T(ray.origin.z);
             return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
         };
         at = sheared(a);
@@ -96,7 +100,8 @@ template <typename T> struct TriangleTest {
     auto is_needle(T inv_det) const {
         const T width = max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
         const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
-        return width * abs(inv_det) * spread > T(sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f);
+        const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
+        return width * abs(inv_det) * spread > T(limit);
     }
 };
 

@@ -3,7 +3,16 @@
 #pragma once
 
 #include <cstddef>
+
+// GCC 12 takes the deliberately undefined operands of its own AVX-512 functions for a mistake.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <xsimd/xsimd.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 namespace duet {
 
@@ -17,8 +26,27 @@ inline constexpr std::size_t kSimdLanes = 8;
 inline constexpr std::size_t kSimdLanes = 4;
 #endif
 
+/// The widest batches of floats, for work that fills them.
+#if XSIMD_WITH_AVX512F
+inline constexpr std::size_t kMaxSimdLanes = 16;
+#else
+inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
+#endif
+
+/// a·b + c, rounded once where the machine can (xsimd 8 has no such instruction of 16 lanes).
+template <typename Arch>
+xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (sizeof(a) == 64) return _mm512_fmadd_ps(a, b, c);
+#endif
+    return xsimd::fma(a, b, c);
+}
+
 /// A bit for each lane that holds true, lane 0 the lowest.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (sizeof(lanes) != 32 && sizeof(lanes) != 16) return static_cast<unsigned>(lanes.data);
+#endif
 #if XSIMD_WITH_AVX
     if constexpr (sizeof(lanes) == 32) return static_cast<unsigned>(_mm256_movemask_ps(lanes));
 #endif

@@ -2,6 +2,7 @@
 
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
@@ -134,10 +135,10 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
     world_ = world.build(threads);
 }
 
-template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
-    if (!traceable(ray)) return false;
-    const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
-    return traverse<kAny>(world_, ray, kNoObject, best, [&](const BvhInstance& instance, Hit& so_far) {
+// What an instance's hits are in its shape's hierarchy.
+template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
+    return [this, &ray](const BvhInstance& instance, Hit& so_far) {
+        const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
         const Object& object = scene_.objects[instance.object];
         Ray inside;
         if (object.moving) {
@@ -148,13 +149,48 @@ template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best)
         }
         if (!traceable(inside)) return false;
         return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
-    });
+    };
 }
 
+template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
+    if (!traceable(ray)) return false;
+    return traverse<kAny>(world_, ray, kNoObject, best, instance_test<kAny>(ray));
+}
+
+namespace {
+
+// What comes before a hit, at first: a ray's end.
+Hit no_hit_yet(const Ray& ray) {
+    Hit end;
+    end.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+    return end;
+}
+
+} // namespace
+
 Hit Accelerator::closest(const Ray& ray) const {
-    Hit best;
-    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+    Hit best = no_hit_yet(ray);
     return traverse_scene<false>(ray, best) ? best : Hit{};
+}
+
+void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+    constexpr std::size_t kSize = RayPacket::kSize;
+    std::size_t done = 0;
+    for (; rays.size() - done >= kSize; done += kSize) {
+        const auto some = rays.subspan(done).first<kSize>();
+        const auto their_hits = hits.subspan(done).first<kSize>();
+        const RayPacket packet(some, world_.bounds);
+        if (!packet.coherent()) {
+            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest(some[i]);
+            continue;
+        }
+        for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = no_hit_yet(some[i]);
+        const auto instance = [this](const Ray& ray) { return instance_test<false>(ray); };
+        PacketTraversal(world_, packet, some, their_hits, instance).run();
+        for (Hit& hit : their_hits)
+            if (!hit.valid()) hit = {};
+    }
+    for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {

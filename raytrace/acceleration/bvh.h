@@ -26,6 +26,10 @@ struct alignas(32) TriangleBlock {
 
     std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
     Lanes<std::uint32_t> object, primitive;
+
+    Vec3 vertex(std::size_t of, std::size_t lane) const {
+        return {corner[of][0][lane], corner[of][1][lane], corner[of][2][lane]};
+    }
 };
 struct BvhQuad {
     Quad quad;
