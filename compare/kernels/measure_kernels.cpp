@@ -158,7 +158,9 @@ private:
         works_.push_back(std::move(work));
         Work& added = works_.back();
         const bool any = added.question == Question::kOccluded;
-        added.ours = any ? our_occluded(*accelerator_, added.rays) : our_closest(*accelerator_, added.rays);
+        added.ours = any                           ? our_occluded(*accelerator_, added.rays)
+                     : added.name == "camera-bulk" ? our_bulk(*accelerator_, added.rays)
+                                                   : our_closest(*accelerator_, added.rays);
         const std::vector<Answer> ours = all_answers(added.ours, added.rays.size(), settings_.threads);
         const std::int64_t our_leaks = leaks_of(added, ours);
         table_.our_leaks += our_leaks;

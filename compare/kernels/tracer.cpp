@@ -4,12 +4,24 @@
 
 namespace duet::compare {
 
+namespace {
+
+Answer answer_of(const Hit& hit) { return {hit.t, hit.valid() ? hit.primitive : Answer::kNone}; }
+
+} // namespace
+
 Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays) {
     return {"duet", [&accelerator, rays](std::size_t block, Answer* answers) {
-                for (const Ray& ray : block_of(rays, block)) {
-                    const Hit hit = accelerator.closest(ray);
-                    *answers++ = {hit.t, hit.valid() ? hit.primitive : Answer::kNone};
-                }
+                for (const Ray& ray : block_of(rays, block)) *answers++ = answer_of(accelerator.closest(ray));
+            }};
+}
+
+Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays) {
+    return {"duet bulk", [&accelerator, rays](std::size_t block, Answer* answers) {
+                const std::span<const Ray> some = block_of(rays, block);
+                std::array<Hit, kBlock> hits;
+                accelerator.closest(some, std::span(hits).first(some.size()));
+                for (std::size_t i = 0; i < some.size(); ++i) answers[i] = answer_of(hits[i]);
             }};
 }
 

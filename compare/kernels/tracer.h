@@ -46,6 +46,8 @@ struct Tracer {
 /// Our kernel through the accelerator's public functions, called just as the path tracer calls them. The rays and the
 /// accelerator must outlive the tracer.
 Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
+/// Many rays at once.
+Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 
 /// A tracer's answers to all rays of a set, in their order.
