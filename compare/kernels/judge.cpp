@@ -48,6 +48,12 @@ double Judge::edge_distance(const Rayd& ray, std::uint32_t triangle) const {
     return min(min(distance_to_segment(p[0], p[1]), distance_to_segment(p[1], p[2])), distance_to_segment(p[2], p[0]));
 }
 
+double Judge::plane_distance(const Rayd& ray, std::uint32_t triangle) const {
+    const auto [a, b, c] = triangle_seen_from(scene_, ray, triangle);
+    const Vec3d n = cross(b - a, c - a);
+    return length(n) > 0 ? std::abs(dot(a, n)) / length(n) : 0;
+}
+
 // Whether the triangle is where the answer says, on the ray or as near as rounding allows.
 bool Judge::nearly_meets(const Rayd& ray, const Answer& answer) const {
     const double t = answer.t;
@@ -107,19 +113,27 @@ Finding Judge::occluded(const Ray& ray, bool blocked) const {
         rest.t_min = hit.t;
     }
     if (!blocked) return passed ? Finding::kEdge : Finding::kRight;
-    // Nothing is in the way: is there something just beside it, or just beyond an end?
-    const double reach = std::isfinite(r.t_max) ? r.t_max : length(scene_.bounds.diagonal());
-    const double room = slack(r, reach);
-    const FrameT<double> frame = frame_from_normal(normalize(r.direction));
+    return nearly_occluded(r) ? Finding::kEdge : Finding::kWrong;
+}
+
+// Nothing is in the way: is there something just beside it, or just beyond the end? A ray beside it starts behind the
+// surface that the ray itself starts on, which is no reason to be blocked.
+bool Judge::nearly_occluded(const Rayd& ray) const {
+    const double reach = std::isfinite(ray.t_max) ? ray.t_max : length(scene_.bounds.diagonal());
+    const double room = slack(ray, reach);
+    const FrameT<double> frame = frame_from_normal(normalize(ray.direction));
     for (int i = 0; i <= kDirections; ++i) {
         const double angle = 2 * kPiDouble * i / kDirections;
         const Vec3d aside = i == kDirections ? Vec3d() : frame.s * std::cos(angle) + frame.t * std::sin(angle);
-        Rayd near = r;
-        near.origin = r.origin + aside * room - r.direction * room;
-        near.t_max = r.t_max + 2 * room;
-        if (exact().nearest(near).valid()) return Finding::kEdge;
+        Rayd near = ray;
+        near.origin = ray.origin + aside * room;
+        near.t_max = ray.t_max + room;
+        for (ExactHit hit = exact().nearest(near); hit.valid(); hit = exact().nearest(near)) {
+            if (plane_distance(ray, hit.primitive) > slack(ray, 0)) return true;
+            near.t_min = hit.t;
+        }
     }
-    return Finding::kWrong;
+    return false;
 }
 
 Mismatches compare_answers(const Judge& judge, Question question, std::span<const Ray> rays,

@@ -37,6 +37,9 @@ public:
 private:
     /// Distance between the line of the ray and the nearest edge of the triangle, seen along the ray.
     double edge_distance(const Rayd& ray, std::uint32_t triangle) const;
+    /// Distance of the ray's origin from the triangle's plane.
+    double plane_distance(const Rayd& ray, std::uint32_t triangle) const;
+    bool nearly_occluded(const Rayd& ray) const;
     bool nearly_meets(const Rayd& ray, const Answer& answer) const;
     bool may_be_passed(const Rayd& ray, const ExactHit& hit) const;
 

@@ -65,6 +65,7 @@ public:
         if (control_.stopped()) return table_;
         build_all();
         make_works();
+        steps_.next().report(1);
         for (const Work& work : works_)
             for (const int threads : thread_counts()) measure_rays(work, threads);
         if (settings_.watertight > 0 && scene_.triangles().closed && !control_.stopped()) aim_at_weak_places();
