@@ -4,6 +4,7 @@
 #include "common/system/parallel.h"
 #include "common/vec/frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace duet::compare {
@@ -136,6 +137,24 @@ bool Judge::nearly_occluded(const Rayd& ray) const {
     return false;
 }
 
+namespace {
+
+Finding judged(const Judge& judge, Question question, const Ray& ray, const Answer& answer) {
+    return question == Question::kClosest ? judge.closest(ray, answer) : judge.occluded(ray, answer.hit());
+}
+
+} // namespace
+
+Judged judge_answers(const Judge& judge, Question question, std::span<const Ray> rays, std::span<const Answer> answers,
+                     std::size_t stride, int threads) {
+    DUET_CHECK_EQ(rays.size(), answers.size());
+    std::vector<char> wrong((rays.size() + stride - 1) / stride);
+    parallel_for(wrong.size(), threads, [&](std::size_t k) {
+        wrong[k] = judged(judge, question, rays[k * stride], answers[k * stride]) == Finding::kWrong;
+    });
+    return {std::ssize(wrong), std::ranges::count(wrong, 1)};
+}
+
 Mismatches compare_answers(const Judge& judge, Question question, std::span<const Ray> rays,
                            std::span<const Answer> ours, std::span<const Answer> peers, int threads) {
     DUET_CHECK_EQ(rays.size(), ours.size());
@@ -153,11 +172,7 @@ Mismatches compare_answers(const Judge& judge, Question question, std::span<cons
     std::vector<std::pair<Finding, Finding>> findings(different.size());
     parallel_for(different.size(), threads, [&](std::size_t k) {
         const std::size_t i = different[k];
-        const auto judged = [&](const Answer& answer) {
-            return question == Question::kClosest ? judge.closest(rays[i], answer)
-                                                  : judge.occluded(rays[i], answer.hit());
-        };
-        findings[k] = {judged(ours[i]), judged(peers[i])};
+        findings[k] = {judged(judge, question, rays[i], ours[i]), judged(judge, question, rays[i], peers[i])};
     });
     Mismatches result;
     result.rays = static_cast<std::int64_t>(rays.size());

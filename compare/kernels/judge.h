@@ -62,4 +62,11 @@ enum class Question { kClosest, kOccluded };
 Mismatches compare_answers(const Judge& judge, Question question, std::span<const Ray> rays,
                            std::span<const Answer> ours, std::span<const Answer> peers, int threads);
 
+/// Our answers by themselves: of every `stride`-th ray, how many are wrong.
+struct Judged {
+    std::int64_t rays = 0, wrong = 0;
+};
+Judged judge_answers(const Judge& judge, Question question, std::span<const Ray> rays, std::span<const Answer> answers,
+                     std::size_t stride, int threads);
+
 } // namespace duet::compare

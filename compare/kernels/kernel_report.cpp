@@ -74,37 +74,41 @@ json row_json(const KernelTable& table, const KernelRow& row) {
 /// Whether the peer did better in a than in b.
 bool better(const KernelRow& a, const KernelRow& b) { return is_rate(a) ? a.peer > b.peer : a.peer < b.peer; }
 
-/// How the peers' answers differed from ours, over all settings.
+/// The row of most differences, or none.
+const KernelRow* most_different(const KernelTable& table) {
+    const KernelRow* worst = nullptr;
+    for (const KernelRow& row : table.rows)
+        if (row.mismatches && (worst == nullptr || row.mismatches->differ() > worst->mismatches->differ())) worst = &row;
+    return worst;
+}
+
+/// Whether the answers are right: ours by the judge, ours beside the peer's, leaks, misses.
 void print_checks(std::ostream& out, const KernelTable& table) {
-    std::int64_t worst = 0, peer_wrong = 0, peer_leaks = 0, ours_wrong = 0;
-    std::string worst_name;
-    bool checked = false, enclosed = false;
-    for (const KernelRow& row : table.rows) {
-        if (row.mismatches) {
-            checked = true;
-            ours_wrong = std::max(ours_wrong, row.mismatches->ours_wrong);
-            if (row.mismatches->peer_wrong > peer_wrong) peer_wrong = row.mismatches->peer_wrong;
-            if (row.mismatches->differ() > worst) {
-                worst = row.mismatches->differ();
-                worst_name = message(row.work, ", ", row.peer_name, ": ", grouped(row.mismatches->tie), " ties, ",
-                                     grouped(row.mismatches->edge), " at edges, ",
-                                     grouped(row.mismatches->unexplained), " unexplained, of ",
-                                     grouped(row.mismatches->rays));
-            }
-        }
-        if (row.leaks) {
-            enclosed = true;
-            peer_leaks = std::max(peer_leaks, row.leaks->peer);
-        }
+    Judged judged;
+    for (const KernelTable::JudgedWork& work : table.judged) {
+        judged.rays += work.found.rays;
+        judged.wrong += work.found.wrong;
     }
-    if (checked) {
-        out << "  answers: ours wrong " << ours_wrong << ", the peer's at most " << peer_wrong;
-        if (worst > 0) out << "; most differences (" << worst_name << ")";
+    if (judged.rays > 0)
+        out << "  " << grouped(judged.rays) << " of our answers judged in double precision: " << grouped(judged.wrong)
+            << " wrong\n";
+    if (const KernelRow* worst = most_different(table)) {
+        const Mismatches& m = *worst->mismatches;
+        out << "  differences from the peer, most with " << worst->work << ", " << worst->peer_name << ": "
+            << grouped(m.tie) << " ties, " << grouped(m.edge) << " at edges, " << grouped(m.unexplained)
+            << " unexplained (" << grouped(m.ours_wrong) << " ours, " << grouped(m.peer_wrong) << " the peer's) of "
+            << grouped(m.rays) << '\n';
+    }
+    std::optional<std::int64_t> peer_leaks;
+    for (const KernelRow& row : table.rows)
+        if (row.leaks) peer_leaks = std::max(peer_leaks.value_or(0), row.leaks->peer);
+    if (peer_leaks) {
+        out << "  rays lost from the closed room: ours " << grouped(table.our_leaks);
+        if (most_different(table) != nullptr) out << ", the peer's at most " << grouped(*peer_leaks);
         out << '\n';
     }
-    if (enclosed) out << "  leaks from the closed room: ours " << table.our_leaks << ", the peer's at most " << peer_leaks << '\n';
     if (table.watertight.empty()) return;
-    out << "  " << grouped(table.watertight.front().rays) << " rays at points, edges and vertices from within, misses:";
+    out << "  " << grouped(table.watertight.front().rays) << " rays aimed at points, edges and vertices from within, lost:";
     for (const KernelTable::Missed& m : table.watertight)
         out << (&m == &table.watertight.front() ? " " : ", ") << m.kernel << ' ' << grouped(m.misses);
     out << '\n';
@@ -140,6 +144,17 @@ json watertight_json(const KernelTable& table) {
     return list;
 }
 
+json judged_json(const KernelTable& table) {
+    json list = json::array();
+    for (const KernelTable::JudgedWork& judged : table.judged)
+        list.push_back({{"mesh", table.mesh},
+                        {"scene", table.scene},
+                        {"work", judged.work},
+                        {"rays", judged.found.rays},
+                        {"wrong", judged.found.wrong}});
+    return list;
+}
+
 void print_table(std::ostream& out, const KernelTable& table) {
     out << table.mesh << ", " << table.scene << ": " << grouped(static_cast<std::int64_t>(table.triangles))
         << " triangles, " << table.width << "x" << table.height << " camera rays";
@@ -169,6 +184,10 @@ std::vector<std::string> faults(const KernelTable& table) {
     if (table.our_leaks > 0) found.push_back(where + message(table.our_leaks, " of our rays left the closed room"));
     if (!table.watertight.empty() && table.watertight.front().misses > 0)
         found.push_back(where + message(table.watertight.front().misses, " of our rays left the closed mesh"));
+    for (const KernelTable::JudgedWork& judged : table.judged)
+        if (judged.found.wrong > 0)
+            found.push_back(where + message(judged.found.wrong, " of ", judged.found.rays, " of our answers to ",
+                                            judged.work, " rays are wrong"));
     for (const KernelRow& row : table.rows)
         if (row.mismatches && row.mismatches->ours_wrong > 0 && row.threads == 1)
             found.push_back(where + message(row.mismatches->ours_wrong, " of our answers to ", row.work,

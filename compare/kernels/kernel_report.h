@@ -44,6 +44,11 @@ struct KernelTable {
         std::int64_t rays, misses;
     };
     std::vector<Missed> watertight; ///< ours first; empty where the mesh is not closed, or no ray was asked for
+    struct JudgedWork {
+        std::string work;
+        Judged found;
+    };
+    std::vector<JudgedWork> judged; ///< a sample of our answers, by the double-precision judge
     std::int64_t our_leaks = 0;     ///< of camera and bounce rays in a closed room
 };
 
@@ -57,6 +62,7 @@ std::string verdict(const Range& ratio);
 /// where there is no peer), best, rays, repeats, mismatches, leaks.
 nlohmann::json rows_json(const KernelTable& table);
 nlohmann::json watertight_json(const KernelTable& table);
+nlohmann::json judged_json(const KernelTable& table);
 
 /// One line for each work and number of threads: ours against the peer's best.
 void print_table(std::ostream& out, const KernelTable& table);

@@ -72,10 +72,11 @@ std::vector<Case> cases_of(const KernelsOptions& options) {
 }
 
 json report_json(const KernelsOptions& options, const MeasureKernels& settings, const std::vector<KernelTable>& tables) {
-    json rows = json::array(), watertight = json::array();
+    json rows = json::array(), watertight = json::array(), judged = json::array();
     for (const KernelTable& table : tables) {
         for (json& row : rows_json(table)) rows.push_back(std::move(row));
         for (json& row : watertight_json(table)) watertight.push_back(std::move(row));
+        for (json& row : judged_json(table)) judged.push_back(std::move(row));
     }
     const bool peer = !settings.peers.empty();
     return {{"program", "compare kernels"},
@@ -86,7 +87,8 @@ json report_json(const KernelsOptions& options, const MeasureKernels& settings, 
             {"threads", settings.threads},
             {"seed", options.seed},
             {"rows", rows},
-            {"watertight", watertight}};
+            {"watertight", watertight},
+            {"judged", judged}};
 }
 
 } // namespace

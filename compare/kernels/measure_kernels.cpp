@@ -16,6 +16,7 @@ const std::vector<std::string> kWorks{"build", "camera", "camera-bulk", "bounce"
 
 namespace {
 
+constexpr std::size_t kJudged = 20'000; ///< of our answers to each kind of ray
 constexpr double kBuildLimit = 40; ///< builds of one number of threads end after this many times `seconds`, but three
 
 /// Fractions done of one scene: each step takes its share in turn.
@@ -163,6 +164,9 @@ private:
                      : added.name == "camera-bulk" ? our_bulk(*accelerator_, added.rays)
                                                    : our_closest(*accelerator_, added.rays);
         const std::vector<Answer> ours = all_answers(added.ours, added.rays.size(), settings_.threads);
+        const std::size_t stride = (added.rays.size() + kJudged - 1) / kJudged;
+        table_.judged.push_back(
+            {added.name, judge_answers(judge_, added.question, added.rays, ours, stride, settings_.threads)});
         const std::int64_t our_leaks = leaks_of(added, ours);
         table_.our_leaks += our_leaks;
         for (std::size_t i = 0; i < embree_.size(); ++i)

@@ -115,6 +115,10 @@ TEST_SUITE("unit") {
         CHECK(found.ours_wrong == 0);
         CHECK(found.peer_wrong == 3);
 
+        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 1, 2).wrong == 3);
+        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 10, 1).wrong == 2);
+        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 10, 1).rays == 410);
+
         // The double-precision judge finds no fault with ours.
         for (std::size_t i = 0; i < rays.size(); ++i) REQUIRE(judge.closest(rays[i], right[i]) != Finding::kWrong);
         const auto shadow = shadow_rays(scene, accelerator, rays, 0, 1);

@@ -158,6 +158,11 @@ TEST_SUITE("unit") {
                 for (const int threads : {1, 2}) CHECK(seen.count({work, threads}) == 1);
             CHECK(seen.count({"memory", 2}) == 1);
             CHECK(watertight_json(table).empty() == (arrangement == Arrangement::kRoom));
+            for (const nlohmann::json& judged : judged_json(table)) {
+                CHECK(judged.at("rays").get<int>() > 0);
+                CHECK(judged.at("wrong") == 0);
+            }
+            CHECK(table.judged.size() == 4);
             CHECK(faults(table).empty());
         }
     }
@@ -171,6 +176,9 @@ TEST_SUITE("unit") {
         row.mismatches = Mismatches{10, 0, 0, 1, 1, 0};
         table.rows = {row};
         CHECK(faults(table).size() == 3);
+        table.judged = {{"bounce", {100, 1}}};
+        CHECK(faults(table).size() == 4);
+        table.judged.clear();
         table.watertight.front().misses = 0;
         table.rows.front().mismatches->ours_wrong = 0;
         CHECK(faults(table).size() == 1);
