@@ -2,7 +2,10 @@
 // are found by name lookup from the project's templates, as scalar.h's are for numbers.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 
 // GCC 12 takes the deliberately undefined operands of its own AVX-512 functions for a mistake.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -52,5 +55,47 @@ template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes
 #endif
     if constexpr (sizeof(lanes) == 16) return static_cast<unsigned>(_mm_movemask_ps(lanes));
 }
+
+/// A batch of floats to pick from.
+template <typename Batch> struct Lanes {
+    alignas(sizeof(Batch)) std::array<float, sizeof(Batch) / sizeof(float)> values;
+
+    explicit Lanes(Batch batch) { batch.store_aligned(values.data()); }
+    float operator[](std::size_t lane) const { return values[lane]; }
+};
+
+/// Stores the lanes of the batch whose bits are set, and leaves the others alone.
+template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsigned lanes, float* to) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (sizeof(batch) == 64) return _mm512_mask_store_ps(to, static_cast<__mmask16>(lanes), batch);
+#endif
+    const Lanes values(batch);
+    for (; lanes != 0; lanes &= lanes - 1) to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
+}
+/// The same of one value.
+template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, std::array<std::uint32_t, N>& to) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (N == 16)
+        return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes), _mm512_set1_epi32(static_cast<int>(value)));
+#endif
+    for (; lanes != 0; lanes &= lanes - 1) to[static_cast<std::size_t>(std::countr_zero(lanes))] = value;
+}
+
+/// The least of the lanes; of NaN any may come out.
+template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (sizeof(lanes) == 64) return _mm512_reduce_min_ps(lanes);
+#endif
+#if XSIMD_WITH_AVX
+    if constexpr (sizeof(lanes) == 32)
+        return lowest(FloatBatch<4>(_mm_min_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1))));
+#endif
+    if constexpr (sizeof(lanes) == 16) {
+        const __m128 two = _mm_min_ps(lanes, _mm_movehl_ps(lanes, lanes));
+        return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
+    }
+}
+/// The greatest of the lanes.
+template <typename Arch> float highest(xsimd::batch<float, Arch> lanes) { return -lowest(-lanes); }
 
 } // namespace duet

@@ -148,33 +148,24 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
             inside = to_object_space(ray, object.to_world, object.to_object);
         }
         if (!traceable(inside)) return false;
-        return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
+        const Bvh& shape = shapes_[instance.shape];
+        if constexpr (kAny)
+            return find_any(shape, inside, instance.object, so_far, no_instance);
+        else
+            return find_closest(shape, inside, instance.object, so_far, no_instance);
     };
 }
 
-template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
-    if (!traceable(ray)) return false;
-    return traverse<kAny>(world_, ray, kNoObject, best, instance_test<kAny>(ray));
-}
-
-namespace {
-
-// What comes before a hit, at first: a ray's end.
-Hit no_hit_yet(const Ray& ray) {
-    Hit end;
-    end.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
-    return end;
-}
-
-} // namespace
-
 Hit Accelerator::closest(const Ray& ray) const {
-    Hit best = no_hit_yet(ray);
-    return traverse_scene<false>(ray, best) ? best : Hit{};
+    Hit best;
+    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+    if (!traceable(ray)) return {};
+    return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
 }
 
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
+    const auto instance = [this](const Ray& ray) { return instance_test<false>(ray); };
     std::size_t done = 0;
     for (; rays.size() - done >= kSize; done += kSize) {
         const auto some = rays.subspan(done).first<kSize>();
@@ -184,18 +175,13 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
             for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest(some[i]);
             continue;
         }
-        for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = no_hit_yet(some[i]);
-        const auto instance = [this](const Ray& ray) { return instance_test<false>(ray); };
-        PacketTraversal(world_, packet, some, their_hits, instance).run();
-        for (Hit& hit : their_hits)
-            if (!hit.valid()) hit = {};
+        PacketTraversal(world_, packet, some, instance).run(their_hits);
     }
     for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
-    Hit best = end;
-    return traverse_scene<true>(ray, best);
+    return traceable(ray) && find_any(world_, ray, kNoObject, end, instance_test<true>(ray));
 }
 
 std::int64_t Accelerator::memory_bytes() const {

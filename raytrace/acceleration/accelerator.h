@@ -31,7 +31,6 @@ public:
 
 private:
     template <bool kAny> auto instance_test(const Ray& ray) const;
-    template <bool kAny> bool traverse_scene(const Ray& ray, Hit& best) const;
 
     const Scene& scene_;
     Bvh world_;

@@ -2,6 +2,8 @@
 
 #include "common/system/error.h"
 
+#include <algorithm>
+
 namespace duet::raytrace {
 
 namespace {
@@ -51,7 +53,10 @@ private:
             children[count++] = opened.right;
         }
 
-        check_index(bvh_.nodes.size());
+        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
+            return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
+        });
+        check_index(bvh_.nodes.size() * (sizeof(BvhNode) / BvhRef::kNodeUnit));
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.push_back(BvhNode{});
         for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {

@@ -40,21 +40,23 @@ public:
         candidates_ &= ~lane_bits(outside) | needles;
         if (candidates_ == 0) return;
         certain_ = lane_bits((xsimd::abs(t) > error) & ((low > zero) | (high < zero))) & ~needles;
-        t.store_aligned(t_.data());
-        (test.e1 * inv_det).store_aligned(u_.data());
-        (test.e2 * inv_det).store_aligned(v_.data());
+        t_ = t;
+        u_ = test.e1 * inv_det;
+        v_ = test.e2 * inv_det;
     }
 
     /// The lanes with a hit before the end, a bit each: all of them, and hardly any other.
     unsigned candidates() const { return candidates_; }
-    /// Whether the candidate is hit just as `hit` says, if that is within the ray's range; else intersect_triangle has
-    /// to say.
-    bool certain(std::size_t lane) const { return (certain_ >> lane & 1) != 0; }
-    TriangleHit hit(std::size_t lane) const { return {t_[lane], u_[lane], v_[lane]}; }
+    /// The candidates that are hit just as t, u and v say, if that is within the ray's range; of the others
+    /// intersect_triangle has to say.
+    unsigned certain() const { return certain_ & candidates_; }
+    Batch t() const { return t_; }
+    Batch u() const { return u_; }
+    Batch v() const { return v_; }
 
 private:
     unsigned candidates_, certain_;
-    alignas(sizeof(Batch)) std::array<float, sizeof(Batch) / sizeof(float)> t_, u_, v_;
+    Batch t_, u_, v_;
 };
 
 /// The triangles of a block against one ray, all at once.
@@ -95,12 +97,22 @@ public:
 private:
     [[gnu::always_inline]] bool triangles(const TriangleBlock& block, Hit& best) {
         const BlockTest test(sheared_.shear, block, best.t);
+        if (test.candidates() == 0) return false;
+        if constexpr (kAny) {
+            using Batch = FloatBatch<TriangleBlock::kSize>;
+            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
+            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
+            }
+        }
+        const Lanes t(test.t()), u(test.u()), v(test.v());
         for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
             sheared_.t_max = best.t;
-            if (test.certain(lane)) {
-                const TriangleHit hit = test.hit(lane);
-                if (hit.t > sheared_.t_min && hit.t <= sheared_.t_max && consider(block, lane, hit, best)) return true;
+            if (test.certain() >> lane & 1) {
+                if (!(t[lane] > sheared_.t_min && t[lane] <= sheared_.t_max)) continue;
+                if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
             } else if (const auto hit = intersect_triangle(sheared_, block.vertex(0, lane), block.vertex(1, lane),
                                                            block.vertex(2, lane))) {
                 if (consider(block, lane, *hit, best)) return true;

@@ -1,10 +1,9 @@
 // Sending a packet of coherent rays through a hierarchy together: each box and each triangle is fetched once and tested
-// against all of them. The hits are those of `traverse`, to the bit.
+// against all of them. The hits are those of `find_closest`, to the bit.
 #pragma once
 
 #include "raytrace/acceleration/bvh_traverse.h"
 
-#include <algorithm>
 #include <span>
 
 namespace duet::raytrace {
@@ -14,10 +13,10 @@ class RayPacket {
 public:
     static constexpr std::size_t kSize = kMaxSimdLanes;
     using Batch = FloatBatch<kSize>;
-    using Lanes = std::array<float, kSize>;
+    using Values = std::array<float, kSize>;
 
     RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) {
-        alignas(64) std::array<Lanes, 8> lanes; // of the origin and the direction three each, t_min, t_max
+        alignas(64) std::array<Values, 8> lanes; // of the origin and the direction three each, t_min, t_max
         for (std::size_t i = 0; i < kSize; ++i) {
             const Ray& ray = rays[i];
             const float values[] = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.direction.x,
@@ -27,6 +26,7 @@ public:
         const auto load = [&](std::size_t k) { return Batch::load_aligned(lanes[k].data()); };
         const Vec3T<Batch> origin(load(0), load(1), load(2)), direction(load(3), load(4), load(5));
         t_min_ = load(6);
+        t_max_ = load(7);
         coherent_ = set_axes(rays, origin, direction);
         if (!coherent_) return;
         shear_ = sheared(origin, direction);
@@ -36,6 +36,8 @@ public:
     /// Whether all rays run into the same octant along the same main axis, and can be traced. Nothing else may be asked
     /// of others.
     bool coherent() const { return coherent_; }
+    Batch t_min() const { return t_min_; }
+    Batch t_max() const { return t_max_; }
     const Shear<Batch>& shear() const { return shear_; }
 
     /// A bit for each child of the node whose box some of the rays may enter before `end`, the last of their ends; and
@@ -63,8 +65,6 @@ public:
         const Batch far = xsimd::min(xsimd::min(slab(0, true), slab(1, true)), xsimd::min(slab(2, true), ends));
         return xsimd::select(near <= far, near, Batch(kInfinity));
     }
-
-    static float highest(Batch values) { return -lowest(-values); }
 
     /// One ray's part of the shear.
     Shear<float> shear(std::size_t lane) const {
@@ -131,43 +131,51 @@ private:
         first_ = lowest(t_min_);
     }
 
-    static float lowest(Batch values) {
-        alignas(64) Lanes lanes;
-        values.store_aligned(lanes.data());
-        return *std::min_element(lanes.begin(), lanes.end());
-    }
     bool coherent_;
     std::array<bool, 3> backwards_;
     Shear<Batch> shear_;
-    alignas(64) std::array<Lanes, 6> lanes_; // the shear's, to be picked from
-    Batch t_min_;
+    alignas(64) std::array<Values, 6> lanes_; // the shear's, to be picked from
+    Batch t_min_, t_max_;
     float first_;
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
     std::array<Interval, 3> near_interval_, far_interval_;
 };
 
-/// The closest hits of a coherent packet's rays, as `traverse` finds them for each. `instance(ray)` makes what
-/// `traverse` asks for instances' hits. Hits come in with the rays' ends.
+/// The closest hits of a coherent packet's rays, as `find_closest` finds them for each. `instance(ray)` makes what
+/// `find_closest` asks for instances' hits.
 template <typename Instance> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
 
-    PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays,
-                    std::span<Hit, kSize> hits, const Instance& instance)
-        : bvh_(bvh), packet_(packet), rays_(rays), hits_(hits), instance_(instance) {
-        for (std::size_t lane = 0; lane < kSize; ++lane) ends_[lane] = hits[lane].t;
-        last_ = RayPacket::highest(ends());
+    PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, const Instance& instance)
+        : bvh_(bvh), packet_(packet), rays_(rays), instance_(instance) {
+        object_.fill(kNoObject);
+        set_ends(xsimd::min(packet.t_max(), Batch(std::numeric_limits<float>::max()))); // what overflowed is no distance
     }
 
-    void run() {
-        if (bvh_.empty()) return;
+    void run(std::span<Hit, kSize> hits) {
+        if (!bvh_.empty()) traverse();
+        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray] = object_[ray] == kNoObject ? Hit{} : best(ray);
+    }
+
+private:
+    using Batch = RayPacket::Batch;
+    static constexpr unsigned kAll = (1u << kSize) - 1;
+    // Up to so many rays are tested one by one against a whole block of triangles, more with each triangle at a time.
+    static constexpr int kFewRays = kSize / 2;
+
+    // A child that waits, and where each ray enters its box.
+    struct Waiting {
+        alignas(sizeof(Batch)) RayPacket::Values entry;
+        float nearest;
+        BvhRef child;
+    };
+
+    void traverse() {
         BvhRef next = bvh_.root;
         unsigned active = kAll;
         for (;;) {
-            while (!next.is_leaf()) {
-                active = step(next);
-                if (active == 0) break;
-            }
+            while (active != 0 && !next.is_leaf()) active = step(next);
             if (active != 0) test_leaf(next, active);
             do {
                 if (size_ == 0) return;
@@ -178,29 +186,13 @@ public:
         }
     }
 
-private:
-    using Batch = RayPacket::Batch;
-    static constexpr unsigned kAll = (1u << kSize) - 1;
-    // Up to so many rays are tested one by one against a whole block of triangles, more with each triangle at a time.
-    static constexpr int kFewRays = 5;
-
-    // A child that waits, and where each ray enters its box.
-    struct Waiting {
-        alignas(64) RayPacket::Lanes entry;
-        float nearest;
-        BvhRef child;
-    };
-
-    Batch ends() const { return Batch::load_aligned(ends_.data()); }
-
     // From a node to its nearest child that some rays enter, the others waiting; returns those rays, 0 where there is
     // none.
     unsigned step(BvhRef& next) {
         const BvhNode& node = node_at(bvh_, next);
         const auto [distance, entered] = packet_.enter_any(node, last_);
         if (entered == 0) return 0;
-        alignas(32) BvhNode::Lanes nearest;
-        distance.store_aligned(nearest.data());
+        const Lanes nearest(distance);
         const std::size_t bottom = size_;
         for (unsigned children = entered; children != 0; children &= children - 1) {
             const auto child = static_cast<std::size_t>(std::countr_zero(children));
@@ -219,32 +211,38 @@ private:
     }
 
     void test_leaf(BvhRef leaf, unsigned active) {
-        if (leaf.kind() != PrimitiveKind::kTriangle) {
-            for (; active != 0; active &= active - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(active));
-                const auto instance = instance_(rays_[lane]);
-                LeafTest<false, decltype(instance)>(bvh_, rays_[lane], kNoObject, instance)(leaf, hits_[lane]);
-                ends_[lane] = hits_[lane].t;
-            }
-        } else {
-            const std::uint32_t end = leaf.index() + leaf.count();
+        const std::uint32_t end = leaf.index() + leaf.count();
+        if (leaf.kind() == PrimitiveKind::kTriangle) {
             for (std::uint32_t i = leaf.index(); i < end; ++i) {
                 if (std::popcount(active) <= kFewRays)
                     ray_by_ray(bvh_.triangles[i], active);
                 else
                     triangle_by_triangle(bvh_.triangles[i], active);
             }
+        } else {
+            for (; active != 0; active &= active - 1) {
+                const auto ray = static_cast<std::size_t>(std::countr_zero(active));
+                const auto instance = instance_(rays_[ray]);
+                Hit hit = best(ray);
+                LeafTest<false, decltype(instance)>(bvh_, rays_[ray], kNoObject, instance)(leaf, hit);
+                set_best(ray, hit);
+            }
         }
-        last_ = RayPacket::highest(ends());
+        last_ = highest(ends());
     }
 
     void ray_by_ray(const TriangleBlock& block, unsigned active) {
         for (; active != 0; active &= active - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(active));
-            const BlockTest test(packet_.shear(ray), block, ends_[ray]);
+            const BlockTest test(packet_.shear(ray), block, t_[ray]);
+            if (test.candidates() == 0) continue;
+            const Lanes t(test.t()), u(test.u()), v(test.v());
             for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-                consider(block, lane, ray, test.certain(lane), test.hit(lane));
+                if (!(test.certain() >> lane & 1))
+                    consider_exactly(block, lane, ray);
+                else if (t[lane] > rays_[ray].t_min && t[lane] <= t_[ray])
+                    consider(block, lane, ray, {t[lane], u[lane], v[lane]});
             }
         }
     }
@@ -254,37 +252,66 @@ private:
             const Vec3 a = block.vertex(0, lane);
             if (a.x != a.x) return; // absent, and so are the rest
             const CandidateTest<Batch> test(packet_.shear(), a, block.vertex(1, lane), block.vertex(2, lane), ends());
-            for (unsigned lanes = test.candidates() & active; lanes != 0; lanes &= lanes - 1) {
-                const auto ray = static_cast<std::size_t>(std::countr_zero(lanes));
-                consider(block, lane, ray, test.certain(ray), test.hit(ray));
-            }
+            const unsigned candidates = test.candidates() & active;
+            if (candidates == 0) continue;
+            const unsigned nearer = lane_bits((test.t() > packet_.t_min()) & (test.t() < ends()));
+            const unsigned ties = lane_bits(test.t() == ends());
+            const unsigned certain = test.certain() & candidates;
+            if ((certain & nearer) != 0) take(certain & nearer, test, block.object[lane], block.primitive[lane]);
+            if ((certain & ties) != 0) consider_each(certain & ties, block, lane, test);
+            for (unsigned rays = candidates & ~certain; rays != 0; rays &= rays - 1)
+                consider_exactly(block, lane, static_cast<std::size_t>(std::countr_zero(rays)));
         }
     }
 
-    void consider(const TriangleBlock& block, std::size_t lane, std::size_t ray, bool certain, TriangleHit hit) {
-        if (certain) {
-            if (!(hit.t > rays_[ray].t_min && hit.t <= ends_[ray])) return;
-        } else {
-            Ray ended = rays_[ray];
-            ended.t_max = ends_[ray];
-            const auto exact =
-                intersect_triangle(ShearedRay(ended), block.vertex(0, lane), block.vertex(1, lane), block.vertex(2, lane));
-            if (!exact) return;
-            hit = *exact;
+    // The hits become these rays' best ones.
+    void take(unsigned rays, const CandidateTest<Batch>& test, std::uint32_t object, std::uint32_t primitive) {
+        store_lanes(test.t(), rays, t_.data());
+        store_lanes(test.u(), rays, u_.data());
+        store_lanes(test.v(), rays, v_.data());
+        store_lanes(object, rays, object_);
+        store_lanes(primitive, rays, primitive_);
+    }
+    void consider_each(unsigned rays, const TriangleBlock& block, std::size_t lane, const CandidateTest<Batch>& test) {
+        const Lanes t(test.t()), u(test.u()), v(test.v());
+        for (; rays != 0; rays &= rays - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
+            consider(block, lane, ray, {t[ray], u[ray], v[ray]});
         }
+    }
+    void consider_exactly(const TriangleBlock& block, std::size_t lane, std::size_t ray) {
+        Ray ended = rays_[ray];
+        ended.t_max = t_[ray];
+        const auto hit = intersect_triangle(ShearedRay(ended), block.vertex(0, lane), block.vertex(1, lane),
+                                            block.vertex(2, lane));
+        if (hit) consider(block, lane, ray, *hit);
+    }
+    void consider(const TriangleBlock& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
         const Hit found{block.object[lane], block.primitive[lane], hit.u, hit.v, hit.t};
-        if (!precedes(found, hits_[ray])) return;
-        hits_[ray] = found;
-        ends_[ray] = found.t;
+        if (precedes(found, best(ray))) set_best(ray, found);
+    }
+
+    Hit best(std::size_t ray) const { return {object_[ray], primitive_[ray], u_[ray], v_[ray], t_[ray]}; }
+    void set_best(std::size_t ray, const Hit& hit) {
+        object_[ray] = hit.object;
+        primitive_[ray] = hit.primitive;
+        u_[ray] = hit.u;
+        v_[ray] = hit.v;
+        t_[ray] = hit.t;
+    }
+    Batch ends() const { return Batch::load_aligned(t_.data()); }
+    void set_ends(Batch t) {
+        t.store_aligned(t_.data());
+        last_ = highest(t);
     }
 
     const Bvh& bvh_;
     const RayPacket& packet_;
     std::span<const Ray, kSize> rays_;
-    std::span<Hit, kSize> hits_;
     const Instance& instance_;
-    alignas(64) RayPacket::Lanes ends_; // the hits' distances
-    float last_;                        // the greatest of them
+    alignas(sizeof(Batch)) RayPacket::Values t_, u_, v_; // of the best hits so far; t: of the rays' ends, where there is none
+    alignas(sizeof(Batch)) std::array<std::uint32_t, kSize> object_, primitive_;
+    float last_; // the greatest t
     std::size_t size_ = 0;
     // Each step down leaves at most kWidth children waiting.
     std::array<Waiting, BvhNode::kWidth * Bvh::kMaxDepth + 1> stack_;

@@ -43,15 +43,13 @@ private:
 };
 
 /// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
-/// of the ray. With kAny it stops at the first that comes before `best` and is not best's own primitive: a shadow ray
-/// to a light passes the light itself as `best`. Returns whether there was one. `object` stands for the objects of the
-/// primitives where it is not kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same
-/// manner.
-template <bool kAny, typename Instance>
-bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+/// of the ray. Returns whether there was one. `object` stands for the objects of the primitives where it is not
+/// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
+template <typename Instance>
+bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
     if (bvh.empty()) return false;
     const SlabRay slabs(ray, bvh.bounds);
-    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
+    LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
     // Each step down leaves at most kWidth − 1 children waiting.
     std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
@@ -70,37 +68,58 @@ bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, c
                 next = node.children[first];
                 continue;
             }
-            alignas(32) BvhNode::Lanes entry;
-            distance.store_aligned(entry.data());
+            const Lanes entry(distance);
             const auto take = [&] {
                 const auto child = static_cast<std::size_t>(std::countr_zero(children));
                 children &= children - 1;
                 return Waiting(entry[child], node.children[child]);
             };
-            Waiting nearest(entry[first], node.children[first]);
-            if (kAny) {
-                do stack[size++] = take();
-                while (children != 0);
-            } else {
-                const std::size_t bottom = size;
-                nearest = take_nearer(nearest, take(), stack[size++]);
-                while (children != 0) {
-                    Waiting other;
-                    nearest = take_nearer(nearest, take(), other);
-                    // The farthest at the bottom.
-                    std::size_t i = size++;
-                    for (; i > bottom && stack[i - 1].nearer_than(other); --i) stack[i] = stack[i - 1];
-                    stack[i] = other;
-                }
+            const std::size_t bottom = size;
+            Waiting nearest = take_nearer(Waiting(entry[first], node.children[first]), take(), stack[size++]);
+            while (children != 0) {
+                Waiting other;
+                nearest = take_nearer(nearest, take(), other);
+                // The farthest at the bottom.
+                std::size_t i = size++;
+                for (; i > bottom && stack[i - 1].nearer_than(other); --i) stack[i] = stack[i - 1];
+                stack[i] = other;
             }
             next = nearest.child();
         }
-        if (next.is_leaf() && test_leaf(next, best)) return true;
+        if (next.is_leaf()) test_leaf(next, best);
         do {
             if (size == 0) return test_leaf.found();
             --size;
         } while (stack[size].entry() > best.t);
         next = stack[size].child();
+    }
+}
+
+/// Whether any primitive comes before `end` and is not end's own: a shadow ray to a light passes the light itself.
+/// Stops at the first; the other arguments as above.
+template <typename Instance>
+bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
+    if (bvh.empty()) return false;
+    const SlabRay slabs(ray, bvh.bounds);
+    LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
+    Hit best = end;
+
+    std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
+    std::size_t size = 0;
+    const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
+    BvhRef next = bvh.root;
+    for (;;) {
+        while (!next.is_leaf()) {
+            const BvhNode& node = node_at(bvh, next);
+            unsigned children = slabs.enter(node, t_min, t_max).children;
+            if (children == 0) break;
+            next = node.children[static_cast<std::size_t>(std::countr_zero(children))];
+            while ((children &= children - 1) != 0)
+                stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];
+        }
+        if (next.is_leaf() && test_leaf(next, best)) return true;
+        if (size == 0) return false;
+        next = stack[--size];
     }
 }
 
