@@ -119,8 +119,8 @@ void print_checks(std::ostream& out, const KernelTable& table) {
 void mark_best(std::vector<KernelRow>& rows) {
     for (KernelRow& row : rows)
         row.best = !row.peer_name.empty() && std::ranges::none_of(rows, [&](const KernelRow& other) {
-            return other.work == row.work && other.threads == row.threads && !other.peer_name.empty() &&
-                   better(other, row);
+            const bool rival = other.work == row.work && other.threads == row.threads && !other.peer_name.empty();
+            return rival && (better(other, row) || (&other < &row && !better(row, other))); // of equals the first
         });
 }
 

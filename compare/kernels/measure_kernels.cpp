@@ -148,7 +148,7 @@ private:
         if (wanted("camera")) add_work({"camera", Question::kClosest, std::move(camera), {}, {}, {}, {}}, {1});
         if (wanted("camera-bulk"))
             add_work({"camera-bulk", Question::kClosest,
-                      camera_rays(scene_.camera, width, height, PixelOrder::kBlocks, threads), {}, {}, {}, {}},
+                      camera_rays(scene_.camera, width, height, PixelOrder::kZCurve, threads), {}, {}, {}, {}},
                      {16, 8});
         const auto place = [](const Work& work) { return std::ranges::find(kWorks, work.name); };
         std::ranges::sort(works_, {}, place);

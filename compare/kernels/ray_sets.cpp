@@ -15,12 +15,18 @@ namespace {
 
 constexpr std::size_t kChunk = 4096; ///< rays made at a time
 
-/// Where a pixel of the tile is visited: x and y of its i-th.
-std::pair<int, int> place_in_tile(int i, int tile_width, int tile_height, PixelOrder order) {
-    if (order == PixelOrder::kRows || tile_width % 4 != 0 || tile_height % 4 != 0)
-        return {i % tile_width, i / tile_width};
-    const int block = i / 16, within = i % 16, across = tile_width / 4;
-    return {block % across * 4 + within % 4, block / across * 4 + within / 4};
+/// Every other bit of a number below 256, from the lowest on.
+int even_bits(int code) {
+    int bits = 0;
+    for (int i = 0; i < 4; ++i) bits |= (code >> (2 * i) & 1) << i;
+    return bits;
+}
+
+/// Where the i-th pixel of a whole tile lies in it.
+std::pair<int, int> place_in_tile(int i, PixelOrder order) {
+    static_assert(kTile == 16);
+    if (order == PixelOrder::kRows) return {i % kTile, i / kTile};
+    return {even_bits(i), even_bits(i >> 1)};
 }
 
 /// What `make` returns for each ray with its index, the empty left out, in order, for any number of threads.
@@ -59,13 +65,13 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
     const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
     std::vector<Ray> rays(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
-        const int y0 = static_cast<int>(row) * kTile, tile_height = std::min(kTile, height - y0);
+        const int y0 = static_cast<int>(row) * kTile;
         auto next = static_cast<std::size_t>(y0) * static_cast<std::size_t>(width); // the rows of tiles above are full
         for (int column = 0; column < columns; ++column) {
-            const int x0 = column * kTile, tile_width = std::min(kTile, width - x0);
-            for (int i = 0; i < tile_width * tile_height; ++i) {
-                const auto [x, y] = place_in_tile(i, tile_width, tile_height, order);
-                rays[next++] = model.ray({x0 + x + 0.5, y0 + y + 0.5});
+            for (int i = 0; i < kTile * kTile; ++i) {
+                const auto [x_in_tile, y_in_tile] = place_in_tile(i, order);
+                const int x = column * kTile + x_in_tile, y = y0 + y_in_tile;
+                if (x < width && y < height) rays[next++] = model.ray({x + 0.5, y + 0.5});
             }
         }
     });

@@ -9,9 +9,9 @@
 
 namespace duet::compare {
 
-/// Pixels are visited in tiles of kTile × kTile from the upper left, as the path tracer does, in rows or in blocks of
-/// 4 × 4, so that 16 rays on end are one packet.
-enum class PixelOrder { kRows, kBlocks };
+/// Pixels are visited in tiles of kTile × kTile from the upper left: each in rows, or along a Z-curve (Morton 1966), the
+/// order in which the path tracer traces camera rays in bulk. On the curve 16 rays on end are 4 × 4 pixels.
+enum class PixelOrder { kRows, kZCurve };
 inline constexpr int kTile = 16;
 
 /// One ray through the centre of each pixel.

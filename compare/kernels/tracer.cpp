@@ -18,10 +18,13 @@ Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray
 
 Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays) {
     return {"duet bulk", [&accelerator, rays](std::size_t block, Answer* answers) {
-                const std::span<const Ray> some = block_of(rays, block);
-                std::array<Hit, kBlock> hits;
-                accelerator.closest(some, std::span(hits).first(some.size()));
-                for (std::size_t i = 0; i < some.size(); ++i) answers[i] = answer_of(hits[i]);
+                std::array<Hit, kBatch> hits;
+                for (auto rest = block_of(rays, block); !rest.empty();) {
+                    const std::size_t count = std::min(kBatch, rest.size());
+                    accelerator.closest(rest.first(count), std::span(hits).first(count));
+                    for (const Hit& hit : std::span(hits).first(count)) *answers++ = answer_of(hit);
+                    rest = rest.subspan(count);
+                }
             }};
 }
 

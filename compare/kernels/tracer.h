@@ -46,7 +46,8 @@ struct Tracer {
 /// Our kernel through the accelerator's public functions, called just as the path tracer calls them. The rays and the
 /// accelerator must outlive the tracer.
 Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
-/// Many rays at once.
+/// kBatch rays at a time, as the path tracer has camera rays traced.
+inline constexpr std::size_t kBatch = 64;
 Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 

@@ -13,7 +13,7 @@ namespace duet::compare {
 namespace {
 
 constexpr std::size_t kOrigins = 4096;
-constexpr std::int64_t kBatch = 64 * static_cast<std::int64_t>(kBlock); ///< rays made and traced at a time
+constexpr std::int64_t kMade = 64 * static_cast<std::int64_t>(kBlock); ///< rays made and traced at a time
 
 /// A ray's random numbers.
 class Numbers {
@@ -89,11 +89,11 @@ Watertight test_watertight(const KernelScene& scene, const Judge& judge, const s
     Watertight result{rays, std::vector<std::int64_t>(kernels.size(), 0)};
     std::mutex mutex; // of the sums and the progress
     std::int64_t done = 0;
-    parallel_for(static_cast<std::size_t>((rays + kBatch - 1) / kBatch), threads, [&](std::size_t batch) {
+    parallel_for(static_cast<std::size_t>((rays + kMade - 1) / kMade), threads, [&](std::size_t batch) {
         if (control.stopped()) return;
-        const std::int64_t first = static_cast<std::int64_t>(batch) * kBatch;
+        const std::int64_t first = static_cast<std::int64_t>(batch) * kMade;
         std::vector<Ray> aimed;
-        for (std::int64_t i = first; i < std::min(first + kBatch, rays); ++i)
+        for (std::int64_t i = first; i < std::min(first + kMade, rays); ++i)
             aimed.push_back(aimed_ray(mesh, origins, seed, i));
         std::vector<std::int64_t> misses;
         for (const TracerFor& kernel : kernels) {

@@ -88,7 +88,7 @@ TEST_SUITE("unit") {
     TEST_CASE("one by one, in bulk and in any number of threads the answers are the same") {
         const KernelScene scene = lump(Arrangement::kRoom);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
-        const auto rays = camera_rays(scene.camera, 70, 50, PixelOrder::kBlocks, 1);
+        const auto rays = camera_rays(scene.camera, 70, 50, PixelOrder::kZCurve, 1);
         const auto one = all_answers(our_closest(accelerator, rays), rays.size(), 1);
         REQUIRE(one.size() == rays.size());
         for (const auto& other : {all_answers(our_closest(accelerator, rays), rays.size(), 3),
@@ -198,6 +198,11 @@ TEST_SUITE("unit") {
         CHECK(rows[2].best);
         CHECK_FALSE(rows[3].best);
         CHECK(rows[4].best);
+        CHECK_FALSE(rows[5].best);
+        rows[4].peer = rows[5].peer; // of equals the first
+        mark_best(rows);
+        CHECK(rows[4].best);
+        CHECK_FALSE(rows[5].best);
         CHECK(verdict({1.01, 1.1, 1.2}) == "ahead");
         CHECK(verdict({0.9, 1.1, 1.2}) == "even");
         CHECK(verdict({0.8, 0.9, 0.99}) == "behind");
@@ -225,7 +230,7 @@ TEST_SUITE("unit") {
         const raytrace::Accelerator accelerator(*scene.scene, 1);
         const Judge judge(*scene.scene);
         const EmbreeDevice device(scene.triangles(), 1);
-        const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kBlocks, 1);
+        const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kZCurve, 1);
         const auto bounce = bounce_rays(scene, accelerator, camera, 0, 1);
         const auto shadow = shadow_rays(scene, accelerator, camera, 0, 1);
         for (const bool robust : {false, true})
