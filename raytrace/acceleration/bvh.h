@@ -27,6 +27,15 @@ struct alignas(32) TriangleBlock {
     std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
     Lanes<std::uint32_t> object, primitive;
 
+    void set(std::size_t lane, Vec3 a, Vec3 b, Vec3 c, std::uint32_t its_object, std::uint32_t its_primitive) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            corner[0][axis][lane] = a[axis];
+            corner[1][axis][lane] = b[axis];
+            corner[2][axis][lane] = c[axis];
+        }
+        object[lane] = its_object;
+        primitive[lane] = its_primitive;
+    }
     Vec3 vertex(std::size_t of, std::size_t lane) const {
         return {corner[of][0][lane], corner[of][1][lane], corner[of][2][lane]};
     }
