@@ -242,7 +242,9 @@ Subcommand add_kernels(CLI::App& app) {
     const auto all = std::make_shared<compare::KernelsOptions>();
     const auto size = std::make_shared<std::string>();
     compare::KernelsOptions& options = *all;
-    kernels->add_option("MESH", options.meshes, "Bare meshes (.obj), or scene files (.json), which are measured as they are")
+    kernels
+        ->add_option("MESH", options.meshes,
+                     "Bare meshes (.obj), or scene files (.json), which are measured as they are")
         ->required();
     kernels
         ->add_option("--scene", options.scenes,
@@ -260,7 +262,9 @@ Subcommand add_kernels(CLI::App& app) {
                      "all four)")
         ->delimiter(',');
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
-    kernels->add_option("--threads", options.threads, "Threads of the second set of rows, after one thread's (default: all)")
+    kernels
+        ->add_option("--threads", options.threads,
+                     "Threads of the second set of rows, after one thread's (default: all)")
         ->check(CLI::Range(1, 1024));
     kernels->add_option("--repeats", options.repeats, "Measurements of each, in turns (default 7)")
         ->check(CLI::Range(1, 10000));
@@ -274,12 +278,13 @@ Subcommand add_kernels(CLI::App& app) {
     kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)");
     kernels->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     kernels->add_flag("--quiet", options.quiet, "No table, no progress bar; faults are still explained");
-    kernels->footer(std::string("Example:\n  compare kernels bunny.obj models/cornell.json --scene room,clutter --stats "
-                                "kernels.json\n\nThe table sets ours against the best of the peer's settings, --stats "
-                                "against each. A ratio above 1 is ours ahead. The exit code is 1 where one of our "
-                                "answers is wrong by the double-precision judge, or a ray of ours leaks out of a closed "
-                                "room or mesh.") +
-                    kExitCodes);
+    kernels->footer(
+        std::string("Example:\n  compare kernels bunny.obj models/cornell.json --scene room,clutter --stats "
+                    "kernels.json\n\nThe table sets ours against the best of the peer's settings, --stats "
+                    "against each. A ratio above 1 is ours ahead. The exit code is 1 where one of our "
+                    "answers is wrong by the double-precision judge, or a ray of ours leaks out of a closed "
+                    "room or mesh.") +
+        kExitCodes);
     return {kernels, [all, size] {
                 if (!size->empty()) all->size = parse_picture_size(*size);
                 return compare::kernels(*all);

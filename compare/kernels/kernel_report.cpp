@@ -61,9 +61,12 @@ json row_json(const KernelTable& table, const KernelRow& row) {
     if (is_rate(row)) result["rays"] = row.rays;
     if (row.mismatches) {
         const Mismatches& m = *row.mismatches;
-        result["mismatches"] = {{"rays", m.rays},       {"differ", m.differ()},
-                                {"tie", m.tie},         {"edge", m.edge},
-                                {"unexplained", m.unexplained}, {"ours_wrong", m.ours_wrong},
+        result["mismatches"] = {{"rays", m.rays},
+                                {"differ", m.differ()},
+                                {"tie", m.tie},
+                                {"edge", m.edge},
+                                {"unexplained", m.unexplained},
+                                {"ours_wrong", m.ours_wrong},
                                 {"peer_wrong", m.peer_wrong}};
     }
     if (row.leaks)
@@ -78,7 +81,8 @@ bool better(const KernelRow& a, const KernelRow& b) { return is_rate(a) ? a.peer
 const KernelRow* most_different(const KernelTable& table) {
     const KernelRow* worst = nullptr;
     for (const KernelRow& row : table.rows)
-        if (row.mismatches && (worst == nullptr || row.mismatches->differ() > worst->mismatches->differ())) worst = &row;
+        if (row.mismatches && (worst == nullptr || row.mismatches->differ() > worst->mismatches->differ()))
+            worst = &row;
     return worst;
 }
 
@@ -108,7 +112,8 @@ void print_checks(std::ostream& out, const KernelTable& table) {
         out << '\n';
     }
     if (table.watertight.empty()) return;
-    out << "  " << grouped(table.watertight.front().rays) << " rays aimed at points, edges and vertices from within, lost:";
+    out << "  " << grouped(table.watertight.front().rays)
+        << " rays aimed at points, edges and vertices from within, lost:";
     for (const KernelTable::Missed& m : table.watertight)
         out << (&m == &table.watertight.front() ? " " : ", ") << m.kernel << ' ' << grouped(m.misses);
     out << '\n';
@@ -163,9 +168,9 @@ void print_table(std::ostream& out, const KernelTable& table) {
     const auto line = [&](const std::string& work, const std::string& threads, const std::string& ours,
                           const std::string& peer, const std::string& ratio, const std::string& verdict_text,
                           const std::string& name) {
-        out << "  " << std::left << std::setw(12) << work << std::right << std::setw(8) << threads << std::setw(11) << ours
-            << std::setw(11) << peer << "  " << std::left << std::setw(21) << ratio << std::setw(8) << verdict_text << name
-            << '\n';
+        out << "  " << std::left << std::setw(12) << work << std::right << std::setw(8) << threads << std::setw(11)
+            << ours << std::setw(11) << peer << "  " << std::left << std::setw(21) << ratio << std::setw(8)
+            << verdict_text << name << '\n';
     };
     line("work", "threads", "ours", "peer", "min - median - max", "ours is", "the peer's best");
     for (const KernelRow& row : table.rows) {

@@ -25,8 +25,8 @@ struct KernelRow {
     double ours = 0;       ///< million rays a second; seconds (build); bytes a triangle (memory)
     std::string peer_name; ///< "embree 3.13.5 medium packets 16"; empty: no peer
     double peer = 0;
-    Range ratio;         ///< above 1: ours is ahead
-    bool best = false;   ///< of the peer's settings for this work and number of threads
+    Range ratio;          ///< above 1: ours is ahead
+    bool best = false;    ///< of the peer's settings for this work and number of threads
     std::size_t rays = 0; ///< of one measurement
     int repeats = 0;      ///< measurements of the peer
     std::optional<Mismatches> mismatches;

@@ -113,8 +113,7 @@ bool is_bare_mesh(const std::filesystem::path& file) { return lower_case_ending(
 Mesh enclosed(Mesh mesh, Vec3 center, float half) {
     std::vector<Vec3> positions;
     for (std::uint32_t i = 0; i < 8; ++i)
-        positions.push_back(center +
-                            Vec3(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
+        positions.push_back(center + Vec3(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
     // Each face's corners, counter-clockwise seen from within.
     constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
         {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}}};

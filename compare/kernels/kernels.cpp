@@ -64,14 +64,16 @@ std::vector<Case> cases_of(const KernelsOptions& options) {
     for (const std::string& name : options.scenes) arrangements.push_back(parse_arrangement(name));
     std::vector<Case> cases;
     for (const std::filesystem::path& file : options.meshes) {
-        if (!is_bare_mesh(file)) cases.push_back({file, Arrangement::kAlone});
+        if (!is_bare_mesh(file))
+            cases.push_back({file, Arrangement::kAlone});
         else
             for (const Arrangement arrangement : arrangements) cases.push_back({file, arrangement});
     }
     return cases;
 }
 
-json report_json(const KernelsOptions& options, const MeasureKernels& settings, const std::vector<KernelTable>& tables) {
+json report_json(const KernelsOptions& options, const MeasureKernels& settings,
+                 const std::vector<KernelTable>& tables) {
     json rows = json::array(), watertight = json::array(), judged = json::array();
     for (const KernelTable& table : tables) {
         for (json& row : rows_json(table)) rows.push_back(std::move(row));

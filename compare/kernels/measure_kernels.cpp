@@ -97,8 +97,7 @@ private:
                 const EmbreeScene built(*device, quality);
                 return watch.seconds();
             });
-        const Interleaved found =
-            interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
+        const Interleaved found = interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
         if (control.stopped()) return;
         std::vector<std::string> names;
         for (const EmbreeQuality& quality : settings_.peers) names.push_back(full_name(name_of(quality)));
@@ -140,15 +139,32 @@ private:
         const auto [width, height] = settings_.size;
         std::vector<Ray> camera = camera_rays(scene_.camera, width, height, PixelOrder::kRows, threads);
         if (wanted("bounce"))
-            add_work({"bounce", Question::kClosest, bounce_rays(scene_, *accelerator_, camera, settings_.seed, threads),
-                      {}, {}, {}, {}}, {1});
+            add_work({"bounce",
+                      Question::kClosest,
+                      bounce_rays(scene_, *accelerator_, camera, settings_.seed, threads),
+                      {},
+                      {},
+                      {},
+                      {}},
+                     {1});
         if (wanted("shadow"))
-            add_work({"shadow", Question::kOccluded,
-                      shadow_rays(scene_, *accelerator_, camera, settings_.seed, threads), {}, {}, {}, {}}, {1});
+            add_work({"shadow",
+                      Question::kOccluded,
+                      shadow_rays(scene_, *accelerator_, camera, settings_.seed, threads),
+                      {},
+                      {},
+                      {},
+                      {}},
+                     {1});
         if (wanted("camera")) add_work({"camera", Question::kClosest, std::move(camera), {}, {}, {}, {}}, {1});
         if (wanted("camera-bulk"))
-            add_work({"camera-bulk", Question::kClosest,
-                      camera_rays(scene_.camera, width, height, PixelOrder::kZCurve, threads), {}, {}, {}, {}},
+            add_work({"camera-bulk",
+                      Question::kClosest,
+                      camera_rays(scene_.camera, width, height, PixelOrder::kZCurve, threads),
+                      {},
+                      {},
+                      {},
+                      {}},
                      {16, 8});
         const auto place = [](const Work& work) { return std::ranges::find(kWorks, work.name); };
         std::ranges::sort(works_, {}, place);
@@ -206,8 +222,7 @@ private:
             peers.push_back(timed(peer, portion));
             names.push_back(peer.name);
         }
-        const Interleaved found =
-            interleave(timed(work.ours, portion), peers, settings_.repeats, kNoLimit, control);
+        const Interleaved found = interleave(timed(work.ours, portion), peers, settings_.repeats, kNoLimit, control);
         if (control.stopped()) return;
         const std::size_t first = table_.rows.size();
         add_rows(work.name, threads, found, names,

@@ -9,8 +9,8 @@
 
 namespace duet::compare {
 
-/// Pixels are visited in tiles of kTile × kTile from the upper left: each in rows, or along a Z-curve (Morton 1966), the
-/// order in which the path tracer traces camera rays in bulk. On the curve 16 rays on end are 4 × 4 pixels.
+/// Pixels are visited in tiles of kTile × kTile from the upper left: each in rows, or along a Z-curve (Morton 1966),
+/// the order in which the path tracer traces camera rays in bulk. On the curve 16 rays on end are 4 × 4 pixels.
 enum class PixelOrder { kRows, kZCurve };
 inline constexpr int kTile = 16;
 
@@ -23,9 +23,9 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
 std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads);
 
-/// From each first hit one ray to a point on a light: the scene's lights take turns. Hits that face away from the point,
-/// or that the light cannot reach, send none, as in the path tracer. The ray's t_max is just short of the light, whose
-/// own triangle must not shade it.
+/// From each first hit one ray to a point on a light: the scene's lights take turns. Hits that face away from the
+/// point, or that the light cannot reach, send none, as in the path tracer. The ray's t_max is just short of the light,
+/// whose own triangle must not shade it.
 std::vector<Ray> shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads);
 

@@ -42,7 +42,8 @@ namespace {
 
 void fail_on_error(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
-    if (error != RTC_ERROR_NONE) throw Error(message(embree_version(), " failed with error ", static_cast<int>(error)), 1);
+    if (error != RTC_ERROR_NONE)
+        throw Error(message(embree_version(), " failed with error ", static_cast<int>(error)), 1);
 }
 
 /// Denormals count as zero while it lives, in this thread.
@@ -101,8 +102,18 @@ void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays
 float start_of(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
 
 RTCRay as_embree(const Ray& ray) {
-    return {ray.origin.x,    ray.origin.y, ray.origin.z, start_of(ray), ray.direction.x, ray.direction.y,
-            ray.direction.z, 0,            ray.t_max,    0xffffffffu, 0,               0};
+    return {ray.origin.x,
+            ray.origin.y,
+            ray.origin.z,
+            start_of(ray),
+            ray.direction.x,
+            ray.direction.y,
+            ray.direction.z,
+            0,
+            ray.t_max,
+            0xffffffffu,
+            0,
+            0};
 }
 
 /// What a packet is made of, ready to be copied: arrays of one quantity each.
@@ -222,19 +233,19 @@ Tracer EmbreeScene::closest(std::span<const Ray> rays, int width, bool coherent)
     if (width == 16) return {"packets 16", packet_function<16, RTCRayHit16>(scene, rays, coherent)};
     if (width == 8) return {"packets 8", packet_function<8, RTCRayHit8>(scene, rays, coherent)};
     DUET_CHECK_EQ(width, 1);
-    return {"", [scene, rays, coherent](std::size_t block, Answer* answers) {
-                const FlushToZero flush;
-                Query query(coherent);
-                for (const Ray& ray : block_of(rays, block)) {
-                    RTCRayHit hit;
-                    hit.ray = as_embree(ray);
-                    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-                    hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                    intersect1(scene, query, hit);
-                    *answers++ = {hit.ray.tfar,
-                                  hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Answer::kNone : hit.hit.primID};
-                }
-            }};
+    return {
+        "", [scene, rays, coherent](std::size_t block, Answer* answers) {
+            const FlushToZero flush;
+            Query query(coherent);
+            for (const Ray& ray : block_of(rays, block)) {
+                RTCRayHit hit;
+                hit.ray = as_embree(ray);
+                hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+                hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+                intersect1(scene, query, hit);
+                *answers++ = {hit.ray.tfar, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Answer::kNone : hit.hit.primID};
+            }
+        }};
 }
 
 Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
@@ -257,7 +268,9 @@ std::string embree_version() { return {}; }
 struct EmbreeDevice::Handle {};
 EmbreeDevice::EmbreeDevice(const Mesh&, int) { throw Error("this program was built without Embree", 1); }
 struct EmbreeScene::Built {};
-EmbreeScene::EmbreeScene(const EmbreeDevice&, EmbreeQuality) { throw Error("this program was built without Embree", 1); }
+EmbreeScene::EmbreeScene(const EmbreeDevice&, EmbreeQuality) {
+    throw Error("this program was built without Embree", 1);
+}
 EmbreeScene::~EmbreeScene() = default;
 std::int64_t EmbreeScene::memory_bytes() const { return 0; }
 Tracer EmbreeScene::closest(std::span<const Ray>, int, bool) const { return {}; }

@@ -13,7 +13,8 @@ namespace duet::compare {
 /// "embree 3.13.5", or empty where this program was built without it.
 std::string embree_version();
 
-/// How a hierarchy is built and traced: RTC_BUILD_QUALITY_MEDIUM or _HIGH (spatial splits), RTC_SCENE_FLAG_ROBUST or not.
+/// How a hierarchy is built and traced: RTC_BUILD_QUALITY_MEDIUM or _HIGH (spatial splits), RTC_SCENE_FLAG_ROBUST or
+/// not.
 struct EmbreeQuality {
     bool high = false, robust = false;
 

@@ -72,12 +72,12 @@ TEST_SUITE("unit") {
         const Scene scene = squares();
         const Judge judge(scene);
         const Ray ray = down(0.7f, 0.3f);
-        CHECK(judge.closest(ray, kMiss) == Finding::kWrong);          // lost
-        CHECK(judge.closest(ray, {2, 2}) == Finding::kWrong);         // what lies behind
-        CHECK(judge.closest(ray, {1, 1}) == Finding::kWrong);         // the neighbour, away from the edge
-        CHECK(judge.closest(ray, {1.001f, 0}) == Finding::kWrong);    // at the wrong distance
-        CHECK(judge.closest(down(2, 2), {1, 0}) == Finding::kWrong);  // beside everything
-        CHECK(judge.closest(ray, {0.5f, 0}) == Finding::kWrong);      // in the air
+        CHECK(judge.closest(ray, kMiss) == Finding::kWrong);         // lost
+        CHECK(judge.closest(ray, {2, 2}) == Finding::kWrong);        // what lies behind
+        CHECK(judge.closest(ray, {1, 1}) == Finding::kWrong);        // the neighbour, away from the edge
+        CHECK(judge.closest(ray, {1.001f, 0}) == Finding::kWrong);   // at the wrong distance
+        CHECK(judge.closest(down(2, 2), {1, 0}) == Finding::kWrong); // beside everything
+        CHECK(judge.closest(ray, {0.5f, 0}) == Finding::kWrong);     // in the air
         CHECK(judge.occluded(ray, false) == Finding::kWrong);
         CHECK(judge.occluded(down(2, 2), true) == Finding::kWrong);
         Ray ends = ray;

@@ -93,9 +93,8 @@ TEST_SUITE("unit") {
         REQUIRE(one.size() == rays.size());
         for (const auto& other : {all_answers(our_closest(accelerator, rays), rays.size(), 3),
                                   all_answers(our_bulk(accelerator, rays), rays.size(), 1)})
-            CHECK(std::ranges::equal(one, other, [](const Answer& a, const Answer& b) {
-                return a.t == b.t && a.triangle == b.triangle;
-            }));
+            CHECK(std::ranges::equal(
+                one, other, [](const Answer& a, const Answer& b) { return a.t == b.t && a.triangle == b.triangle; }));
     }
 
     TEST_CASE("points inside lie inside; a closed mesh lets no ray out, one with a hole does") {
@@ -114,8 +113,7 @@ TEST_SUITE("unit") {
         REQUIRE_FALSE(leaky.triangles().closed);
         const raytrace::Accelerator other(*leaky.scene, 1);
         const TracerFor plant = [&](std::span<const Ray> rays) { return our_closest(other, rays); };
-        const std::int64_t found =
-            test_watertight(scene, judge, {plant}, 100'000, 0, 2, Control{}).misses.front();
+        const std::int64_t found = test_watertight(scene, judge, {plant}, 100'000, 0, 2, Control{}).misses.front();
         CHECK(found > 10); // one of 1280 triangles
         CHECK(found < 1000);
     }
@@ -242,8 +240,7 @@ TEST_SUITE("unit") {
                     const auto ours = all_answers(our_closest(accelerator, rays), rays.size(), 1);
                     for (const int width : {1, 8, 16}) {
                         const auto theirs = all_answers(embree.closest(rays, width, true), rays.size(), 1);
-                        const Mismatches found =
-                            compare_answers(judge, Question::kClosest, rays, ours, theirs, 1);
+                        const Mismatches found = compare_answers(judge, Question::kClosest, rays, ours, theirs, 1);
                         CHECK(found.unexplained == 0);
                         CHECK(found.differ() < 100);
                     }
