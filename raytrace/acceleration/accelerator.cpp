@@ -7,6 +7,7 @@
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <span>
 
@@ -46,7 +47,8 @@ public:
     }
 
     Bvh build() {
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads_);
+        const auto drop_twins = [this](std::span<BuildItem> items) { return first_of_twins(items); };
+        const BinaryTree tree = build_binary_tree(std::move(items_), threads_, drop_twins);
         Collapsed collapsed = collapse(tree);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
@@ -111,6 +113,30 @@ private:
         case PrimitiveKind::kInstance:
             return copy(instances_, bvh.instances);
         }
+    }
+
+    // Triangles with the very same corners are hit at the very same distance, where the lowest (object, primitive) wins:
+    // that of the lowest index here.
+    std::size_t first_of_twins(std::span<BuildItem> items) const {
+        if (std::any_of(items.begin(), items.end(),
+                        [](const BuildItem& item) { return item.kind != PrimitiveKind::kTriangle; }))
+            return items.size();
+        using Corners = std::array<std::uint32_t, 9>;
+        const auto corners = [&](const BuildItem& item) {
+            const MeshTriangle& triangle = triangles_[item.index];
+            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+            std::array<Vec3, 3> p;
+            for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[triangle.primitive][k]];
+            return std::bit_cast<Corners>(p);
+        };
+        std::sort(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            const Corners ca = corners(a), cb = corners(b);
+            return ca != cb ? ca < cb : a.index < b.index;
+        });
+        const auto end = std::unique(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            return corners(a) == corners(b);
+        });
+        return static_cast<std::size_t>(end - items.begin());
     }
 
     static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

@@ -61,6 +61,7 @@ struct Extent {
         centers.extend(other.centers);
         kinds |= other.kinds;
     }
+    bool one_center() const { return (lane_bits(centers.low == centers.high) & 7u) == 7u; }
     bool one_kind() const { return (kinds & (kinds - 1)) == 0; }
 };
 
@@ -247,7 +248,8 @@ struct Job {
 
 class Builder {
 public:
-    Builder(Items items, std::size_t job_size, int threads) : items_(items), job_size_(job_size), threads_(threads) {}
+    Builder(Items items, std::size_t job_size, int threads, const DropTwins& drop_twins)
+        : items_(items), job_size_(job_size), threads_(threads), drop_twins_(drop_twins) {}
 
     std::vector<BinaryNode> nodes;
     std::vector<Job> jobs;
@@ -255,6 +257,8 @@ public:
     std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth) {
         const auto index = static_cast<std::uint32_t>(nodes.size());
         nodes.emplace_back();
+        // Boxes cannot tell these apart: without this a ray at n twins would test all n.
+        if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_) count = drop_twins_(items_.subspan(first, count));
         if (count <= job_size_) {
             jobs.push_back({index, first, count, extent, depth});
             return index;
@@ -321,6 +325,7 @@ private:
     Items items_;
     std::size_t job_size_;
     int threads_;
+    const DropTwins& drop_twins_;
     Bins bins_;
     BuildItems copy_;
 };
@@ -341,19 +346,19 @@ void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<Bi
 
 } // namespace
 
-BinaryTree build_binary_tree(BuildItems items, int threads) {
+BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins) {
     BinaryTree tree{{}, std::move(items)};
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));
 
     // The division into jobs depends on the input alone, so that the tree does, too.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
-    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads);
+    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, drop_twins);
     top.build(0, tree.items.size(), extent_of(tree.items), 0);
     std::vector<std::vector<BinaryNode>> subtrees(top.jobs.size());
     parallel_for(top.jobs.size(), threads, [&](std::size_t i) {
         const Job& job = top.jobs[i];
-        Builder builder(tree.items, 0, 1);
+        Builder builder(tree.items, 0, 1, drop_twins);
         builder.nodes.reserve(job.count);
         builder.build(job.first, job.count, job.extent, job.depth);
         subtrees[i] = std::move(builder.nodes);

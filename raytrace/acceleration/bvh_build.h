@@ -3,6 +3,7 @@
 
 #include "raytrace/acceleration/bvh.h"
 
+#include <functional>
 #include <span>
 
 namespace duet::raytrace {
@@ -31,10 +32,14 @@ struct BinaryTree {
     BuildItems items; ///< in the order of the leaves
 };
 
+/// Of items that all have one centre, moves those to the front that can be hit, and returns how many they are: of
+/// primitives that are the same but for their names all but the first in order are never a ray's answer.
+using DropTwins = std::function<std::size_t(std::span<BuildItem>)>;
+
 /// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
 /// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
-/// threads (0: all).
-BinaryTree build_binary_tree(BuildItems items, int threads);
+/// threads (0: all). Without `drop_twins` each item is in one leaf; what it drops is in none.
+BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins = {});
 
 /// Items [first, first + count) of the tree: those of one leaf; and where in their kind's list they go.
 struct LeafItems {
