@@ -19,12 +19,14 @@ public:
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
                 const auto& [a, b, c] = mesh->triangles[i];
-                add_triangle({mesh->positions[a], mesh->positions[b], mesh->positions[c], object, i});
+                add_polygon(PrimitiveKind::kTriangle, triangles_,
+                            {{mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, i});
             }
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            for (std::uint32_t i = 0; i < list->quads.size(); ++i) add_quad({list->quads[i], object, i});
+            for (std::uint32_t i = 0; i < list->quads.size(); ++i)
+                add_polygon(PrimitiveKind::kQuad, quads_, {corners(list->quads[i]), object, i});
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, BvhSphere{std::get<Sphere>(shape), object, 0});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, Ball{std::get<Sphere>(shape), object});
         }
     }
 
@@ -44,17 +46,19 @@ public:
         Collapsed collapsed = collapse(tree);
         Bvh& bvh = collapsed.bvh;
         bvh.triangles.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kTriangle)]);
+        bvh.quads.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kQuad)]);
+        bvh.spheres.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kSphere)]);
         for (const LeafItems& leaf : collapsed.leaves) {
             const std::span items(tree.items.data() + leaf.first, leaf.count);
             switch (items[0].kind) {
             case PrimitiveKind::kTriangle:
-                bvh.triangles.push_back(block(items));
+                bvh.triangles.push_back(block(items, triangles_));
                 break;
             case PrimitiveKind::kQuad:
-                for (const BuildItem& item : items) bvh.quads.push_back(quads_[item.index]);
+                bvh.quads.push_back(block(items, quads_));
                 break;
             case PrimitiveKind::kSphere:
-                for (const BuildItem& item : items) bvh.spheres.push_back(spheres_[item.index]);
+                bvh.spheres.push_back(block(items, spheres_));
                 break;
             case PrimitiveKind::kInstance:
                 for (const BuildItem& item : items) bvh.instances.push_back(instances_[item.index]);
@@ -65,39 +69,51 @@ public:
     }
 
 private:
-    struct Triangle {
-        Vec3 a, b, c;
+    template <std::size_t kCorners> struct Polygon {
+        std::array<Vec3, kCorners> corners;
         std::uint32_t object, primitive;
     };
+    struct Ball {
+        Sphere sphere;
+        std::uint32_t object;
+    };
+    static constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
-    TriangleBlock block(std::span<const BuildItem> items) const {
-        TriangleBlock result;
+    template <std::size_t kCorners>
+    static PolygonBlock<kCorners> block(std::span<const BuildItem> items, const std::vector<Polygon<kCorners>>& polygons) {
+        PolygonBlock<kCorners> result;
         for (auto& corner : result.corner)
-            for (auto& axis : corner) axis.fill(std::numeric_limits<float>::quiet_NaN());
+            for (auto& axis : corner) axis.fill(kAbsent);
         result.object.fill(kNoObject);
         result.primitive.fill(0);
         for (std::size_t i = 0; i < items.size(); ++i) {
-            const Triangle& t = triangles_[items[i].index];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                result.corner[0][axis][i] = t.a[axis];
-                result.corner[1][axis][i] = t.b[axis];
-                result.corner[2][axis][i] = t.c[axis];
-            }
-            result.object[i] = t.object;
-            result.primitive[i] = t.primitive;
+            const Polygon<kCorners>& polygon = polygons[items[i].index];
+            for (std::size_t k = 0; k < kCorners; ++k)
+                for (std::size_t axis = 0; axis < 3; ++axis) result.corner[k][axis][i] = polygon.corners[k][axis];
+            result.object[i] = polygon.object;
+            result.primitive[i] = polygon.primitive;
+        }
+        return result;
+    }
+    static SphereBlock block(std::span<const BuildItem> items, const std::vector<Ball>& balls) {
+        SphereBlock result;
+        for (auto& axis : result.center) axis.fill(kAbsent);
+        result.radius.fill(kAbsent);
+        result.object.fill(kNoObject);
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            const auto& [sphere, object] = balls[items[i].index];
+            for (std::size_t axis = 0; axis < 3; ++axis) result.center[axis][i] = sphere.center[axis];
+            result.radius[i] = sphere.radius;
+            result.object[i] = object;
         }
         return result;
     }
 
-    void add_triangle(const Triangle& triangle) {
+    template <std::size_t kCorners>
+    void add_polygon(PrimitiveKind kind, std::vector<Polygon<kCorners>>& list, const Polygon<kCorners>& polygon) {
         Box3 box;
-        for (const Vec3& p : {triangle.a, triangle.b, triangle.c}) box.extend(p);
-        add(PrimitiveKind::kTriangle, box, triangles_, triangle);
-    }
-    void add_quad(const BvhQuad& quad) {
-        Box3 box;
-        for (const Vec3& p : corners(quad.quad)) box.extend(p);
-        add(PrimitiveKind::kQuad, box, quads_, quad);
+        for (const Vec3& p : polygon.corners) box.extend(p);
+        add(kind, box, list, polygon);
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
@@ -106,9 +122,9 @@ private:
     }
 
     std::vector<BuildItem> items_;
-    std::vector<Triangle> triangles_;
-    std::vector<BvhQuad> quads_;
-    std::vector<BvhSphere> spheres_;
+    std::vector<Polygon<3>> triangles_;
+    std::vector<Polygon<4>> quads_;
+    std::vector<Ball> spheres_;
     std::vector<BvhInstance> instances_;
 };
 

@@ -19,25 +19,34 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance }
 // Primitives are kept in the order of the leaves, with all that their test needs: a leaf reads consecutive memory.
 // `object` and `primitive` are what a Hit names; in the hierarchy of an instanced shape `object` is the instance's.
 
-/// Triangles that are tested at once. Absent ones are NaN, which nothing hits.
-struct alignas(32) TriangleBlock {
-    static constexpr std::size_t kSize = 8;
-    template <typename T> using Lanes = std::array<T, kSize>;
+/// Primitives that are tested at once.
+inline constexpr std::size_t kBlockSize = 8;
+template <typename T> using BlockLanes = std::array<T, kBlockSize>;
 
-    std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
-    Lanes<std::uint32_t> object, primitive;
+/// Triangles or quads. Absent ones are NaN, which nothing hits.
+template <std::size_t kCorners> struct alignas(32) PolygonBlock {
+    std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< of each x, y, z
+    BlockLanes<std::uint32_t> object, primitive;
 
-    Vec3 vertex(std::size_t of, std::size_t lane) const {
-        return {corner[of][0][lane], corner[of][1][lane], corner[of][2][lane]};
+    std::array<Vec3, kCorners> corners(std::size_t lane) const {
+        std::array<Vec3, kCorners> result;
+        for (std::size_t i = 0; i < kCorners; ++i)
+            result[i] = {corner[i][0][lane], corner[i][1][lane], corner[i][2][lane]};
+        return result;
     }
 };
-struct BvhQuad {
-    Quad quad;
-    std::uint32_t object, primitive;
-};
-struct BvhSphere {
-    Sphere sphere;
-    std::uint32_t object, primitive;
+using TriangleBlock = PolygonBlock<3>;
+using QuadBlock = PolygonBlock<4>;
+
+/// Spheres: the only primitive of their object, 0. Absent ones are NaN, which nothing hits.
+struct alignas(32) SphereBlock {
+    std::array<BlockLanes<float>, 3> center;
+    BlockLanes<float> radius;
+    BlockLanes<std::uint32_t> object;
+
+    Sphere sphere(std::size_t lane) const {
+        return {{center[0][lane], center[1][lane], center[2][lane]}, radius[lane]};
+    }
 };
 struct BvhInstance {
     std::uint32_t object, shape; ///< indices into Scene::objects and Scene::shapes
@@ -96,8 +105,8 @@ struct Bvh {
     Box3 bounds;
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
-    std::vector<BvhQuad> quads;
-    std::vector<BvhSphere> spheres;
+    std::vector<QuadBlock> quads;
+    std::vector<SphereBlock> spheres;
     std::vector<BvhInstance> instances;
 
     bool empty() const { return bounds.empty(); }

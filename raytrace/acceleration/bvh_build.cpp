@@ -72,7 +72,7 @@ Extent extent_of(std::span<const BuildItem> items) {
 
 // The cost of testing so many primitives: triangles are tested by the block.
 float tests(std::size_t count) {
-    return static_cast<float>((count + TriangleBlock::kSize - 1) / TriangleBlock::kSize);
+    return static_cast<float>((count + kBlockSize - 1) / kBlockSize);
 }
 
 // Maps centres to bins of equal width on each axis; axes on which the centres have no extent have one bin.

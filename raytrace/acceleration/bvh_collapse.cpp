@@ -21,7 +21,7 @@ private:
     BvhRef leaf(const BinaryNode& node) {
         leaves_.push_back({node.first, node.count});
         const PrimitiveKind kind = tree_.items[node.first].kind;
-        const std::uint32_t elements = kind == PrimitiveKind::kTriangle ? 1 : node.count; // triangles: one block
+        const std::uint32_t elements = kind == PrimitiveKind::kInstance ? node.count : 1; // of others: one block
         const std::size_t first = elements_[static_cast<std::size_t>(kind)];
         elements_[static_cast<std::size_t>(kind)] += elements;
         check_index(first + elements);
