@@ -1,11 +1,13 @@
 #include "raytrace/acceleration/accelerator.h"
 
+#include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_build.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 namespace duet::raytrace {
@@ -15,18 +17,19 @@ namespace {
 // Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
 class Gatherer {
 public:
+    explicit Gatherer(int threads) : threads_(threads) {}
+
     void add_shape(const Shape& shape, std::uint32_t object) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-            for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
-                const auto& [a, b, c] = mesh->triangles[i];
-                add_polygon(PrimitiveKind::kTriangle, triangles_,
-                            {{mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, i});
-            }
+            add_mesh(*mesh, object);
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            for (std::uint32_t i = 0; i < list->quads.size(); ++i)
-                add_polygon(PrimitiveKind::kQuad, quads_, {corners(list->quads[i]), object, i});
+            for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
+                Box3 box;
+                for (const Vec3& p : corners(list->quads[i])) box.extend(p);
+                add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
+            }
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, Ball{std::get<Sphere>(shape), object});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
         }
     }
 
@@ -38,82 +41,62 @@ public:
         const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
         box.extend(box.low - room);
         box.extend(box.high + room);
-        add(PrimitiveKind::kInstance, box, instances_, BvhInstance{index, object.shape});
+        add(PrimitiveKind::kInstance, box, instances_, {index, object.shape});
     }
 
-    Bvh build(int threads) {
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads);
+    Bvh build() {
+        const BinaryTree tree = build_binary_tree(std::move(items_), threads_);
         Collapsed collapsed = collapse(tree);
         Bvh& bvh = collapsed.bvh;
-        bvh.triangles.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kTriangle)]);
-        bvh.quads.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kQuad)]);
-        bvh.spheres.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kSphere)]);
-        for (const LeafItems& leaf : collapsed.leaves) {
-            const std::span items(tree.items.data() + leaf.first, leaf.count);
-            switch (items[0].kind) {
-            case PrimitiveKind::kTriangle:
-                bvh.triangles.push_back(block(items, triangles_));
-                break;
-            case PrimitiveKind::kQuad:
-                bvh.quads.push_back(block(items, quads_));
-                break;
-            case PrimitiveKind::kSphere:
-                bvh.spheres.push_back(block(items, spheres_));
-                break;
-            case PrimitiveKind::kInstance:
-                for (const BuildItem& item : items) bvh.instances.push_back(instances_[item.index]);
-                break;
-            }
-        }
+        const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
+        bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
+        bvh.quads.resize(elements(PrimitiveKind::kQuad));
+        bvh.spheres.resize(elements(PrimitiveKind::kSphere));
+        bvh.instances.resize(elements(PrimitiveKind::kInstance));
+        in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
+            const LeafItems& leaf = collapsed.leaves[i];
+            fill_leaf(bvh, leaf, std::span(tree.items).subspan(leaf.first, leaf.count));
+        });
         return std::move(bvh);
     }
 
 private:
-    template <std::size_t kCorners> struct Polygon {
-        std::array<Vec3, kCorners> corners;
+    struct MeshTriangle {
+        std::uint32_t mesh, primitive;
+    };
+    struct PlacedMesh {
+        const Mesh* mesh;
+        std::uint32_t object;
+    };
+    struct PlacedQuad {
+        std::array<Vec3, 4> corners;
         std::uint32_t object, primitive;
     };
-    struct Ball {
+    struct PlacedSphere {
         Sphere sphere;
         std::uint32_t object;
     };
-    static constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
-    template <std::size_t kCorners>
-    static PolygonBlock<kCorners> block(std::span<const BuildItem> items, const std::vector<Polygon<kCorners>>& polygons) {
-        PolygonBlock<kCorners> result;
-        for (auto& corner : result.corner)
-            for (auto& axis : corner) axis.fill(kAbsent);
-        result.object.fill(kNoObject);
-        result.primitive.fill(0);
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const Polygon<kCorners>& polygon = polygons[items[i].index];
-            for (std::size_t k = 0; k < kCorners; ++k)
-                for (std::size_t axis = 0; axis < 3; ++axis) result.corner[k][axis][i] = polygon.corners[k][axis];
-            result.object[i] = polygon.object;
-            result.primitive[i] = polygon.primitive;
-        }
-        return result;
-    }
-    static SphereBlock block(std::span<const BuildItem> items, const std::vector<Ball>& balls) {
-        SphereBlock result;
-        for (auto& axis : result.center) axis.fill(kAbsent);
-        result.radius.fill(kAbsent);
-        result.object.fill(kNoObject);
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const auto& [sphere, object] = balls[items[i].index];
-            for (std::size_t axis = 0; axis < 3; ++axis) result.center[axis][i] = sphere.center[axis];
-            result.radius[i] = sphere.radius;
-            result.object[i] = object;
-        }
-        return result;
+    template <typename Body> void in_chunks(std::size_t count, const Body& body) const {
+        constexpr std::size_t kChunk = std::size_t{1} << 14;
+        parallel_for((count + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
+            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
+            for (std::size_t i = chunk * kChunk; i < end; ++i) body(i);
+        });
     }
 
-    template <std::size_t kCorners>
-    void add_polygon(PrimitiveKind kind, std::vector<Polygon<kCorners>>& list, const Polygon<kCorners>& polygon) {
-        Box3 box;
-        for (const Vec3& p : polygon.corners) box.extend(p);
-        add(kind, box, list, polygon);
+    void add_mesh(const Mesh& mesh, std::uint32_t object) {
+        const auto which = static_cast<std::uint32_t>(meshes_.size());
+        meshes_.push_back({&mesh, object});
+        const std::size_t first_item = items_.size(), first_triangle = triangles_.size();
+        items_.resize(first_item + mesh.triangles.size());
+        triangles_.resize(first_triangle + mesh.triangles.size());
+        in_chunks(mesh.triangles.size(), [&](std::size_t i) {
+            Box3 box;
+            for (const std::uint32_t vertex : mesh.triangles[i]) box.extend(mesh.positions[vertex]);
+            items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
+            triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
+        });
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
@@ -121,10 +104,57 @@ private:
         list.push_back(primitive);
     }
 
-    std::vector<BuildItem> items_;
-    std::vector<Polygon<3>> triangles_;
-    std::vector<Polygon<4>> quads_;
-    std::vector<Ball> spheres_;
+    void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
+        switch (items[0].kind) {
+        case PrimitiveKind::kTriangle:
+            return fill_block(bvh.triangles[leaf.element], items);
+        case PrimitiveKind::kQuad:
+            return fill_block(bvh.quads[leaf.element], items);
+        case PrimitiveKind::kSphere:
+            return fill_block(bvh.spheres[leaf.element], items);
+        case PrimitiveKind::kInstance:
+            for (std::size_t i = 0; i < items.size(); ++i) bvh.instances[leaf.element + i] = instances_[items[i].index];
+        }
+    }
+
+    template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
+        for (std::size_t i = 0; i < kBlockSize; ++i) {
+            if (i < items.size())
+                set(block, i, items[i].index);
+            else
+                set_absent(block, i);
+        }
+    }
+    void set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
+        const MeshTriangle& triangle = triangles_[index];
+        const auto& [mesh, object] = meshes_[triangle.mesh];
+        const auto& [a, b, c] = mesh->triangles[triangle.primitive];
+        block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
+    }
+    void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {
+        const PlacedQuad& quad = quads_[index];
+        block.set(lane, quad.corners, quad.object, quad.primitive);
+    }
+    void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const {
+        block.set(lane, spheres_[index].sphere, spheres_[index].object);
+    }
+
+    static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
+
+    template <std::size_t kCorners> static void set_absent(PolygonBlock<kCorners>& block, std::size_t lane) {
+        std::array<Vec3, kCorners> corners;
+        corners.fill(kAbsent);
+        block.set(lane, corners, kNoObject, 0);
+    }
+    static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
+
+    int threads_;
+    BuildItems items_;
+    std::vector<PlacedMesh> meshes_;
+    std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
+    std::vector<PlacedQuad> quads_;
+    std::vector<PlacedSphere> spheres_;
     std::vector<BvhInstance> instances_;
 };
 
@@ -133,7 +163,7 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
-    Gatherer world;
+    Gatherer world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -144,11 +174,11 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own;
+        Gatherer own(threads);
         own.add_shape(shape, kNoObject);
-        shapes_[object.shape] = own.build(threads);
+        shapes_[object.shape] = own.build();
     }
-    world_ = world.build(threads);
+    world_ = world.build();
 }
 
 // What an instance's hits are in its shape's hierarchy.

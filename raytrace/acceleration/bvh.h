@@ -20,14 +20,20 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance }
 // `object` and `primitive` are what a Hit names; in the hierarchy of an instanced shape `object` is the instance's.
 
 /// Primitives that are tested at once.
-inline constexpr std::size_t kBlockSize = 8;
+inline constexpr std::size_t kBlockSize = kSimdLanes;
 template <typename T> using BlockLanes = std::array<T, kBlockSize>;
 
 /// Triangles or quads. Absent ones are NaN, which nothing hits.
-template <std::size_t kCorners> struct alignas(32) PolygonBlock {
+template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) PolygonBlock {
     std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< of each x, y, z
     BlockLanes<std::uint32_t> object, primitive;
 
+    void set(std::size_t lane, const std::array<Vec3, kCorners>& corners, std::uint32_t its_object, std::uint32_t its_primitive) {
+        for (std::size_t i = 0; i < kCorners; ++i)
+            for (std::size_t axis = 0; axis < 3; ++axis) corner[i][axis][lane] = corners[i][axis];
+        object[lane] = its_object;
+        primitive[lane] = its_primitive;
+    }
     std::array<Vec3, kCorners> corners(std::size_t lane) const {
         std::array<Vec3, kCorners> result;
         for (std::size_t i = 0; i < kCorners; ++i)
@@ -39,11 +45,16 @@ using TriangleBlock = PolygonBlock<3>;
 using QuadBlock = PolygonBlock<4>;
 
 /// Spheres: the only primitive of their object, 0. Absent ones are NaN, which nothing hits.
-struct alignas(32) SphereBlock {
+struct alignas(kSimdLanes * sizeof(float)) SphereBlock {
     std::array<BlockLanes<float>, 3> center;
     BlockLanes<float> radius;
     BlockLanes<std::uint32_t> object;
 
+    void set(std::size_t lane, const Sphere& sphere, std::uint32_t its_object) {
+        for (std::size_t axis = 0; axis < 3; ++axis) center[axis][lane] = sphere.center[axis];
+        radius[lane] = sphere.radius;
+        object[lane] = its_object;
+    }
     Sphere sphere(std::size_t lane) const {
         return {{center[0][lane], center[1][lane], center[2][lane]}, radius[lane]};
     }
@@ -99,7 +110,7 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 struct Bvh {
     /// The longest way from the root to a leaf: bounds a traversal's stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = 8; ///< primitives
+    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< primitives
 
     BvhRef root = BvhRef::node(0);
     Box3 bounds;

@@ -201,7 +201,7 @@ template <typename GoesLeft> Halves divide(Items items, const GoesLeft& goes_lef
 
 // The same by all threads, through a second array: each chunk's items keep their order.
 template <typename GoesLeft>
-Halves divide_in_parallel(Items items, std::vector<BuildItem>& copy, int threads, const GoesLeft& goes_left) {
+Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const GoesLeft& goes_left) {
     const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
     std::vector<Halves> parts(chunks);
     const auto chunk = [&](std::size_t i) { return items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)); };
@@ -225,7 +225,7 @@ Halves divide_in_parallel(Items items, std::vector<BuildItem>& copy, int threads
         right_begin[i] = right;
         right += chunk(i).size() - parts[i].left_count;
     }
-    copy.resize(std::max(copy.size(), items.size()));
+    if (copy.size() < items.size()) copy = BuildItems(items.size());
     parallel_for(chunks, threads, [&](std::size_t i) {
         std::size_t l = left_begin[i], r = right_begin[i];
         for (const BuildItem& item : chunk(i)) copy[goes_left(item) ? l++ : r++] = item;
@@ -322,7 +322,7 @@ private:
     std::size_t job_size_;
     int threads_;
     Bins bins_;
-    std::vector<BuildItem> copy_;
+    BuildItems copy_;
 };
 
 // Moves a subtree's nodes behind those of the tree; its root takes the placeholder's seat.
@@ -341,7 +341,7 @@ void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<Bi
 
 } // namespace
 
-BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads) {
+BinaryTree build_binary_tree(BuildItems items, int threads) {
     BinaryTree tree{{}, std::move(items)};
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));

@@ -13,6 +13,7 @@ struct BuildItem {
     std::uint32_t index;
     PrimitiveKind kind;
 };
+using BuildItems = std::vector<BuildItem, HugePageAllocator<BuildItem>>;
 
 /// A node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most Bvh::kMaxLeaf; an
 /// inner node has two children.
@@ -27,21 +28,20 @@ struct BinaryNode {
 /// Node 0 is the root; no nodes where there are no items. No deeper than Bvh::kMaxDepth.
 struct BinaryTree {
     std::vector<BinaryNode> nodes;
-    std::vector<BuildItem> items; ///< in the order of the leaves
+    BuildItems items; ///< in the order of the leaves
 };
 
 /// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
 /// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
 /// threads (0: all).
-BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads);
+BinaryTree build_binary_tree(BuildItems items, int threads);
 
-/// Items [first, first + count) of the tree: those of one leaf.
+/// Items [first, first + count) of the tree: those of one leaf; and where in their kind's list they go.
 struct LeafItems {
-    std::uint32_t first, count;
+    std::uint32_t first, count, element;
 };
 
-/// A hierarchy whose lists of primitives are still to be filled: leaf by leaf in the order given, triangles as one
-/// block a leaf.
+/// A hierarchy whose lists of primitives are still to be filled, triangles as one block a leaf.
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;

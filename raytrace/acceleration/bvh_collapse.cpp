@@ -19,12 +19,12 @@ public:
 
 private:
     BvhRef leaf(const BinaryNode& node) {
-        leaves_.push_back({node.first, node.count});
         const PrimitiveKind kind = tree_.items[node.first].kind;
         const std::uint32_t elements = kind == PrimitiveKind::kInstance ? node.count : 1; // of others: one block
         const std::size_t first = elements_[static_cast<std::size_t>(kind)];
         elements_[static_cast<std::size_t>(kind)] += elements;
         check_index(first + elements);
+        leaves_.push_back({node.first, node.count, static_cast<std::uint32_t>(first)});
         return BvhRef::leaf(kind, static_cast<std::uint32_t>(first), elements);
     }
 
