@@ -106,6 +106,14 @@ template <typename T> struct TriangleTest {
     }
 };
 
+/// The distance along the ray to the plane of a, b and c in double, from the unrounded differences: its sign is right
+/// even for an origin that is one float away from the plane of a triangle a million times as wide.
+inline float plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3d pa(a);
+    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
+    return static_cast<float>(dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction)));
+}
+
 /// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides
 /// are hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.
 std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c);

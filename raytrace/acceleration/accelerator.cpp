@@ -45,8 +45,9 @@ public:
     }
 
     Bvh build() {
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads_);
+        BinaryTree tree = build_binary_tree(std::move(items_), threads_);
         Collapsed collapsed = collapse(tree);
+        add_list_where_faster(tree, collapsed);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
         bvh.triangles.resize(elements(PrimitiveKind::kTriangle));

@@ -68,21 +68,19 @@ struct BvhInstance {
 class BvhRef {
 public:
     /// Nodes, and elements of each kind's list: indices are below this.
-    static constexpr std::size_t kMaxIndex = std::size_t{1} << 26;
-    static constexpr std::uint32_t kMaxCount = 8;
+    static constexpr std::size_t kMaxIndex = std::size_t{1} << 29;
 
     BvhRef() = default;
     static constexpr std::size_t kNodeUnit = 32;
     static BvhRef node(std::uint32_t index);
-    /// `count` elements from `first` in the list of the kind, 1 to kMaxCount.
-    static BvhRef leaf(PrimitiveKind kind, std::uint32_t first, std::uint32_t count) {
-        return BvhRef(kLeaf | static_cast<std::uint32_t>(kind) << 29 | (count - 1) << 26 | first);
+    /// The element of the kind's list: a block of primitives, or an instance.
+    static BvhRef leaf(PrimitiveKind kind, std::uint32_t index) {
+        return BvhRef(kLeaf | static_cast<std::uint32_t>(kind) << 29 | index);
     }
     static BvhRef from_bits(std::uint32_t bits) { return BvhRef(bits); }
 
     bool is_leaf() const { return (bits_ & kLeaf) != 0; }
     std::uint32_t index() const { return bits_ & (kMaxIndex - 1); }
-    std::uint32_t count() const { return (bits_ >> 26 & 7) + 1; }
     PrimitiveKind kind() const { return static_cast<PrimitiveKind>(bits_ >> 29 & 3); }
     std::uint32_t bits() const { return bits_; }
 
@@ -101,6 +99,10 @@ struct alignas(32) BvhNode {
 
     std::array<Lanes, 6> planes; ///< low x, y, z, high x, y, z
     std::array<BvhRef, kWidth> children;
+
+    Box3 box(std::size_t child) const {
+        return {{planes[0][child], planes[1][child], planes[2][child]}, {planes[3][child], planes[4][child], planes[5][child]}};
+    }
 };
 
 inline BvhRef BvhRef::node(std::uint32_t index) {
@@ -112,8 +114,10 @@ struct Bvh {
     static constexpr int kMaxDepth = 96;
     static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< primitives
 
-    BvhRef root = BvhRef::node(0);
     Box3 bounds;
+    /// All primitives, where single rays are sooner through with them than with the tree.
+    std::vector<BvhRef> list;
+    /// The tree; the first is its root. None where there is but one leaf, which is the list.
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<QuadBlock> quads;
@@ -121,6 +125,8 @@ struct Bvh {
     std::vector<BvhInstance> instances;
 
     bool empty() const { return bounds.empty(); }
+    /// Whether single rays go through the tree, not the list; packets do wherever there is one.
+    bool use_tree() const { return list.empty() && !nodes.empty(); }
     std::int64_t memory_bytes() const;
 };
 

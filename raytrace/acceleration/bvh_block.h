@@ -18,6 +18,7 @@ public:
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
         test({ray, p[0], p[1], p[2]}, ends, 0);
+        first_ = ~0u;
     }
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 4>& p, Batch ends) {
@@ -32,6 +33,7 @@ public:
         const auto half = [&](const auto& in_first, const auto& in_second) { return select(first, in_first, in_second); };
         test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ends, lane_bits(first & second));
         if (candidates_ == 0) return;
+        first_ = lane_bits(first);
         const Batch sum = xsimd::min(u_ + v_, Batch(1.0f));
         u_ = half(sum, u_);
         v_ = half(v_, sum);
@@ -39,9 +41,13 @@ public:
 
     /// The lanes with a hit before the end, a bit each: all of them, and hardly any other.
     unsigned candidates() const { return candidates_; }
-    /// The candidates that are hit just as t, u and v say, if that is within the ray's range; of the others
-    /// intersect_triangle or intersect_quad has to say.
+    /// The candidates that are hit just as t, u and v say, if that is within the ray's range.
     unsigned certain() const { return certain_ & candidates_; }
+    /// Those that are hit where u and v say, but so near to the ray's origin that plane_distance has to say how far:
+    /// most rays leave such a polygon. Of the rest intersect_triangle or intersect_quad has to say all.
+    unsigned touched() const { return touched_ & candidates_; }
+    /// Whether the lane's quad is hit in the first of its halves.
+    bool first_half(std::size_t lane) const { return (first_ >> lane & 1) != 0; }
     Batch t() const { return t_; }
     Batch u() const { return u_; }
     Batch v() const { return v_; }
@@ -66,13 +72,16 @@ private:
         const auto outside = (t < -error) | (t - error > ends); // and not NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;
-        certain_ = lane_bits((xsimd::abs(t) > error) & ((low > zero) | (high < zero))) & ~unsure;
+        const unsigned inside = lane_bits((low > zero) | (high < zero)) & ~unsure;
+        const unsigned apart = lane_bits(xsimd::abs(t) > error);
+        certain_ = inside & apart;
+        touched_ = inside & ~apart;
         t_ = t;
         u_ = test.e1 * inv_det;
         v_ = test.e2 * inv_det;
     }
 
-    unsigned candidates_, certain_;
+    unsigned candidates_, certain_, touched_, first_;
     Batch t_, u_, v_;
 };
 
@@ -94,13 +103,22 @@ private:
     }
 };
 
-/// The exact test of one of them.
-inline std::optional<TriangleHit> intersect(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane) {
+/// Where the ray hits one of the candidates before its end, if it does.
+inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane) {
     const auto [a, b, c] = block.corners(lane);
     return intersect_triangle(ray, a, b, c);
 }
-inline std::optional<TriangleHit> intersect(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
+inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
     return intersect_quad(ray, block.corners(lane));
+}
+/// The distance to a touched one.
+inline float plane_distance(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane, bool) {
+    const auto [a, b, c] = block.corners(lane);
+    return plane_distance(ray, a, b, c);
+}
+inline float plane_distance(const ShearedRay& ray, const QuadBlock& block, std::size_t lane, bool first_half) {
+    const auto [a, b, c, d] = block.corners(lane);
+    return first_half ? plane_distance(ray, a, b, c) : plane_distance(ray, a, c, d);
 }
 
 /// The spheres of a block against one ray, all at once: in double, as one by one.

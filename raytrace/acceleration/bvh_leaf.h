@@ -24,58 +24,52 @@ public:
 
     /// Leaves in `best` what comes first of it and the leaf's hits. True where the search is over.
     [[gnu::always_inline]] bool operator()(BvhRef leaf, Hit& best) {
-        const std::uint32_t end = leaf.index() + leaf.count();
-        if (leaf.kind() == PrimitiveKind::kTriangle) {
-            for (std::uint32_t i = leaf.index(); i < end; ++i)
-                if (polygons(bvh_.triangles[i], best)) return true;
-            return false;
-        }
-        return others(leaf, end, best);
+        if (leaf.kind() == PrimitiveKind::kTriangle) return polygons(bvh_.triangles[leaf.index()], best);
+        return others(leaf, best);
     }
 
 private:
     // Out of the way of a scene of triangles alone.
-    [[gnu::noinline]] bool others(BvhRef leaf, std::uint32_t end, Hit& best) {
-        for (std::uint32_t i = leaf.index(); i < end; ++i) {
-            if (leaf.kind() == PrimitiveKind::kQuad) {
-                if (polygons(bvh_.quads[i], best)) return true;
-            } else if (leaf.kind() == PrimitiveKind::kSphere) {
-                if (spheres(bvh_.spheres[i], best)) return true;
-            } else if (instance_(bvh_.instances[i], best)) {
-                found_ = true;
-                if (kAny) return true;
-            }
-        }
-        return false;
+    [[gnu::noinline]] bool others(BvhRef leaf, Hit& best) {
+        if (leaf.kind() == PrimitiveKind::kQuad) return polygons(bvh_.quads[leaf.index()], best);
+        if (leaf.kind() == PrimitiveKind::kSphere) return spheres(bvh_.spheres[leaf.index()], best);
+        if (!instance_(bvh_.instances[leaf.index()], best)) return false;
+        found_ = true;
+        return kAny;
     }
 
     template <std::size_t kCorners>
     [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
         const BlockTest<kCorners> test(sheared_.shear, block, best.t);
         if (test.candidates() == 0) return false;
-        if constexpr (kAny) {
-            using Batch = FloatBatch<kBlockSize>;
-            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
-            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
-            }
-        }
+        using Batch = FloatBatch<kBlockSize>;
+        const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() <= Batch(best.t)));
+        const unsigned certain = test.certain() & within, unsure = test.candidates() & ~test.certain();
+        if ((certain | unsure) == 0) return false;
         const Lanes t(test.t()), u(test.u()), v(test.v());
-        for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
+        for (unsigned lanes = certain; lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            const auto hit = [&](const TriangleHit& h) {
-                return consider({name(block.object[lane]), block.primitive[lane], h.u, h.v, h.t}, best);
-            };
-            sheared_.t_max = best.t;
-            if (test.certain() >> lane & 1) {
-                if (!(t[lane] > sheared_.t_min && t[lane] <= sheared_.t_max)) continue;
-                if (hit({t[lane], u[lane], v[lane]})) return true;
-            } else if (const auto exact = intersect(sheared_, block, lane)) {
-                if (hit(*exact)) return true;
-            }
+            if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
+        }
+        for (unsigned lanes = unsure; lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            const bool touched = (test.touched() >> lane & 1) != 0;
+            if (touched ? this->touched(block, lane, test.first_half(lane), u[lane], v[lane], best)
+                        : exactly(block, lane, best))
+                return true;
         }
         return false;
+    }
+
+    template <typename Block>
+    [[gnu::noinline]] bool touched(const Block& block, std::size_t lane, bool first_half, float u, float v, Hit& best) {
+        const float t = plane_distance(sheared_, block, lane, first_half);
+        return t > sheared_.t_min && t <= best.t && consider(block, lane, {t, u, v}, best);
+    }
+    template <typename Block> [[gnu::noinline]] bool exactly(const Block& block, std::size_t lane, Hit& best) {
+        sheared_.t_max = best.t;
+        const auto hit = exact_hit(sheared_, block, lane);
+        return hit && consider(block, lane, *hit, best);
     }
 
     bool spheres(const SphereBlock& block, Hit& best) {
@@ -87,6 +81,10 @@ private:
         return false;
     }
 
+    template <typename Block>
+    bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
+        return consider({name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
+    }
     bool consider(const Hit& hit, Hit& best) {
         if (!precedes(hit, best)) return false;
         if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;

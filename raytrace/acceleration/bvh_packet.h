@@ -154,7 +154,10 @@ public:
     }
 
     void run(std::span<Hit, kSize> hits) {
-        if (!bvh_.empty()) traverse();
+        if (bvh_.nodes.empty())
+            for (const BvhRef leaf : bvh_.list) test_leaf(leaf, kAll);
+        else
+            traverse();
         for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray] = object_[ray] == kNoObject ? Hit{} : best(ray);
     }
 
@@ -172,7 +175,7 @@ private:
     };
 
     void traverse() {
-        BvhRef next = bvh_.root;
+        BvhRef next = BvhRef::node(0);
         unsigned active = kAll;
         for (;;) {
             while (active != 0 && !next.is_leaf()) active = step(next);
@@ -211,11 +214,10 @@ private:
     }
 
     void test_leaf(BvhRef leaf, unsigned active) {
-        const std::uint32_t end = leaf.index() + leaf.count();
         if (leaf.kind() == PrimitiveKind::kTriangle) {
-            for (std::uint32_t i = leaf.index(); i < end; ++i) test(bvh_.triangles[i], active);
+            test(bvh_.triangles[leaf.index()], active);
         } else if (leaf.kind() == PrimitiveKind::kQuad) {
-            for (std::uint32_t i = leaf.index(); i < end; ++i) test(bvh_.quads[i], active);
+            test(bvh_.quads[leaf.index()], active);
         } else {
             for (; active != 0; active &= active - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(active));
@@ -287,7 +289,7 @@ private:
     template <typename Block> void consider_exactly(const Block& block, std::size_t lane, std::size_t ray) {
         Ray ended = rays_[ray];
         ended.t_max = t_[ray];
-        if (const auto hit = intersect(ShearedRay(ended), block, lane)) consider(block, lane, ray, *hit);
+        if (const auto hit = exact_hit(ShearedRay(ended), block, lane)) consider(block, lane, ray, *hit);
     }
     template <typename Block>
     void consider(const Block& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
