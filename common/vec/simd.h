@@ -117,6 +117,34 @@ template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, s
     for (; lanes != 0; lanes &= lanes - 1) to[static_cast<std::size_t>(std::countr_zero(lanes))] = value;
 }
 
+/// Structure of arrays out of an array of structures: lanes[k][i] is the k-th of the eight numbers at rows[i].
+template <std::size_t N> void transpose_rows(const std::array<const float*, N>& rows, std::array<std::array<float, N>, 8>& lanes) {
+#if XSIMD_WITH_AVX
+    // Eight rows at a time: pairs, fours, then halves are interleaved.
+    static_assert(N % 8 == 0);
+    for (std::size_t first = 0; first < N; first += 8) {
+        std::array<FloatBatch<8>, 8> r, p;
+        for (std::size_t i = 0; i < 8; ++i) r[i] = _mm256_loadu_ps(rows[first + i]);
+        for (std::size_t i = 0; i < 8; i += 2) {
+            p[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+            p[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+        }
+        for (std::size_t i = 0; i < 8; i += 4)
+            for (std::size_t k = 0; k < 2; ++k) {
+                r[i + 2 * k] = _mm256_shuffle_ps(p[i + k], p[i + k + 2], 0x44);
+                r[i + 2 * k + 1] = _mm256_shuffle_ps(p[i + k], p[i + k + 2], 0xEE);
+            }
+        for (std::size_t k = 0; k < 4; ++k) {
+            _mm256_storeu_ps(&lanes[k][first], _mm256_permute2f128_ps(r[k], r[k + 4], 0x20));
+            _mm256_storeu_ps(&lanes[k + 4][first], _mm256_permute2f128_ps(r[k], r[k + 4], 0x31));
+        }
+    }
+#else
+    for (std::size_t i = 0; i < N; ++i)
+        for (std::size_t k = 0; k < 8; ++k) lanes[k][i] = rows[i][k];
+#endif
+}
+
 /// The least of the lanes; of NaN any may come out.
 template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F

@@ -17,12 +17,9 @@ public:
 
     RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) {
         alignas(64) std::array<Values, 8> lanes; // of the origin and the direction three each, t_min, t_max
-        for (std::size_t i = 0; i < kSize; ++i) {
-            const Ray& ray = rays[i];
-            const float values[] = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.direction.x,
-                                    ray.direction.y, ray.direction.z, ray.t_min,    ray.t_max};
-            for (std::size_t k = 0; k < 8; ++k) lanes[k][i] = values[k];
-        }
+        std::array<const float*, kSize> rows;
+        for (std::size_t i = 0; i < kSize; ++i) rows[i] = reinterpret_cast<const float*>(&rays[i]);
+        transpose_rows(rows, lanes);
         const auto load = [&](std::size_t k) { return Batch::load_aligned(lanes[k].data()); };
         const Vec3T<Batch> origin(load(0), load(1), load(2)), direction(load(3), load(4), load(5));
         t_min_ = load(6);
@@ -73,6 +70,8 @@ public:
     }
 
 private:
+    static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
+                  offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
     // A range of reciprocals of directions, and the end of the range of origins that makes the bound hold.
     struct Interval {
         float low, high, origin;
@@ -195,6 +194,8 @@ private:
         const BvhNode& node = node_at(bvh_, next);
         const auto [distance, entered] = packet_.enter_any(node, last_);
         if (entered == 0) return 0;
+        for (unsigned children = entered; children != 0; children &= children - 1)
+            prefetch(bvh_, node.children[static_cast<std::size_t>(std::countr_zero(children))]);
         const Lanes nearest(distance);
         const std::size_t bottom = size_;
         for (unsigned children = entered; children != 0; children &= children - 1) {
