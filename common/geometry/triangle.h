@@ -53,25 +53,26 @@ template <typename T> struct TriangleTest {
 
     /// a, b, c: the vertices; their components at index 0, 1, 2.
     template <typename S, typename Vertex>
-    TriangleTest(const Shear<S>& ray, const Vertex& a, const Vertex& b, const Vertex& c) {
-        // Relative to the origin and sheared, the test is one of the origin in a 2D triangle. The same edge gives the
-        // same numbers in both of its triangles: no ray slips between.
-        const auto sheared = [&](const Vertex& p) {
-            const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
-                    z = T(p[ray.kz]) - T(ray.origin.z);
-            return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
-        };
-        at = sheared(a);
-        bt = sheared(b);
-        ct = sheared(c);
-        const auto edge = [](const Vec3T<T>& p, const Vec3T<T>& q) {
-            using std::fma;
-            if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
-            return p.x * q.y - p.y * q.x;
-        };
-        e0 = edge(ct, bt);
-        e1 = edge(at, ct);
-        e2 = edge(bt, at);
+    TriangleTest(const Shear<S>& ray, const Vertex& a, const Vertex& b, const Vertex& c)
+        : TriangleTest(sheared(ray, a), sheared(ray, b), sheared(ray, c)) {}
+    /// Of sheared vertices.
+    TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c)
+        : TriangleTest(a, b, c, edge(c, b), edge(a, c), edge(b, a)) {}
+    /// Of these and their edge functions.
+    TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c, T ea, T eb, T ec)
+        : at(a), bt(b), ct(c), e0(ea), e1(eb), e2(ec) {}
+
+    /// A vertex relative to the ray's origin and sheared, which makes the test one of the origin in a 2D triangle.
+    template <typename S, typename Vertex> static Vec3T<T> sheared(const Shear<S>& ray, const Vertex& p) {
+        const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
+                z = T(p[ray.kz]) - T(ray.origin.z);
+        return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
+    }
+    /// The same edge gives the same numbers in both of its triangles, but for the sign: no ray slips between.
+    static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
+        using std::fma;
+        if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
+        return p.x * q.y - p.y * q.x;
     }
 
     T det() const { return e0 + e1 + e2; }
@@ -104,6 +105,14 @@ template <typename T> struct TriangleTest {
         return width * abs(inv_det) * spread > T(limit);
     }
 };
+
+/// The distance along the ray to the plane of a, b and c in double, from the unrounded differences: its sign is right
+/// even for an origin that is one float away from the plane of a triangle a million times as wide.
+inline float plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3d pa(a);
+    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
+    return static_cast<float>(dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction)));
+}
 
 /// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides
 /// are hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.

@@ -37,6 +37,31 @@ inline constexpr std::size_t kMaxSimdLanes = 16;
 inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
 #endif
 
+/// A batch of as many doubles as the machine works on at once.
+using DoubleBatch = xsimd::batch<double>;
+inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double);
+
+/// So many floats, as doubles.
+inline DoubleBatch load_doubles(const float* from) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_cvtps_pd(_mm256_loadu_ps(from));
+#elif XSIMD_WITH_AVX
+    return _mm256_cvtps_pd(_mm_loadu_ps(from));
+#else
+    return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
+#endif
+}
+/// Stores them rounded to floats.
+inline void store_floats(DoubleBatch batch, float* to) {
+#if XSIMD_WITH_AVX512F
+    _mm256_storeu_ps(to, _mm512_cvtpd_ps(batch));
+#elif XSIMD_WITH_AVX
+    _mm_storeu_ps(to, _mm256_cvtpd_ps(batch));
+#else
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_castps_si128(_mm_cvtpd_ps(batch)));
+#endif
+}
+
 /// a·b + c, rounded once where the machine can (xsimd 8 has no such instruction of 16 lanes).
 template <typename Arch>
 xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
@@ -55,6 +80,16 @@ template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes
     if constexpr (sizeof(lanes) == 32) return static_cast<unsigned>(_mm256_movemask_ps(lanes));
 #endif
     if constexpr (sizeof(lanes) == 16) return static_cast<unsigned>(_mm_movemask_ps(lanes));
+}
+
+inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
+#if XSIMD_WITH_AVX512F
+    return static_cast<unsigned>(lanes.data);
+#elif XSIMD_WITH_AVX
+    return static_cast<unsigned>(_mm256_movemask_pd(lanes));
+#else
+    return static_cast<unsigned>(_mm_movemask_pd(lanes));
+#endif
 }
 
 /// A batch of floats to pick from.

@@ -25,13 +25,12 @@ public:
             add_mesh(*mesh, object);
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
             for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
-                const Quad& quad = list->quads[i];
                 Box3 box;
-                for (const Vec3& p : corners(quad)) box.extend(p);
-                add(PrimitiveKind::kQuad, box, quads_, {quad, object, i});
+                for (const Vec3& p : corners(list->quads[i])) box.extend(p);
+                add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
             }
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object, 0});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
         }
     }
 
@@ -48,8 +47,9 @@ public:
 
     Bvh build() {
         const auto drop_twins = [this](std::span<BuildItem> items) { return first_of_twins(items); };
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads_, drop_twins);
+        BinaryTree tree = build_binary_tree(std::move(items_), threads_, drop_twins);
         Collapsed collapsed = collapse(tree);
+        add_list_where_faster(tree, collapsed);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
         bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
@@ -69,6 +69,14 @@ private:
     };
     struct PlacedMesh {
         const Mesh* mesh;
+        std::uint32_t object;
+    };
+    struct PlacedQuad {
+        std::array<Vec3, 4> corners;
+        std::uint32_t object, primitive;
+    };
+    struct PlacedSphere {
+        Sphere sphere;
         std::uint32_t object;
     };
 
@@ -100,18 +108,15 @@ private:
     }
 
     void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
-        const auto copy = [&](const auto& from, auto& to) {
-            for (std::size_t i = 0; i < items.size(); ++i) to[leaf.element + i] = from[items[i].index];
-        };
         switch (items[0].kind) {
         case PrimitiveKind::kTriangle:
             return fill_block(bvh.triangles[leaf.element], items);
         case PrimitiveKind::kQuad:
-            return copy(quads_, bvh.quads);
+            return fill_block(bvh.quads[leaf.element], items);
         case PrimitiveKind::kSphere:
-            return copy(spheres_, bvh.spheres);
+            return fill_block(bvh.spheres[leaf.element], items);
         case PrimitiveKind::kInstance:
-            return copy(instances_, bvh.instances);
+            for (std::size_t i = 0; i < items.size(); ++i) bvh.instances[leaf.element + i] = instances_[items[i].index];
         }
     }
 
@@ -139,28 +144,44 @@ private:
         return static_cast<std::size_t>(end - items.begin());
     }
 
+    template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
+        for (std::size_t i = 0; i < kBlockSize; ++i) {
+            if (i < items.size())
+                set(block, i, items[i].index);
+            else
+                set_absent(block, i);
+        }
+    }
+    void set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
+        const MeshTriangle& triangle = triangles_[index];
+        const auto& [mesh, object] = meshes_[triangle.mesh];
+        const auto& [a, b, c] = mesh->triangles[triangle.primitive];
+        block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
+    }
+    void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {
+        const PlacedQuad& quad = quads_[index];
+        block.set(lane, quad.corners, quad.object, quad.primitive);
+    }
+    void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const {
+        block.set(lane, spheres_[index].sphere, spheres_[index].object);
+    }
+
     static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
 
-    void fill_block(TriangleBlock& block, std::span<const BuildItem> items) const {
-        for (std::size_t i = 0; i < TriangleBlock::kSize; ++i) {
-            if (i >= items.size()) {
-                block.set(i, kAbsent, kAbsent, kAbsent, kNoObject, 0);
-                continue;
-            }
-            const MeshTriangle& triangle = triangles_[items[i].index];
-            const auto& [mesh, object] = meshes_[triangle.mesh];
-            const auto& [a, b, c] = mesh->triangles[triangle.primitive];
-            block.set(i, mesh->positions[a], mesh->positions[b], mesh->positions[c], object, triangle.primitive);
-        }
+    template <std::size_t kCorners> static void set_absent(PolygonBlock<kCorners>& block, std::size_t lane) {
+        std::array<Vec3, kCorners> corners;
+        corners.fill(kAbsent);
+        block.set(lane, corners, kNoObject, 0);
     }
+    static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
 
     int threads_;
     BuildItems items_;
     std::vector<PlacedMesh> meshes_;
     std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
-    std::vector<BvhQuad> quads_;
-    std::vector<BvhSphere> spheres_;
+    std::vector<PlacedQuad> quads_;
+    std::vector<PlacedSphere> spheres_;
     std::vector<BvhInstance> instances_;
 };
 

@@ -4,6 +4,7 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -71,10 +72,19 @@ Extent extent_of(std::span<const BuildItem> items) {
     return extent;
 }
 
-// The cost of testing so many primitives: triangles are tested by the block.
-float tests(std::size_t count) {
-    return static_cast<float>((count + TriangleBlock::kSize - 1) / TriangleBlock::kSize);
-}
+// The cost of testing so many primitives: by the block; of instances each is a hierarchy of its own. (That a block of
+// quads takes longer than one of spheres changes no tree that was tried.)
+class Tests {
+public:
+    explicit Tests(unsigned kinds)
+        : shift_(kinds == 1u << static_cast<unsigned>(PrimitiveKind::kInstance) ? 0 : std::countr_zero(kBlockSize)) {}
+    float operator()(std::size_t count) const {
+        return static_cast<float>((count + (std::size_t{1} << shift_) - 1) >> shift_);
+    }
+
+private:
+    int shift_;
+};
 
 // Maps centres to bins of equal width on each axis; axes on which the centres have no extent have one bin.
 class Binning {
@@ -156,7 +166,8 @@ struct Split {
 };
 
 // The cheapest of the planes between bins; none where all centres are one point.
-std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area, std::size_t count) {
+std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area,
+                                const Tests& tests, std::size_t count) {
     std::optional<Split> best;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!binning.usable(axis)) continue;
@@ -284,10 +295,11 @@ private:
         if (items.size() == 1) return std::nullopt;
         const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
         const Binning binning(extent, items.size());
+        const Tests tests(extent.kinds);
         std::optional<Split> best;
         if (depth < kSahDepth) {
             const Bins& bins = binned(items, binning);
-            best = best_split(bins, binning, RelativeArea(extent.bounds), items.size());
+            best = best_split(bins, binning, RelativeArea(extent.bounds), tests, items.size());
         }
         if (can_be_leaf && (!best || best->cost >= tests(items.size()))) return std::nullopt;
         if (best) {

@@ -14,18 +14,17 @@ public:
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
-        return node.leaf() ? leaf(node) : BvhRef::node(pack(index));
+        return node.leaf() ? leaf(node.first, node.count) : BvhRef::node(pack(index));
     }
 
 private:
-    BvhRef leaf(const BinaryNode& node) {
-        const PrimitiveKind kind = tree_.items[node.first].kind;
-        const std::uint32_t elements = kind == PrimitiveKind::kTriangle ? 1 : node.count; // triangles: one block
-        const std::size_t first = elements_[static_cast<std::size_t>(kind)];
-        elements_[static_cast<std::size_t>(kind)] += elements;
-        check_index(first + elements);
-        leaves_.push_back({node.first, node.count, static_cast<std::uint32_t>(first)});
-        return BvhRef::leaf(kind, static_cast<std::uint32_t>(first), elements);
+    // One element: a block of primitives, or an instance.
+    BvhRef leaf(std::uint32_t first, std::uint32_t count) {
+        const PrimitiveKind kind = tree_.items[first].kind;
+        const std::size_t element = elements_[static_cast<std::size_t>(kind)]++;
+        check_index(element);
+        leaves_.push_back({first, count, static_cast<std::uint32_t>(element)});
+        return BvhRef::leaf(kind, static_cast<std::uint32_t>(element));
     }
 
     static void check_index(std::size_t index) {
@@ -87,13 +86,14 @@ Collapsed collapse(const BinaryTree& tree) {
     Collapsed result;
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
-    result.bvh.root = Collapser(tree, result).ref(0);
+    const BvhRef root = Collapser(tree, result).ref(0);
     result.bvh.nodes.shrink_to_fit();
+    if (root.is_leaf()) result.bvh.list.push_back(root);
     return result;
 }
 
 std::int64_t Bvh::memory_bytes() const {
-    return static_cast<std::int64_t>(bytes(nodes) + bytes(triangles) + bytes(quads) + bytes(spheres) +
+    return static_cast<std::int64_t>(bytes(nodes) + bytes(list) + bytes(triangles) + bytes(quads) + bytes(spheres) +
                                      bytes(instances));
 }
 

@@ -52,20 +52,28 @@ private:
     std::uint64_t bits_;
 };
 
+/// Where there is no tree to go through.
+template <bool kAny, typename Instance>
+[[gnu::noinline]] bool find_in_list(const Bvh& bvh, LeafTest<kAny, Instance>& test_leaf, Hit& best) {
+    for (const BvhRef leaf : bvh.list)
+        if (test_leaf(leaf, best)) return true;
+    return test_leaf.found();
+}
+
 /// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
 /// of the ray. Returns whether there was one. `object` stands for the objects of the primitives where it is not
 /// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
 template <typename Instance>
 bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
-    if (bvh.empty()) return false;
-    const SlabRay slabs(ray, bvh.bounds);
     LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
+    if (!bvh.use_tree()) return find_in_list(bvh, test_leaf, best);
+    const SlabRay slabs(ray, bvh.bounds);
 
     // Each step down leaves at most kWidth − 1 children waiting.
     std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min);
-    BvhRef next = bvh.root;
+    BvhRef next = BvhRef::node(0);
     for (;;) {
         while (!next.is_leaf()) {
             const BvhNode& node = node_at(bvh, next);
@@ -109,15 +117,15 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
 /// Stops at the first; the other arguments as above.
 template <typename Instance>
 bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
-    if (bvh.empty()) return false;
-    const SlabRay slabs(ray, bvh.bounds);
     LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
     Hit best = end;
+    if (!bvh.use_tree()) return find_in_list(bvh, test_leaf, best);
+    const SlabRay slabs(ray, bvh.bounds);
 
     std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
-    BvhRef next = bvh.root;
+    BvhRef next = BvhRef::node(0);
     for (;;) {
         while (!next.is_leaf()) {
             const BvhNode& node = node_at(bvh, next);
