@@ -81,7 +81,7 @@ private:
         v_ = test.e2 * inv_det;
     }
 
-    unsigned candidates_, certain_, touched_, first_;
+    unsigned candidates_, certain_ = 0, touched_ = 0, first_ = 0;
     Batch t_, u_, v_;
 };
 

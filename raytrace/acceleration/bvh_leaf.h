@@ -42,21 +42,25 @@ private:
     [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
         const BlockTest<kCorners> test(sheared_.shear, block, best.t);
         if (test.candidates() == 0) return false;
-        using Batch = FloatBatch<kBlockSize>;
-        const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() <= Batch(best.t)));
-        const unsigned certain = test.certain() & within, unsure = test.candidates() & ~test.certain();
-        if ((certain | unsure) == 0) return false;
-        const Lanes t(test.t()), u(test.u()), v(test.v());
-        for (unsigned lanes = certain; lanes != 0; lanes &= lanes - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
+        if constexpr (kAny) {
+            using Batch = FloatBatch<kBlockSize>;
+            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
+            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
+            }
         }
-        for (unsigned lanes = unsure; lanes != 0; lanes &= lanes - 1) {
+        const Lanes t(test.t()), u(test.u()), v(test.v());
+        for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            const bool touched = (test.touched() >> lane & 1) != 0;
-            if (touched ? this->touched(block, lane, test.first_half(lane), u[lane], v[lane], best)
-                        : exactly(block, lane, best))
+            if (test.certain() >> lane & 1) {
+                if (!(t[lane] > sheared_.t_min && t[lane] <= best.t)) continue;
+                if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
+            } else if (test.touched() >> lane & 1) {
+                if (touched(block, lane, test.first_half(lane), u[lane], v[lane], best)) return true;
+            } else if (exactly(block, lane, best)) {
                 return true;
+            }
         }
         return false;
     }

@@ -54,7 +54,8 @@ private:
 
 /// Where there is no tree to go through.
 template <bool kAny, typename Instance>
-[[gnu::noinline]] bool find_in_list(const Bvh& bvh, LeafTest<kAny, Instance>& test_leaf, Hit& best) {
+[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
     for (const BvhRef leaf : bvh.list)
         if (test_leaf(leaf, best)) return true;
     return test_leaf.found();
@@ -65,9 +66,9 @@ template <bool kAny, typename Instance>
 /// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
 template <typename Instance>
 bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
-    LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
-    if (!bvh.use_tree()) return find_in_list(bvh, test_leaf, best);
+    if (!bvh.use_tree()) return find_in_list<false>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
+    LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
     // Each step down leaves at most kWidth − 1 children waiting.
     std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
@@ -117,10 +118,10 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
 /// Stops at the first; the other arguments as above.
 template <typename Instance>
 bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
-    LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
     Hit best = end;
-    if (!bvh.use_tree()) return find_in_list(bvh, test_leaf, best);
+    if (!bvh.use_tree()) return find_in_list<true>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
+    LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
 
     std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;

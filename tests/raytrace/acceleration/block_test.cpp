@@ -204,7 +204,7 @@ TEST_SUITE("unit") {
             for (const float shift : kShifts) {
                 CAPTURE(scale);
                 CAPTURE(shift);
-                const Counts counts = polygons<Corners::value>(scale, shift, 20000);
+                const Counts counts = polygons<Corners::value>(scale, shift, 160000 / static_cast<int>(kBlockSize));
                 CHECK(counts.wrong == 0);
                 // The test is of all that it can say.
                 CHECK(counts.hits > 5000);
@@ -218,7 +218,7 @@ TEST_SUITE("unit") {
         // Random rays and quads, none near the origin.
         Random random(29);
         int candidates = 0, certain = 0;
-        for (int trial = 0; trial < 20000; ++trial) {
+        for (int trial = 0; trial < 160000 / static_cast<int>(kBlockSize); ++trial) {
             QuadBlock block;
             for (std::size_t lane = 0; lane < kBlockSize; ++lane)
                 block.set(lane, corners(Quad{random.vector(), random.vector(), random.vector()}), 0, 0);
@@ -240,7 +240,7 @@ TEST_SUITE("unit") {
                 Random random(31);
                 const Vec3 offset = Vec3(1, -0.5f, 0.25f) * (shift * scale);
                 int hits = 0, wrong = 0;
-                for (int trial = 0; trial < 20000; ++trial) {
+                for (int trial = 0; trial < 160000 / static_cast<int>(kBlockSize); ++trial) {
                     SphereBlock block;
                     const auto present = static_cast<std::size_t>(1 + random.below(kBlockSize));
                     for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
