@@ -3,6 +3,7 @@
 #include "common/program/program.h"
 #include "common/system/sabotage.h"
 #include "compare/bench/bench.h"
+#include "compare/frames/frames.h"
 #include "compare/images.h"
 #include "compare/ladder/ladder.h"
 #include "compare/metrics/limits.h"
@@ -12,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <map>
 #include <memory>
 
 using namespace duet;
@@ -257,6 +259,50 @@ Subcommand add_stress(CLI::App& app) {
     return {stress, [all] { return compare::stress(*all); }};
 }
 
+Subcommand add_frames(CLI::App& app) {
+    CLI::App* frames = app.add_subcommand("frames", "Measure the rasterizer's frames a second, beside Mesa's llvmpipe");
+    const auto all = std::make_shared<compare::FramesOptions>();
+    const auto size = std::make_shared<std::string>();
+    const auto no_peer = std::make_shared<bool>(false);
+    compare::FramesOptions& options = *all;
+    frames->add_option("MESH", options.meshes, "Meshes (.obj)")->required();
+    using compare::FrameView, compare::FrameWork;
+    frames->add_option("--view", options.views, "whole, close (it fills most of the picture) or both (default)")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, FrameView>{{"whole", FrameView::kWhole}, {"close", FrameView::kClose}}));
+    frames->add_option("--work", options.works, "phong, depth (a depth-only pass) or both (default)")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, FrameWork>{{"phong", FrameWork::kPhong}, {"depth", FrameWork::kDepth}}));
+    frames->add_option("--threads", options.threads,
+                       "Numbers of threads, each bound to as many processors (default: 1 and all)")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1024));
+    frames->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default 1920x1080)");
+    frames->add_option("--repeats", options.settings.repeats, "Repeats of each row, ours and the peer's in turns (default 9)")
+        ->check(CLI::Range(1, 10000));
+    frames->add_flag("--no-peer", *no_peer, "Measure the rasterizer alone");
+    frames->add_option("-o,--output", options.folder, "A folder for the pictures of both");
+    frames->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
+    frames->add_flag("--quiet", options.quiet, "No table, no progress bar");
+    frames->footer(std::string("A frame is: clear, transform, shade by Phong's model with interpolated normals, encode to "
+                               "8-bit sRGB in memory; back faces are culled. Both draw the same mesh by the same matrices "
+                               "under the same light; where their pictures differ the exit code is 1. A ratio above 1 is "
+                               "the rasterizer ahead.\n\nExample:\n  compare frames models/generated/octopus.obj "
+                               "--threads 1 --view close") +
+                   kExitCodes);
+    return {frames, [all, size, no_peer] {
+                if (!size->empty()) {
+                    const PictureSize parsed = parse_picture_size(*size);
+                    all->settings.width = parsed.width;
+                    all->settings.height = parsed.height;
+                }
+                all->settings.peer = !*no_peer;
+                return compare::frames(*all);
+            }};
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -266,7 +312,8 @@ int main(int argc, char** argv) {
         app.require_subcommand(1);
         app.footer("Example:\n  compare run models/cornell.json -o out\n\n`compare SUBCOMMAND --help` explains each.");
         const std::vector<Subcommand> subcommands = {add_run(app),  add_ladder(app), add_images(app),
-                                                     add_skip(app), add_bench(app),  add_stress(app)};
+                                                     add_skip(app), add_bench(app),  add_stress(app),
+                                                     add_frames(app)};
         const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
         if (!parsed.proceed) return parsed.exit_code;
         for (const Subcommand& subcommand : subcommands)

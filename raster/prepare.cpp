@@ -34,7 +34,8 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
                       .objects = {},
                       .polygonal = {},
                       .spheres = {},
-                      .irradiance = Irradiance(scene.environment, settings.threads)};
+                      .irradiance = Irradiance(scene.environment, settings.threads),
+                      .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];

@@ -22,6 +22,7 @@ struct PreparedData {
     std::vector<std::uint32_t> spheres;   ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
+    Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
 };

@@ -6,6 +6,7 @@
 #include "raster/picture.h"
 #include "raster/shade.h"
 
+#include "common/image/srgb.h"
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
@@ -83,6 +84,16 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     account.resolve = watch.seconds();
     fill_statistics(result.statistics, data, settings, account, passes, grid, picture_bytes);
     return result;
+}
+
+void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
+    result = render(prepared, view, settings, control);
+    result.srgb = Image<Rgba8>(view.width, view.height);
+    result.nearness = ImageFloat(view.width, view.height);
+    for (std::size_t i = 0; i < result.srgb.size(); ++i) {
+        const Rgb c = result.radiance[i];
+        result.srgb[i] = {srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b), 255};
+    }
 }
 
 } // namespace duet::raster

@@ -109,6 +109,9 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     case Shading::kAlbedo:
         result.radiance = color();
         break;
+    case Shading::kPhong:
+        result.radiance = phong_light(scene.lights, data.ambient, color(), point, -ray.direction);
+        break;
     case Shading::kDepth:
         result.radiance = Rgb(tile.nearness(x, y));
         break;
