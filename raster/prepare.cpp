@@ -1,5 +1,7 @@
 #include "raster/prepare.h"
 
+#include "raster/geometry.h"
+
 #include <algorithm>
 
 namespace duet::raster {
@@ -48,6 +50,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     }
     data.memory_bytes = static_cast<std::int64_t>(sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
+    data.geometries = std::make_shared<GeometryPool>();
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

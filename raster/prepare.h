@@ -15,6 +15,8 @@ struct PreparedObject {
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
 
+class GeometryPool; // raster/geometry.h
+
 struct PreparedData {
     const Scene& scene;
     std::vector<PreparedObject> objects;  ///< parallel to Scene::objects
@@ -25,6 +27,7 @@ struct PreparedData {
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
+    std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
 };
 
 } // namespace duet::raster

@@ -12,10 +12,6 @@ int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
 
 } // namespace
 
-PixelRect intersect(const PixelRect& a, const PixelRect& b) {
-    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
 EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
     const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
     a = -dy;
@@ -108,6 +104,40 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     result.sum = result.b0 + result.b1 + result.b2;
     if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // seen exactly edge-on: any of its points will do
     result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
+    return result;
+}
+
+namespace {
+
+/// A grid point beside the outline, within the picture.
+FixedPoint beside(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
+    return {std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport.width * kSubPixels),
+            std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport.height * kSubPixels)};
+}
+
+} // namespace
+
+Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+                            const Viewport& viewport) {
+    return {whole.a, whole.b, whole.c, beside(corners, viewport)};
+}
+
+// Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective) Σ eᵢ·(xᵢ, yᵢ, wᵢ) = det · (x, y, 1), so
+// the divisor is the determinant, whatever the pixel; with w = 1 (orthographic) the dividend is.
+DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+                    bool clipped, const Viewport& viewport) {
+    const Interpolation at = interpolation(whole, corners, viewport);
+    const Vec3d w(whole.a.w, whole.b.w, whole.c.w);
+    const double determinant = at.e[0].z * w.x + at.e[1].z * w.y + at.e[2].z * w.z;
+    const Vec3d sum = viewport.orthographic ? at.e[0] * at.depth.x + at.e[1] * at.depth.y + at.e[2] * at.depth.z
+                                            : at.e[0] + at.e[1] + at.e[2];
+    const Vec3d plane = sum * ((viewport.orthographic ? 1 : viewport.near) / determinant);
+    const double least_depth = std::min({whole.a.depth, whole.b.depth, whole.c.depth});
+    DrawTriangle result{.corners = corners, .id = id};
+    result.sound = is_finite(plane) && !sabotaged(Guard::kPerspective);
+    result.clipped = clipped;
+    if (!clipped) result.nearest = static_cast<float>(viewport.near / least_depth) * (1 + 0x1p-22f);
+    result.nearness = {plane.x, plane.y, plane.z, static_cast<int>(at.origin_x), static_cast<int>(at.origin_y)};
     return result;
 }
 

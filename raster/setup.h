@@ -3,21 +3,14 @@
 
 #include "common/system/sabotage.h"
 #include "raster/samples.h"
+#include "raster/tiles.h"
 #include "raster/transform.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace duet::raster {
-
-/// Half-open ranges of pixels.
-struct PixelRect {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-
-    bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
-PixelRect intersect(const PixelRect& a, const PixelRect& b);
 
 /// The line through two grid points as an integer function of the sample's place: a·x + b·y + c >= 0 where the sample
 /// is inside. The interior of a positive (clockwise in the picture) triangle is where all its edges' are. c carries the
@@ -33,6 +26,12 @@ struct EdgeFunction {
     }
 };
 
+/// A nearness as a tile keeps it.
+inline float kept_nearness(double nearness) {
+    const auto n = static_cast<float>(nearness);
+    return sabotaged(Guard::kReversedDepth) ? 1 - (1 - n) : n; // as the books': 0 near, 1 far
+}
+
 /// What an interpolated barycentric triple means for Hit::u and v.
 enum class Piece : std::uint8_t {
     kTriangle,   ///< corners a, b, c
@@ -46,6 +45,24 @@ struct Interpolated {
     double b0, b1, b2; ///< in proportion to the barycentrics, not normalized; >= 0, but beyond a quad's diagonal
     double sum;        ///< of the three, > 0
     double depth_sum;  ///< depth × sum
+
+    /// near / depth. Moved to the triangle's border, a point may come to lie before the near plane at which the outline
+    /// was cut.
+    double nearness(double near) const { return depth_sum > near * sum ? near * sum / depth_sum : 1.0; }
+};
+
+/// Nearness, near / depth, over the picture. Under perspective it is linear, in an orthographic view its inverse is.
+/// Pixels are counted from (origin_x, origin_y), beside the triangle; all in double, so that the one rounding to float
+/// is all the error that counts.
+struct NearnessPlane {
+    double x = 0, y = 0, constant = 0;
+    int origin_x = 0, origin_y = 0;
+
+    /// At the pixel coordinates (px, py).
+    double at(double px, double py, const Viewport& viewport) const {
+        const double value = (constant + (py - origin_y) * y) + (px - origin_x) * x;
+        return viewport.orthographic ? viewport.near / value : value;
+    }
 };
 
 /// Perspective-correct barycentrics without a division by w: with homogeneous pixel vertices Vᵢ = (xw, yw, w), eᵢ(x, y)
@@ -66,16 +83,44 @@ private:
     Vec2d nearest_on_outline(Vec2d p) const;
 };
 
-/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is
-/// there.
-struct SetupTriangle {
-    std::array<FixedPoint, 3> corners; ///< of positive area
-    std::uint32_t object = 0, primitive = 0;
+/// A triangle as its mesh has it, or a half of a quad, before any clipping.
+struct WholeTriangle {
+    PixelVertex a, b, c;
     Piece piece = Piece::kTriangle;
-    Interpolation interpolation;
 };
+
+/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, the plane how near it is
+/// there. What else is asked of a sample follows from the whole triangle, whose number it has.
+struct DrawTriangle {
+    std::array<FixedPoint, 3> corners; ///< of positive area
+    bool sound = false;    ///< its plane can be trusted, as that of a triangle seen edge-on can not
+    bool clipped = false;  ///< the outline is a part of it only, with corners of its own
+    std::uint32_t id = 0;  ///< in order of (object, primitive)
+    float nearest = 1;     ///< no sample is nearer
+    NearnessPlane nearness{};
+};
+
+/// Pixels are counted from beside the outline.
+Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+                            const Viewport& viewport);
+/// From the whole triangle and an outline of positive area, its own or one of its clipped parts'.
+DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+                    bool clipped, const Viewport& viewport);
 
 /// The pixels in which a sample of `offset` lies within the closed box that three grid points span.
 PixelRect pixels_within(const std::array<FixedPoint, 3>& corners, SampleOffset offset);
+
+/// How far inside of the snapped outline, in values of its edge functions, a sample must lie to be inside of the
+/// unsnapped triangle for certain. Snapping moves each corner by at most half a grid point along x and y. So at a point
+/// of the box of width w and height h that bounds the corners, an edge function (pₖ − pᵢ) × (p − pᵢ) changes by at
+/// most ½ (w + h) for each of its two corners, and ½ for both at once: w + h + ½. New corners, where it is clipped, have
+/// rounding errors besides: a whole pixel is left to them.
+inline std::int64_t inside_margin(const DrawTriangle& triangle) {
+    const auto& p = triangle.corners;
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    const std::int64_t size = std::int64_t{x1} - x0 + y1 - y0;
+    return size + 1 + (triangle.clipped ? size * kSubPixels : 0);
+}
 
 } // namespace duet::raster

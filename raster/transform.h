@@ -26,7 +26,9 @@ struct FixedPoint {
 struct Viewport {
     int width = 0, height = 0;
     double near = 0; ///< smallest depth seen
+    bool orthographic = false;
 };
+Viewport viewport_of(const View& view, const Pinhole& pinhole);
 
 /// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of
 /// up to kMaxPictureSide = 2^14 pixels a side fixed-point coordinates stay below 2^24.4 and edge functions below 2^52:
@@ -53,7 +55,7 @@ FixedPoint snap(const PixelVertex& vertex);
 struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< its transform has a negative determinant: windings are flipped
-    std::vector<PixelVertex> vertices;
+    Mat4d to_pixel;           ///< object_to_pixel
     std::vector<FixedPoint> snapped; ///< meaningless where the outcode has a bit of kMustClip
     std::vector<std::uint8_t> outcodes;
     std::uint8_t any_outside = 0; ///< all outcodes or-ed
@@ -62,9 +64,15 @@ struct TransformedObject {
 /// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is
 /// rounded: a vertex is as exact as the object's floats.
 Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
+/// A vertex under that map: cheap enough to be worked out again where it is needed, instead of being kept.
+inline PixelVertex pixel_vertex(const Mat4d& to_pixel, Vec3 p) {
+    const Vec4d v = to_pixel * Vec4d(Vec3d(p), 1.0);
+    return {.xw = v.x, .yw = v.y, .w = v.w, .depth = v.z};
+}
 
 /// Transforms the meshes and quads of the listed objects, in parallel; the result has one entry an object, in order.
-std::vector<TransformedObject> transform(const Scene& scene, const std::vector<std::uint32_t>& objects,
-                                         const Pinhole& pinhole, float time, const Viewport& viewport, int threads);
+/// `result` may be an earlier one, whose memory is used again.
+void transform(const Scene& scene, const std::vector<std::uint32_t>& objects, const Pinhole& pinhole, float time,
+               const Viewport& viewport, int threads, std::vector<TransformedObject>& result);
 
 } // namespace duet::raster

@@ -1,0 +1,60 @@
+// Where on its triangle each of sixteen samples lies: barycentrics and depth, side by side.
+#pragma once
+
+#include "raster/geometry.h"
+#include "raster/lanes.h"
+
+#include <cstdint>
+
+namespace duet::raster {
+
+/// A strip of samples of one tile, and what they see. Walks from strip to strip: what two of them have in common is not
+/// looked up again.
+class StripSolver {
+public:
+    StripSolver(const Triangles& triangles, const PassView& view) : triangles_(triangles), view_(view) {}
+
+    /// Takes the numbers of what the sixteen samples see (DepthTile::ids).
+    void load(const std::int32_t* ids);
+    /// Finds barycentrics and depths at two rows of eight samples, from pixel (x, y) on.
+    void solve(int x, int y, SampleOffset offset);
+
+    /// A bit for each sample that sees something, and for each that sees a mesh's triangle: the others have no solution.
+    std::uint32_t seen() const { return seen_; }
+    std::uint32_t on_mesh() const { return on_mesh_; }
+    /// After solve(): a bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
+    std::uint32_t inside() const { return inside_; }
+    /// A bit for each sample that sees its triangle counter-clockwise in the picture: the front, of an object that is
+    /// not mirrored.
+    std::uint32_t counter_clockwise() const { return counter_clockwise_; }
+
+    std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids_[i]); }
+    const Run& run(std::size_t i) const { return *runs_[i]; }
+    /// Changes whenever load() found other triangles than before.
+    std::uint64_t generation() const { return generation_; }
+    /// The only object that is seen of all meshes, or null.
+    const TransformedObject* one_object() const { return one_object_; }
+    const Mesh* one_mesh() const { return one_mesh_; }
+
+    std::array<StripOf<std::uint32_t>, 3> corner;        ///< of the mesh's vertices
+    std::array<std::array<StripOf<float>, 3>, 3> position; ///< vertex, axis; in the object's space
+    StripOf<double> b1, b2;                              ///< barycentrics of the second and third corner
+    StripOf<double> depth;                               ///< camera-space −z
+
+private:
+    void load_lane(std::size_t i);
+    void project();
+
+    const Triangles& triangles_;
+    const PassView& view_;
+    StripOf<std::int32_t> ids_;
+    std::array<const Run*, kStrip> runs_{};
+    const Run* last_run_ = nullptr;
+    const TransformedObject* one_object_ = nullptr;
+    const Mesh* one_mesh_ = nullptr;
+    std::uint32_t seen_ = 0, on_mesh_ = 0, inside_ = 0, counter_clockwise_ = 0;
+    std::uint64_t generation_ = 0;
+    std::array<StripOf<double>, 3> x_, y_, depth_; ///< homogeneous pixel coordinates of the corners
+};
+
+} // namespace duet::raster
