@@ -282,6 +282,8 @@ Subcommand add_frames(CLI::App& app) {
     frames->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default 1920x1080)");
     frames->add_option("--repeats", options.settings.repeats, "Repeats of each row, ours and the peer's in turns (default 9)")
         ->check(CLI::Range(1, 10000));
+    frames->add_flag("--processor-time", options.settings.processor_time,
+                     "Count the seconds of all processors instead of the clock's: on a machine that others use, too");
     frames->add_flag("--no-peer", *no_peer, "Measure the rasterizer alone");
     frames->add_option("-o,--output", options.folder, "A folder for the pictures of both");
     frames->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");

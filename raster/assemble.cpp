@@ -294,8 +294,7 @@ void Assembler::find_nearness() {
     }
     for (const Sample& sample : edge_samples_) {
         const WholeTriangle whole = triangles_->whole(run_, sample.index);
-        const Interpolation at(whole.a, whole.b, whole.c, {sample.x * kSubPixels, sample.y * kSubPixels});
-        const Interpolated here = at.at({sample.x + offset_x, sample.y + offset_y}, whole.piece);
+        const Interpolated here = interpolate(whole, {sample.x + offset_x, sample.y + offset_y});
         add_fragment(sample.index, sample.x, sample.y, kept_nearness(here.nearness(viewport.near)));
     }
 }

@@ -56,9 +56,7 @@ void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, 
 
 Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
                  double distance_per_depth, double near) {
-    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
-                            static_cast<std::int32_t>(pixel.y) * kSubPixels};
-    const Interpolated at = Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.piece);
+    const Interpolated at = interpolate(whole, pixel);
     const double depth = at.depth_sum > near * at.sum ? at.depth_sum / at.sum : near;
     return make_hit(object, primitive, whole.piece, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
 }

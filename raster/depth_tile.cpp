@@ -24,9 +24,9 @@ struct DepthTile::Edges {
                     kSubPixelBits;
             a[k] = edge.a;
             b[k] = edge.b;
-            for (std::size_t i = 0; i < kStrip; ++i)
-                step[k][i] = static_cast<std::int32_t>(a[k]) * static_cast<std::int32_t>(i % kBlock) +
-                             static_cast<std::int32_t>(b[k]) * static_cast<std::int32_t>(i / kBlock);
+            const Ints right(static_cast<std::int32_t>(a[k])), down(static_cast<std::int32_t>(b[k]));
+            for (std::size_t i = 0; i < kStrip; i += Ints::size)
+                store(step[k], i, right * load(kColumns<std::int32_t>, i) + down * load(kRows<std::int32_t>, i));
         }
     }
 
@@ -72,62 +72,64 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
             if (cover == Edges::Cover::kNone) continue;
             const bool all = cover == Edges::Cover::kAll && triangle.sound;
             drawn_[block] = true;
-            if (const std::uint64_t edge_samples = draw_block(edges, triangle, column, row, all); edge_samples != 0)
-                draw_edge_samples(triangle, whole, block, edge_samples);
+            const int top = rect_.y0 + row * kBlock;
+            const std::uint64_t edge_samples = draw_block(edges, triangle, column, row, std::max(r.y0 - top, 0),
+                                                          std::min(r.y1 - top, kBlock) - 1, all);
+            if (edge_samples != 0) draw_edge_samples(triangle, whole, block, edge_samples);
             constexpr std::uint8_t kOften = 16;
             if (all || ++partial_[block] >= kOften) find_farthest(block);
         }
 }
 
-/// Nearness over the two rows of a strip.
-void DepthTile::find_nearness(const DrawTriangle& triangle, int x, int y, StripOf<float>& nearness) const {
-    const NearnessPlane& plane = triangle.nearness;
-    StripOf<double> value;
-    const double from_x = x - plane.origin_x + static_cast<double>(offset_.x) / kSubPixels;
-    for (std::size_t row = 0; row < kStrip / kBlock; ++row) {
-        const double from_y = y + static_cast<int>(row) - plane.origin_y + static_cast<double>(offset_.y) / kSubPixels;
-        const double start = plane.constant + from_y * plane.y;
-        for (std::size_t i = 0; i < kBlock; ++i)
-            value[row * kBlock + i] = start + (from_x + static_cast<double>(i)) * plane.x;
+/// Nearness over strips.
+struct DepthTile::Nearness {
+    const NearnessPlane& plane;
+    const Viewport& viewport;
+    Doubles slope = Doubles(plane.x);
+
+    /// Of the samples from the i-th of a strip on, whose first lies at (x, y) from the plane's origin.
+    Floats at(double x, double y, std::size_t i) const {
+        const auto half = [&](std::size_t first) {
+            const double start = plane.constant + (y + kRows<double>[first]) * plane.y;
+            const Doubles value = Doubles(start) + (Doubles(x) + raster::load(kColumns<double>, first)) * slope;
+            return viewport.orthographic ? Doubles(viewport.near) / value : value;
+        };
+        const Floats nearness = narrowed(half(i), half(i + Doubles::size));
+        return sabotaged(Guard::kReversedDepth) ? Floats(1.0f) - (Floats(1.0f) - nearness) : nearness;
     }
-    if (viewport_.orthographic)
-        for (double& v : value.v) v = viewport_.near / v;
-    for (std::size_t i = 0; i < kStrip; ++i) nearness[i] = kept_nearness(value[i]);
-}
+};
 
 /// Draws those samples of a block that are covered for certain and lie well inside; `all` of them do, or the edges say
-/// which. Returns the other covered ones, a bit each.
-std::uint64_t DepthTile::draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, bool all) {
+/// which. Returns the other covered ones, a bit each. Only the strips of rows y0 to y1 of the block are looked at.
+std::uint64_t DepthTile::draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0,
+                                    int y1, bool all) {
     const auto id = static_cast<std::int32_t>(triangle.id);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    const Ints zero(0), margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : 0x7fffffff));
+    const Ints zero(0), margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : std::int64_t{0x7fffffff}));
+    const Nearness nearness{triangle.nearness, viewport_};
+    const int x = column * kBlock;
+    const double from_x = rect_.x0 + x - triangle.nearness.origin_x + static_cast<double>(offset_.x) / kSubPixels;
+    const double from_y = rect_.y0 - triangle.nearness.origin_y + static_cast<double>(offset_.y) / kSubPixels;
     std::uint64_t edge_samples = 0;
-    for (std::size_t strip = 0; strip < kStrips; ++strip) {
-        const int x = column * kBlock, y = row * kBlock + static_cast<int>(strip * kStrip / kBlock);
-        const std::array<Ints, 3> first{Ints(edges.clamped(0, x, y)), Ints(edges.clamped(1, x, y)),
+    for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip) {
+        const int y = row * kBlock + strip * kStripRows;
+        const auto first = static_cast<std::size_t>(strip) * kStrip;
+        const std::array<Ints, 3> value{Ints(edges.clamped(0, x, y)), Ints(edges.clamped(1, x, y)),
                                         Ints(edges.clamped(2, x, y))};
-        StripOf<float> nearness;
-        bool found = false;
         for (std::size_t i = 0; i < kStrip; i += Ints::size) {
             xsimd::batch_bool<float> inside(true);
             if (!all) {
-                const Ints e0 = first[0] + load(edges.step[0], i), e1 = first[1] + load(edges.step[1], i),
-                           e2 = first[2] + load(edges.step[2], i);
-                const auto covered = (e0 | e1 | e2) >= zero, well_inside = min(min(e0, e1), e2) >= margin;
+                const Ints e0 = value[0] + load(edges.step[0], i), e1 = value[1] + load(edges.step[1], i),
+                           e2 = value[2] + load(edges.step[2], i);
+                const Ints least = min(min(e0, e1), e2);
+                const auto covered = least >= zero, well_inside = least >= margin;
                 if (!xsimd::any(covered)) continue;
                 const auto at_edge = covered && !well_inside;
-                if (xsimd::any(at_edge)) {
-                    StripOf<std::int32_t> flags;
-                    store(flags, 0, xsimd::select(at_edge, Ints(1), zero));
-                    for (std::size_t k = 0; k < Ints::size; ++k)
-                        edge_samples |= std::uint64_t{flags[k] != 0} << (strip * kStrip + i + k);
-                }
+                edge_samples |= std::uint64_t{lane_bits(at_edge)} << (first + i);
                 inside = xsimd::bool_cast(well_inside);
             }
-            if (!found) find_nearness(triangle, rect_.x0 + x, rect_.y0 + y, nearness);
-            found = true;
-            const std::size_t place = block * kBlock * kBlock + strip * kStrip + i;
-            const Floats before = Floats::load_aligned(&nearness_[place]), here = load(nearness, i);
+            const std::size_t place = block * kBlock * kBlock + first + i;
+            const Floats before = Floats::load_aligned(&nearness_[place]), here = nearness.at(from_x, from_y + y, i);
             const Ints id_before = Ints::load_aligned(&ids_[place]);
             auto wins = here > before;
             if (!sabotaged(Guard::kDrawOrder))

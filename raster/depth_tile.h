@@ -47,12 +47,13 @@ public:
 
     static constexpr int kBlock = 8;
     static constexpr int kBlocks = TileGrid::kTileSize / kBlock;       ///< along a side
-    static constexpr std::size_t kStrips = kBlock * kBlock / kStrip; ///< of a block
+    static constexpr int kStripRows = kStrip / kStripWidth;
 
 private:
     struct Edges;
-    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, bool all);
-    void find_nearness(const DrawTriangle& triangle, int x, int y, StripOf<float>& nearness) const;
+    struct Nearness;
+    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0, int y1,
+                             bool all);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
     void keep_nearest(std::size_t place, std::uint32_t id, float nearness);

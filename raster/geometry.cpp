@@ -123,6 +123,7 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
     };
     const std::vector<std::uint32_t> polygonal = visible(data.polygonal);
     result.triangles.scene = &data.scene;
+    result.triangles.vertices = &data.vertices;
     transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,
               result.triangles.objects);
     result.transform_seconds = watch.lap();

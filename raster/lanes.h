@@ -44,4 +44,72 @@ template <typename T> void store(StripOf<T>& strip, std::size_t i, const xsimd::
     value.store_aligned(strip.at(i));
 }
 
+static_assert(Floats::size == 2 * Doubles::size);
+
+/// Doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion; by way of memory it would
+/// wait for narrow stores to become a wide load.)
+inline Floats narrowed(const Doubles& low, const Doubles& high) {
+#if defined(__AVX512F__)
+    return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(_mm512_cvtpd_ps(low))),
+                                               _mm256_castps_pd(_mm512_cvtpd_ps(high)), 1));
+#elif defined(__AVX__)
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+#else
+    alignas(64) std::array<double, Floats::size> wide;
+    alignas(64) std::array<float, Floats::size> result;
+    low.store_aligned(wide.data());
+    high.store_aligned(wide.data() + Doubles::size);
+    for (std::size_t i = 0; i < Floats::size; ++i) result[i] = static_cast<float>(wide[i]);
+    return Floats::load_aligned(result.data());
+#endif
+}
+
+/// Floats from memory to doubles.
+inline Doubles widened(const float* from) {
+#if defined(__AVX512F__)
+    return _mm512_cvtps_pd(_mm256_loadu_ps(from));
+#elif defined(__AVX__)
+    return _mm256_cvtps_pd(_mm_loadu_ps(from));
+#else
+    std::array<double, Doubles::size> wide;
+    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = static_cast<double>(from[i]);
+    return Doubles::load_unaligned(wide.data());
+#endif
+}
+
+/// A bit for each lane that holds true, lane 0 the lowest.
+inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
+#if defined(__AVX512F__)
+    return static_cast<std::uint32_t>(static_cast<__mmask16>(lanes));
+#elif defined(__AVX__)
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(lanes)));
+#else
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(lanes)));
+#endif
+}
+
+inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
+#if defined(__AVX512F__)
+    return static_cast<std::uint32_t>(static_cast<__mmask8>(lanes));
+#elif defined(__AVX__)
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(lanes));
+#else
+    return static_cast<std::uint32_t>(_mm_movemask_pd(lanes));
+#endif
+}
+
+/// The column and row of each sample of a strip.
+template <typename T> StripOf<T> strip_columns() {
+    StripOf<T> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i % kStripWidth);
+    return result;
+}
+template <typename T> StripOf<T> strip_rows() {
+    StripOf<T> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i / kStripWidth);
+    return result;
+}
+template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
+template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
+
 } // namespace duet::raster

@@ -5,23 +5,6 @@
 #include <limits>
 
 namespace duet::raster {
-namespace {
-
-int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
-int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
-
-} // namespace
-
-EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
-    const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-    a = -dy;
-    b = dx;
-    c = dy * from.x - dx * from.y;
-    // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
-    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-    if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
-}
-
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
     const auto local = [&](const PixelVertex& v) {
@@ -117,6 +100,12 @@ FixedPoint beside(const std::array<FixedPoint, 3>& p, const Viewport& viewport) 
 
 } // namespace
 
+Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
+    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
+                            static_cast<std::int32_t>(pixel.y) * kSubPixels};
+    return Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.piece);
+}
+
 Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport) {
     return {whole.a, whole.b, whole.c, beside(corners, viewport)};
@@ -139,13 +128,6 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
     if (!clipped) result.nearest = static_cast<float>(viewport.near / least_depth) * (1 + 0x1p-22f);
     result.nearness = {plane.x, plane.y, plane.z, static_cast<int>(at.origin_x), static_cast<int>(at.origin_y)};
     return result;
-}
-
-PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
-    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
-            floor_pixel(y1 - offset.y) + 1};
 }
 
 } // namespace duet::raster

@@ -12,6 +12,9 @@
 
 namespace duet::raster {
 
+inline int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
+inline int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
+
 /// The line through two grid points as an integer function of the sample's place: a·x + b·y + c >= 0 where the sample
 /// is inside. The interior of a positive (clockwise in the picture) triangle is where all its edges' are. c carries the
 /// top-left rule: a sample on the edge is inside only if the edge is the triangle's left or top one, so of two
@@ -19,7 +22,15 @@ namespace duet::raster {
 struct EdgeFunction {
     std::int64_t a, b, c;
 
-    EdgeFunction(FixedPoint from, FixedPoint to);
+    EdgeFunction(FixedPoint from, FixedPoint to) {
+        const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+        a = -dy;
+        b = dx;
+        c = dy * from.x - dx * from.y;
+        // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
+        const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
+        if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
+    }
     std::int64_t at(std::int64_t x, std::int64_t y) const {
         const std::int64_t value = a * x + b * y + c;
         return sabotaged(Guard::kWideEdges) ? static_cast<std::int32_t>(value) : value;
@@ -100,6 +111,8 @@ struct DrawTriangle {
     NearnessPlane nearness{};
 };
 
+/// At one sample, the naive way.
+Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
 /// Pixels are counted from beside the outline.
 Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport);
@@ -108,7 +121,12 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
                     bool clipped, const Viewport& viewport);
 
 /// The pixels in which a sample of `offset` lies within the closed box that three grid points span.
-PixelRect pixels_within(const std::array<FixedPoint, 3>& corners, SampleOffset offset);
+inline PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
+            floor_pixel(y1 - offset.y) + 1};
+}
 
 /// How far inside of the snapped outline, in values of its edge functions, a sample must lie to be inside of the
 /// unsnapped triangle for certain. Snapping moves each corner by at most half a grid point along x and y. So at a point

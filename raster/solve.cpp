@@ -1,77 +1,89 @@
 #include "raster/solve.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace duet::raster {
 
 void StripSolver::load(const std::int32_t* ids) {
-    if (generation_ > 0 && std::memcmp(ids, ids_.at(0), sizeof(ids_.v)) == 0) return;
-    ++generation_;
-    std::memcpy(ids_.at(0), ids, sizeof(ids_.v));
-    seen_ = on_mesh_ = 0;
+    const Ints none(static_cast<std::int32_t>(kNoTriangle));
+    std::uint32_t seen = 0;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size)
+        seen |= lane_bits(Ints::load_aligned(ids + i) != none) << i;
+    const std::uint32_t before = seen_;
+    seen_ = seen;
+    on_mesh_ = one_object_ != nullptr ? seen : 0;
+    if (seen == 0) return;
+    const Ints first(ids[std::countr_zero(seen)]);
+    bool same = before != 0, one = true;
+    std::int32_t low = kNoTriangle, high = 0;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const Ints read = Ints::load_aligned(ids + i), filled = xsimd::select(read == none, first, read);
+        same = same && xsimd::all(filled == raster::load(ids_, i));
+        one = one && xsimd::all(filled == first);
+        store(ids_, i, filled);
+    }
+    if (same) return;
+    for (const std::int32_t id : ids_.v) {
+        low = std::min(low, id);
+        high = std::max(high, id);
+    }
     one_object_ = nullptr;
     one_mesh_ = nullptr;
-    bool several = false;
-    const TransformedObject* object = nullptr;
-    const Run* hint = last_run_ != nullptr ? last_run_ : &triangles_.runs.front();
-    std::size_t last = kStrip; // lane looked up last
-    for (std::size_t i = 0; i < kStrip; ++i) {
-        if (id(i) == kNoTriangle) continue;
-        seen_ |= 1u << i;
-        if (last < kStrip && ids_[i] == ids_[last]) { // a copy is cheaper than to look it up again
-            runs_[i] = runs_[last];
-            if (!(on_mesh_ >> last & 1)) continue;
-            for (std::size_t k = 0; k < 3; ++k) {
-                corner[k][i] = corner[k][last];
-                for (std::size_t axis = 0; axis < 3; ++axis) position[k][axis][i] = position[k][axis][last];
-            }
-            on_mesh_ |= 1u << i;
-            continue;
+    on_mesh_ = 0;
+    last_run_ = &triangles_.run_of(static_cast<std::uint32_t>(low),
+                                   last_run_ != nullptr ? *last_run_ : triangles_.runs.front());
+    const Run& last = triangles_.run_of(static_cast<std::uint32_t>(high), *last_run_);
+    // Numbers are in the order of objects: between two of one object there is no other's.
+    if (last_run_->sphere || last.sphere || last.object != last_run_->object) return;
+    one_mesh_ = std::get_if<Mesh>(&triangles_.shape(last));
+    if (one_mesh_ == nullptr) return;
+    one_object_ = &triangles_.objects[last.object];
+    on_mesh_ = seen;
+    first_id_ = last.first_id - last.first;
+    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object_->object].shape];
+    if (one)
+        load_one(vertices);
+    else
+        load_each(vertices);
+}
+
+/// All samples see one triangle.
+void StripSolver::load_one(const std::vector<PackedVertex>& vertices) {
+    const auto& corners = one_mesh_->triangles[index(0)];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const PackedVertex& vertex = vertices[corners[k]];
+        const PixelVertex pixel = pixel_vertex(*one_object_, vertex.p);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            position[k][axis].fill(vertex.p[axis]);
+            normal[k][axis].fill(vertex.n[axis]);
         }
-        last = i;
-        runs_[i] = hint = last_run_ = &triangles_.run_of(id(i), *hint);
-        if (runs_[i]->sphere) continue;
-        const auto* mesh = std::get_if<Mesh>(&triangles_.shape(*runs_[i]));
-        if (mesh == nullptr) continue;
-        const TransformedObject* of = &triangles_.objects[runs_[i]->object];
-        several = several || (object != nullptr && object != of);
-        object = of;
-        one_mesh_ = mesh;
-        on_mesh_ |= 1u << i;
-        load_lane(i);
-    }
-    if (several) on_mesh_ = 0; // a border of two objects: too few samples to be worth a second way
-    if (on_mesh_ == 0) {
-        one_mesh_ = nullptr;
-        return;
-    }
-    one_object_ = object;
-    project();
-}
-
-void StripSolver::load_lane(std::size_t i) {
-    const auto& corners = one_mesh_->triangles[Triangles::index(*runs_[i], id(i))];
-    for (std::size_t k = 0; k < 3; ++k) {
-        corner[k][i] = corners[k];
-        const Vec3 p = one_mesh_->positions[corners[k]];
-        position[k][0][i] = p.x;
-        position[k][1][i] = p.y;
-        position[k][2][i] = p.z;
+        x_[k].fill(pixel.xw);
+        y_[k].fill(pixel.yw);
+        depth_[k].fill(pixel.depth);
     }
 }
 
-void StripSolver::project() {
+void StripSolver::load_each(const std::vector<PackedVertex>& vertices) {
     const Mat4d& m = one_object_->to_pixel;
+    std::array<std::array<PackedVertex, kStrip>, 3> lanes;
+    for (std::size_t i = 0; i < kStrip; ++i) {
+        const auto& corners = one_mesh_->triangles[index(i)];
+        for (std::size_t k = 0; k < 3; ++k) lanes[k][i] = vertices[corners[k]];
+    }
     for (std::size_t k = 0; k < 3; ++k) {
-        StripOf<double> px, py, pz;
         for (std::size_t i = 0; i < kStrip; ++i) {
-            px[i] = static_cast<double>(position[k][0][i]);
-            py[i] = static_cast<double>(position[k][1][i]);
-            pz[i] = static_cast<double>(position[k][2][i]);
+            position[k][0][i] = lanes[k][i].p.x;
+            position[k][1][i] = lanes[k][i].p.y;
+            position[k][2][i] = lanes[k][i].p.z;
+            normal[k][0][i] = lanes[k][i].n.x;
+            normal[k][1][i] = lanes[k][i].n.y;
+            normal[k][2][i] = lanes[k][i].n.z;
         }
         for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
-            const Doubles x = raster::load(px, i), y = raster::load(py, i), z = raster::load(pz, i);
+            const Doubles x = widened(position[k][0].at(i)), y = widened(position[k][1].at(i)),
+                          z = widened(position[k][2].at(i));
             const auto row = [&](std::size_t r) {
                 return Doubles(m[r][0]) * x + Doubles(m[r][1]) * y + Doubles(m[r][2]) * z + Doubles(m[r][3]);
             };
@@ -88,14 +100,10 @@ void StripSolver::solve(int x, int y, SampleOffset offset) {
     inside_ = counter_clockwise_ = 0;
     if (on_mesh_ == 0) return;
     const Vec2d first = offset.position(x, y);
-    StripOf<double> sample_x, sample_y, least, orientation;
-    for (std::size_t i = 0; i < kStrip; ++i) {
-        sample_x[i] = first.x + static_cast<double>(i % kStripWidth);
-        sample_y[i] = first.y + static_cast<double>(i / kStripWidth);
-    }
     const bool orthographic = view_.viewport.orthographic;
     for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
-        const Doubles sx = raster::load(sample_x, i), sy = raster::load(sample_y, i), one(1.0);
+        const Doubles sx = Doubles(first.x) + raster::load(kColumns<double>, i),
+                      sy = Doubles(first.y) + raster::load(kRows<double>, i), one(1.0), zero(0.0);
         std::array<Doubles, 3> vx, vy, d, w;
         for (std::size_t k = 0; k < 3; ++k) {
             d[k] = raster::load(depth_[k], i);
@@ -111,15 +119,25 @@ void StripSolver::solve(int x, int y, SampleOffset offset) {
         store(b1, i, e1 * inverse);
         store(b2, i, e2 * inverse);
         store(depth, i, depth_sum * inverse);
-        store(orientation, i, determinant);
-        const auto positive = determinant > Doubles(0.0);
-        store(least, i, xsimd::select(positive, min(min(e0, e1), e2), Doubles(0.0) - max(max(e0, e1), e2)));
-    }
-    for (std::size_t i = 0; i < kStrip; ++i) {
-        inside_ |= std::uint32_t{least[i] >= 0 && orientation[i] != 0} << i;
-        counter_clockwise_ |= std::uint32_t{orientation[i] < 0} << i;
+        const auto positive = determinant > zero, negative = determinant < zero;
+        const Doubles least = min(min(e0, e1), e2), most = max(max(e0, e1), e2);
+        inside_ |= lane_bits((positive && least >= zero) || (negative && most <= zero)) << i;
+        counter_clockwise_ |= lane_bits(negative) << i;
     }
     inside_ &= sabotaged(Guard::kPerspective) ? 0 : on_mesh_;
+}
+
+void StripSolver::solve_all(int x, int y, SampleOffset offset) {
+    solve(x, y, offset);
+    for (std::uint32_t left = on_mesh_ & ~inside_; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        const Vec2d sample = offset.position(x + static_cast<int>(i % kStripWidth), y + static_cast<int>(i / kStripWidth));
+        const WholeTriangle whole = triangles_.whole(run(i), Triangles::index(run(i), id(i)));
+        const Interpolated at = interpolate(whole, sample);
+        b1[i] = at.b1 / at.sum;
+        b2[i] = at.b2 / at.sum;
+        depth[i] = at.depth_sum / at.sum;
+    }
 }
 
 } // namespace duet::raster

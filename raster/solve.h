@@ -18,6 +18,8 @@ public:
     void load(const std::int32_t* ids);
     /// Finds barycentrics and depths at two rows of eight samples, from pixel (x, y) on.
     void solve(int x, int y, SampleOffset offset);
+    /// The same, with those solutions mended that do not hold as they are: see inside().
+    void solve_all(int x, int y, SampleOffset offset);
 
     /// A bit for each sample that sees something, and for each that sees a mesh's triangle: the others have no solution.
     std::uint32_t seen() const { return seen_; }
@@ -29,31 +31,30 @@ public:
     std::uint32_t counter_clockwise() const { return counter_clockwise_; }
 
     std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids_[i]); }
-    const Run& run(std::size_t i) const { return *runs_[i]; }
-    /// Changes whenever load() found other triangles than before.
-    std::uint64_t generation() const { return generation_; }
+    const Run& run(std::size_t i) const { return triangles_.run_of(id(i), *last_run_); }
     /// The only object that is seen of all meshes, or null.
     const TransformedObject* one_object() const { return one_object_; }
     const Mesh* one_mesh() const { return one_mesh_; }
 
-    std::array<StripOf<std::uint32_t>, 3> corner;        ///< of the mesh's vertices
-    std::array<std::array<StripOf<float>, 3>, 3> position; ///< vertex, axis; in the object's space
-    StripOf<double> b1, b2;                              ///< barycentrics of the second and third corner
-    StripOf<double> depth;                               ///< camera-space −z
+    // Of each sample's triangle: vertex, axis; in the object's space.
+    std::array<std::array<StripOf<float>, 3>, 3> position, normal;
+    StripOf<double> b1, b2; ///< barycentrics of the second and third corner
+    StripOf<double> depth;  ///< camera-space −z
 
 private:
-    void load_lane(std::size_t i);
-    void project();
+    void load_one(const std::vector<PackedVertex>& vertices);
+    void load_each(const std::vector<PackedVertex>& vertices);
+    std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids_[i]) - first_id_; }
 
     const Triangles& triangles_;
     const PassView& view_;
-    StripOf<std::int32_t> ids_;
-    std::array<const Run*, kStrip> runs_{};
+    StripOf<std::int32_t> ids_; ///< where nothing is seen: another's
+    std::uint32_t one_id_ = kNoTriangle; ///< the only one, if all samples that see any see the same
     const Run* last_run_ = nullptr;
     const TransformedObject* one_object_ = nullptr;
     const Mesh* one_mesh_ = nullptr;
+    std::size_t first_id_ = 0; ///< number of the object's first triangle
     std::uint32_t seen_ = 0, on_mesh_ = 0, inside_ = 0, counter_clockwise_ = 0;
-    std::uint64_t generation_ = 0;
     std::array<StripOf<double>, 3> x_, y_, depth_; ///< homogeneous pixel coordinates of the corners
 };
 

@@ -117,6 +117,7 @@ void transform(const Scene& scene, const std::vector<std::uint32_t>& objects, co
         result[i].object = objects[i];
         result[i].mirrored = !object.identity && determinant3(object_transform(object, time).to_world) < 0;
         result[i].to_pixel = object_to_pixel(object, pinhole, time);
+        result[i].to_pixel_columns = transpose(result[i].to_pixel);
         result[i].snapped.resize(count);
         result[i].outcodes.resize(count);
         for (std::size_t first = 0; first < count; first += kChunk)

@@ -5,6 +5,7 @@
 #include "common/scene/scene.h"
 #include "raster/samples.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -56,6 +57,7 @@ struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< its transform has a negative determinant: windings are flipped
     Mat4d to_pixel;           ///< object_to_pixel
+    Mat4d to_pixel_columns;   ///< its transpose: its columns lie together
     std::vector<FixedPoint> snapped; ///< meaningless where the outcode has a bit of kMustClip
     std::vector<std::uint8_t> outcodes;
     std::uint8_t any_outside = 0; ///< all outcodes or-ed
@@ -64,10 +66,14 @@ struct TransformedObject {
 /// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is
 /// rounded: a vertex is as exact as the object's floats.
 Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
-/// A vertex under that map: cheap enough to be worked out again where it is needed, instead of being kept.
-inline PixelVertex pixel_vertex(const Mat4d& to_pixel, Vec3 p) {
-    const Vec4d v = to_pixel * Vec4d(Vec3d(p), 1.0);
-    return {.xw = v.x, .yw = v.y, .w = v.w, .depth = v.z};
+/// A vertex under an object's map: cheap enough to be worked out again where it is needed, instead of being kept. The
+/// four rows side by side.
+inline PixelVertex pixel_vertex(const TransformedObject& object, Vec3 p) {
+    const auto& m = object.to_pixel_columns.m;
+    const double x = static_cast<double>(p.x), y = static_cast<double>(p.y), z = static_cast<double>(p.z);
+    std::array<double, 4> v;
+    for (std::size_t r = 0; r < 4; ++r) v[r] = m[0][r] * x + m[1][r] * y + m[2][r] * z + m[3][r];
+    return {.xw = v[0], .yw = v[1], .w = v[3], .depth = v[2]};
 }
 
 /// Transforms the meshes and quads of the listed objects, in parallel; the result has one entry an object, in order.

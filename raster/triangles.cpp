@@ -13,7 +13,7 @@ const Run& Triangles::run_of(std::uint32_t id, const Run& hint) const {
 
 WholeTriangle Triangles::whole(const Run& run, std::uint32_t index) const {
     const Shape& of = shape(run);
-    const Mat4d& m = objects[run.object].to_pixel;
+    const TransformedObject& m = objects[run.object];
     if (const Mesh* mesh = std::get_if<Mesh>(&of)) {
         const auto& corner = mesh->triangles[index];
         return {pixel_vertex(m, mesh->positions[corner[0]]), pixel_vertex(m, mesh->positions[corner[1]]),

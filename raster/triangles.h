@@ -1,6 +1,7 @@
 // The triangles of a pass by number: what a tile keeps of the one that a sample sees.
 #pragma once
 
+#include "raster/prepare.h"
 #include "raster/setup.h"
 
 #include "common/scene/scene.h"
@@ -32,6 +33,7 @@ public:
 /// Numbers are in the order of (object, primitive), so that the lower number is the one that wins a tie.
 struct Triangles : WholeTriangles {
     const Scene* scene = nullptr;
+    const std::vector<std::vector<PackedVertex>>* vertices = nullptr; ///< PreparedData::vertices
     std::vector<TransformedObject> objects; ///< of triangles and quads
     std::vector<Run> runs;
 

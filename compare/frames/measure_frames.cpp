@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <functional>
 
 namespace duet::compare {
@@ -65,27 +66,35 @@ double median(std::vector<double> values) {
     return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
+/// What this process has used, on all its threads.
+double processor_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Seconds a frame, of as many frames as fill the burst.
-double time_burst(const std::function<void()>& draw, double burst) {
+double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
+    const double start = processor_seconds();
     const Stopwatch watch;
     int frames = 0;
     do {
         draw();
         ++frames;
-    } while (watch.seconds() < burst);
-    return watch.seconds() / frames;
+    } while (watch.seconds() < settings.burst);
+    return (settings.processor_time ? processor_seconds() - start : watch.seconds()) / frames;
 }
 
 void measure(FrameRow& row, const std::function<void()>& ours, const std::function<void()>& peer,
              const FrameSettings& settings) {
     std::vector<double> our_seconds, peer_seconds, ratios;
-    time_burst(ours, settings.burst); // warm up: memory, shaders, threads
-    if (peer) time_burst(peer, settings.burst);
+    time_burst(ours, settings); // warm up: memory, shaders, threads
+    if (peer) time_burst(peer, settings);
     for (int i = 0; i < settings.repeats; ++i) {
         if (settings.stop != nullptr && *settings.stop) return;
-        our_seconds.push_back(time_burst(ours, settings.burst));
+        our_seconds.push_back(time_burst(ours, settings));
         if (!peer) continue;
-        peer_seconds.push_back(time_burst(peer, settings.burst));
+        peer_seconds.push_back(time_burst(peer, settings));
         ratios.push_back(peer_seconds.back() / our_seconds.back());
     }
     row.ours = median(our_seconds);

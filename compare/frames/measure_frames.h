@@ -39,6 +39,7 @@ struct FrameSettings {
     int width = 1920, height = 1080;
     int repeats = 9;
     double burst = 0.03;   ///< seconds at least that a repeat's frames of each kind last
+    bool processor_time = false; ///< seconds of all processors instead of the clock's
     bool peer = true;      ///< measure it, where it is built
     const std::atomic<bool>* stop = nullptr;
 };

@@ -33,7 +33,8 @@ struct MeshScene {
                                   .objects = std::vector<raster::PreparedObject>(1),
                                   .polygonal = {0},
                                   .spheres = {},
-                                  .irradiance = raster::Irradiance(scene.environment, 1)} {}
+                                  .irradiance = raster::Irradiance(scene.environment, 1),
+                                  .vertices = raster::pack_vertices(scene)} {}
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;
 
@@ -64,7 +65,7 @@ CoverageProbe::CoverageProbe(const Window& window) {
     mesh.triangles = {{0, 1, 2}};
     scene_ = MeshScene::make(mesh);
     triangles_.scene = &scene_;
-    triangles_.objects.resize(1);
+    triangles_.objects.resize(1); // their map is the identity: orthographic, (x, y, depth, 1)
     triangles_.objects[0].snapped.resize(3);
     triangles_.objects[0].outcodes.resize(3);
     triangles_.runs.resize(1);
@@ -80,8 +81,6 @@ void CoverageProbe::draw(GridTriangle t) {
         std::get<Mesh>(scene_.shapes[0]).positions[i] =
             Vec3(Vec3d(t[i].x, t[i].y, 0) * (1.0 / raster::kSubPixels) + Vec3d(0, 0, 1.0 / count_));
     }
-    Mat4d& to_pixel = triangles_.objects[0].to_pixel; // orthographic: (x, y, depth, 1)
-    to_pixel = Mat4d();
     triangles_.runs[0] = {0, 0, 1, count_, false};
     raster::Batch batch;
     assembler_.assemble(plan_, triangles_, triangles_.runs[0], false, batch);
