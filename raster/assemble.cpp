@@ -79,29 +79,39 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     sorter_.sort(batch, touches_, plan.grid.size());
 }
 
+namespace {
+
+/// The corners of a triangle among its object's vertices.
+std::array<std::uint32_t, 3> corners_of(const Mesh* mesh, std::uint32_t triangle) {
+    if (mesh != nullptr) return mesh->triangles[triangle];
+    const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
+    return {quad, quad + 1 + half, quad + 2 + half};
+}
+
+} // namespace
+
 void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t count, Outlines& out) const {
     out.first = first;
     out.count = count;
     const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const SnappedVertex* vertices = object_->vertices.data();
     for (std::uint32_t i = 0; i < count; ++i) {
-        std::array<std::uint32_t, 3> corner;
-        if (mesh != nullptr)
-            corner = mesh->triangles[first + i];
-        else {
-            const std::uint32_t quad = (first + i) / 2 * 4, half = (first + i) % 2;
-            corner = {quad, quad + 1 + half, quad + 2 + half};
-        }
-        unsigned any = 0, common = 0xff;
+        const std::array<std::uint32_t, 3> corner = corners_of(mesh, first + i);
+        unsigned any = 0, common = ~0u;
         for (std::size_t k = 0; k < 3; ++k) {
-            const FixedPoint p = object_->snapped[corner[k]];
-            out.x[k][i] = p.x;
-            out.y[k][i] = p.y;
-            any |= object_->outcodes[corner[k]];
-            common &= object_->outcodes[corner[k]];
+            const SnappedVertex& vertex = vertices[corner[k]];
+            out.x[k][i] = vertex.p.x;
+            out.y[k][i] = vertex.p.y;
+            any |= vertex.outcode;
+            common &= vertex.outcode;
         }
         out.any_outcode[i] = static_cast<std::int32_t>(any);
         out.common_outcode[i] = static_cast<std::int32_t>(common);
     }
+    // The next sixteen's vertices, while these are worked on.
+    const std::uint32_t end = std::min(first + 2 * static_cast<std::uint32_t>(kStrip), run_.first + run_.count);
+    for (std::uint32_t i = first + kStrip; i < end; ++i)
+        for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
 }
 
 /// Decides sixteen triangles, all the tests side by side.
@@ -182,6 +192,9 @@ void Assembler::sort_out(const Outlines& out) {
     culled.degenerate += counts[kDegenerate];
     culled.backfaces += counts[kBackface];
     culled.subpixel += counts[kSubpixel];
+    if (const Mesh* mesh = std::get_if<Mesh>(&triangles_->shape(run_)))
+        for (std::size_t k = 0; k < left; ++k)
+            for (const std::uint32_t corner : mesh->triangles[out.first + chosen[k]]) prefetch(&mesh->positions[corner]);
     for (std::size_t k = 0; k < left; ++k) {
         const std::uint32_t i = chosen[k], index = out.first + i;
         if (out.verdict[i] == kSmall) {

@@ -45,8 +45,11 @@ void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, 
     tile.reset(rect, offset, view.viewport);
     for (const TileLists::Item& item : geometry.outlines.tile(index)) {
         const Batch& batch = geometry.batches[item.batch];
-        for (const std::uint32_t i : std::span(batch.order).subspan(item.first, item.count))
-            tile.draw(batch.triangles[i], geometry.triangles);
+        constexpr std::uint32_t kAhead = 8;
+        for (std::uint32_t k = 0; k < item.count; ++k) {
+            if (k + kAhead < item.count) prefetch(&batch.triangles[batch.order[item.first + k + kAhead]]);
+            tile.draw(batch.triangles[batch.order[item.first + k]], geometry.triangles);
+        }
     }
     for (const TileLists::Item& item : geometry.fragments.tile(index))
         tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));

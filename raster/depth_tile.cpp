@@ -12,11 +12,12 @@ namespace duet::raster {
 struct DepthTile::Edges {
     std::array<std::int64_t, 3> at; ///< at the tile's first sample
     std::array<std::int64_t, 3> a, b;
+    Origin origin; ///< of the triangle's plane
     std::int64_t margin;
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
 
-    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset)
-        : margin((inside_margin(triangle) + kSubPixels - 1) >> kSubPixelBits) {
+    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
+        : origin(raster::origin(triangle.corners, viewport)), margin((inside_margin(triangle) + kSubPixels - 1) >> kSubPixelBits) {
         const auto& p = triangle.corners;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
@@ -63,7 +64,7 @@ void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport
 void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
     const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
     if (r.empty()) return;
-    const Edges edges(triangle, rect_, offset_);
+    const Edges edges(triangle, rect_, offset_, viewport_);
     for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row)
         for (int column = (r.x0 - rect_.x0) / kBlock; column <= (r.x1 - 1 - rect_.x0) / kBlock; ++column) {
             const auto block = static_cast<std::size_t>(row * kBlocks + column);
@@ -108,8 +109,8 @@ std::uint64_t DepthTile::draw_block(const Edges& edges, const DrawTriangle& tria
     const Ints zero(0), margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : std::int64_t{0x7fffffff}));
     const Nearness nearness{triangle.nearness, viewport_};
     const int x = column * kBlock;
-    const double from_x = rect_.x0 + x - triangle.nearness.origin_x + static_cast<double>(offset_.x) / kSubPixels;
-    const double from_y = rect_.y0 - triangle.nearness.origin_y + static_cast<double>(offset_.y) / kSubPixels;
+    const double from_x = rect_.x0 + x - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels;
+    const double from_y = rect_.y0 - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels;
     std::uint64_t edge_samples = 0;
     for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip) {
         const int y = row * kBlock + strip * kStripRows;

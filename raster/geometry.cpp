@@ -109,7 +109,7 @@ std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
                         fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
     for (const TransformedObject& object : triangles.objects)
-        bytes += object.snapped.size() * (sizeof(FixedPoint) + sizeof(std::uint8_t));
+        bytes += object.vertices.size() * sizeof(SnappedVertex);
     for (const Batch& batch : batches) bytes += batch.memory_bytes();
     return bytes;
 }

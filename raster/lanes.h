@@ -26,6 +26,9 @@ using Doubles = xsimd::batch<double>;
 inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
 static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 
+/// Asks for a line of memory that will be read soon.
+inline void prefetch(const void* address) { __builtin_prefetch(address); }
+
 /// One number a sample of a strip.
 template <typename T> struct alignas(64) StripOf {
     std::array<T, kStrip> v{};

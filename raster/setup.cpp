@@ -90,16 +90,6 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     return result;
 }
 
-namespace {
-
-/// A grid point beside the outline, within the picture.
-FixedPoint beside(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
-    return {std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport.width * kSubPixels),
-            std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport.height * kSubPixels)};
-}
-
-} // namespace
-
 Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
     const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
                             static_cast<std::int32_t>(pixel.y) * kSubPixels};
@@ -108,7 +98,8 @@ Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
 
 Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport) {
-    return {whole.a, whole.b, whole.c, beside(corners, viewport)};
+    const Origin from = origin(corners, viewport);
+    return {whole.a, whole.b, whole.c, {from.x * kSubPixels, from.y * kSubPixels}};
 }
 
 // Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective) Σ eᵢ·(xᵢ, yᵢ, wᵢ) = det · (x, y, 1), so
@@ -126,7 +117,7 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
     result.sound = is_finite(plane) && !sabotaged(Guard::kPerspective);
     result.clipped = clipped;
     if (!clipped) result.nearest = static_cast<float>(viewport.near / least_depth) * (1 + 0x1p-22f);
-    result.nearness = {plane.x, plane.y, plane.z, static_cast<int>(at.origin_x), static_cast<int>(at.origin_y)};
+    result.nearness = {plane.x, plane.y, plane.z};
     return result;
 }
 

@@ -63,17 +63,10 @@ struct Interpolated {
 };
 
 /// Nearness, near / depth, over the picture. Under perspective it is linear, in an orthographic view its inverse is.
-/// Pixels are counted from (origin_x, origin_y), beside the triangle; all in double, so that the one rounding to float
-/// is all the error that counts.
+/// Pixels are counted from one beside the outline (origin); all in double, so that the one rounding to float is all the
+/// error that counts.
 struct NearnessPlane {
     double x = 0, y = 0, constant = 0;
-    int origin_x = 0, origin_y = 0;
-
-    /// At the pixel coordinates (px, py).
-    double at(double px, double py, const Viewport& viewport) const {
-        const double value = (constant + (py - origin_y) * y) + (px - origin_x) * x;
-        return viewport.orthographic ? viewport.near / value : value;
-    }
 };
 
 /// Perspective-correct barycentrics without a division by w: with homogeneous pixel vertices Vᵢ = (xw, yw, w), eᵢ(x, y)
@@ -102,7 +95,7 @@ struct WholeTriangle {
 
 /// A triangle that is ready to be drawn: its snapped outline says which samples it covers, the plane how near it is
 /// there. What else is asked of a sample follows from the whole triangle, whose number it has.
-struct DrawTriangle {
+struct alignas(64) DrawTriangle { // a line of the cache
     std::array<FixedPoint, 3> corners; ///< of positive area
     bool sound = false;    ///< its plane can be trusted, as that of a triangle seen edge-on can not
     bool clipped = false;  ///< the outline is a part of it only, with corners of its own
@@ -111,9 +104,17 @@ struct DrawTriangle {
     NearnessPlane nearness{};
 };
 
+/// A pixel beside the outline, within the picture: where Interpolation and NearnessPlane count from.
+struct Origin {
+    int x, y;
+};
+inline Origin origin(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
+    return {floor_pixel(std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport.width * kSubPixels)),
+            floor_pixel(std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport.height * kSubPixels))};
+}
 /// At one sample, the naive way.
 Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
-/// Pixels are counted from beside the outline.
+/// About the outline's origin.
 Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport);
 /// From the whole triangle and an outline of positive area, its own or one of its clipped parts'.

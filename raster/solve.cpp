@@ -68,10 +68,13 @@ void StripSolver::load_one(const std::vector<PackedVertex>& vertices) {
 void StripSolver::load_each(const std::vector<PackedVertex>& vertices) {
     const Mat4d& m = one_object_->to_pixel;
     std::array<std::array<PackedVertex, kStrip>, 3> lanes;
-    for (std::size_t i = 0; i < kStrip; ++i) {
-        const auto& corners = one_mesh_->triangles[index(i)];
-        for (std::size_t k = 0; k < 3; ++k) lanes[k][i] = vertices[corners[k]];
+    std::array<std::array<std::uint32_t, 3>, kStrip> corners;
+    for (std::size_t i = 0; i < kStrip; ++i) { // all the waiting for memory at once
+        corners[i] = one_mesh_->triangles[index(i)];
+        for (const std::uint32_t corner : corners[i]) prefetch(&vertices[corner]);
     }
+    for (std::size_t i = 0; i < kStrip; ++i)
+        for (std::size_t k = 0; k < 3; ++k) lanes[k][i] = vertices[corners[i][k]];
     for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < kStrip; ++i) {
             position[k][0][i] = lanes[k][i].p.x;

@@ -50,7 +50,7 @@ template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewp
 
 /// A run of vertices, as many as a batch of doubles has lanes.
 void transform_batch(const std::array<std::array<double, Doubles::size>, 3>& p, const Mat4d& m,
-                     const Viewport& viewport, FixedPoint* snapped, std::uint8_t* outcodes, std::size_t count) {
+                     const Viewport& viewport, SnappedVertex* out, std::size_t count) {
     const auto axis = [&](std::size_t i) { return Doubles::load_unaligned(p[i].data()); };
     const HomogeneousPoint<Doubles> v = to_pixel(m, axis(0), axis(1), axis(2));
     const Doubles code = outcode_number(v, viewport);
@@ -64,13 +64,14 @@ void transform_batch(const std::array<std::array<double, Doubles::size>, 3>& p, 
     snap_lanes(v.yw).store_aligned(ys.data());
     code.store_aligned(codes.data());
     for (std::size_t i = 0; i < count; ++i) {
-        snapped[i] = {static_cast<std::int32_t>(xs[i]), static_cast<std::int32_t>(ys[i])};
-        outcodes[i] = static_cast<std::uint8_t>(codes[i]);
+        out[i] = {{static_cast<std::int32_t>(xs[i]), static_cast<std::int32_t>(ys[i])},
+                  static_cast<std::uint32_t>(codes[i])};
     }
 }
 static_assert(kNear == 16 && kGuard == 32 && (kLeft | kRight | kTop | kBottom) < kNear);
 
-void transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& chunk, TransformedObject& out) {
+/// Returns the outcodes or-ed.
+unsigned transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& chunk, TransformedObject& out) {
     constexpr std::size_t kLanes = Doubles::size;
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     for (std::size_t first = chunk.first; first < chunk.last; first += kLanes) {
@@ -82,8 +83,11 @@ void transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& 
             p[1][i] = static_cast<double>(vertex.y);
             p[2][i] = static_cast<double>(vertex.z);
         }
-        transform_batch(p, out.to_pixel, viewport, &out.snapped[first], &out.outcodes[first], count);
+        transform_batch(p, out.to_pixel, viewport, &out.vertices[first], count);
     }
+    unsigned any = 0;
+    for (std::size_t i = chunk.first; i < chunk.last; ++i) any |= out.vertices[i].outcode;
+    return any;
 }
 
 } // namespace
@@ -118,19 +122,17 @@ void transform(const Scene& scene, const std::vector<std::uint32_t>& objects, co
         result[i].mirrored = !object.identity && determinant3(object_transform(object, time).to_world) < 0;
         result[i].to_pixel = object_to_pixel(object, pinhole, time);
         result[i].to_pixel_columns = transpose(result[i].to_pixel);
-        result[i].snapped.resize(count);
-        result[i].outcodes.resize(count);
+        result[i].vertices.resize(count);
+        result[i].any_outside = 0;
         for (std::size_t first = 0; first < count; first += kChunk)
             chunks.push_back({i, first, std::min(first + kChunk, count)});
     }
+    std::vector<unsigned> outside(chunks.size());
     parallel_for(chunks.size(), threads, [&](std::size_t c) {
         const std::size_t i = chunks[c].object;
-        transform_chunk(scene.shapes[scene.objects[objects[i]].shape], viewport, chunks[c], result[i]);
+        outside[c] = transform_chunk(scene.shapes[scene.objects[objects[i]].shape], viewport, chunks[c], result[i]);
     });
-    for (TransformedObject& object : result) {
-        object.any_outside = 0;
-        for (const std::uint8_t code : object.outcodes) object.any_outside |= code;
-    }
+    for (std::size_t c = 0; c < chunks.size(); ++c) result[chunks[c].object].any_outside |= outside[c];
 }
 
 } // namespace duet::raster

@@ -52,15 +52,19 @@ std::uint8_t outcode(const PixelVertex& vertex, const Viewport& viewport);
 /// Rounded to the nearest grid point. The vertex needs w > 0 and a place within the guard band.
 FixedPoint snap(const PixelVertex& vertex);
 
+struct SnappedVertex {
+    FixedPoint p; ///< meaningless where the outcode has a bit of kMustClip
+    std::uint32_t outcode = 0;
+};
+
 /// An object's vertices in the picture. Quads have four a primitive (corner, +u, +u+v, +v); a mesh has its own.
 struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< its transform has a negative determinant: windings are flipped
     Mat4d to_pixel;           ///< object_to_pixel
     Mat4d to_pixel_columns;   ///< its transpose: its columns lie together
-    std::vector<FixedPoint> snapped; ///< meaningless where the outcode has a bit of kMustClip
-    std::vector<std::uint8_t> outcodes;
-    std::uint8_t any_outside = 0; ///< all outcodes or-ed
+    std::vector<SnappedVertex> vertices;
+    unsigned any_outside = 0; ///< all outcodes or-ed
 };
 
 /// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is

@@ -66,8 +66,7 @@ CoverageProbe::CoverageProbe(const Window& window) {
     scene_ = MeshScene::make(mesh);
     triangles_.scene = &scene_;
     triangles_.objects.resize(1); // their map is the identity: orthographic, (x, y, depth, 1)
-    triangles_.objects[0].snapped.resize(3);
-    triangles_.objects[0].outcodes.resize(3);
+    triangles_.objects[0].vertices.resize(3);
     triangles_.runs.resize(1);
     tile_.reset(window.rect, window.offset, plan_.viewport);
 }
@@ -77,7 +76,7 @@ void CoverageProbe::draw(GridTriangle t) {
     ++count_;
     if (winding(t) == 0) return;
     for (std::size_t i = 0; i < 3; ++i) {
-        triangles_.objects[0].snapped[i] = t[i];
+        triangles_.objects[0].vertices[i].p = t[i];
         std::get<Mesh>(scene_.shapes[0]).positions[i] =
             Vec3(Vec3d(t[i].x, t[i].y, 0) * (1.0 / raster::kSubPixels) + Vec3d(0, 0, 1.0 / count_));
     }
