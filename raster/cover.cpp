@@ -79,7 +79,7 @@ HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView
         }
     hits_.assign(count, Hit{});
     const Triangles& triangles = geometry.triangles;
-    StripSolver solver(triangles, view);
+    StripSolver solver(triangles, view, rect_);
     for (std::size_t place = 0; place < kTileSamples; place += kStrip) {
         const int x0 = rect_.x0 + place_x(place), y0 = rect_.y0 + place_y(place);
         if (!tile.drawn(place / kBlockSamples) || x0 >= rect_.x1 || y0 >= rect_.y1) continue;

@@ -42,7 +42,7 @@ public:
     TileDisplay(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
                 const DepthTile& tile, Image<Rgba8>& picture)
         : data_(data), settings_(settings), geometry_(geometry), view_(view), tile_(tile), picture_(picture),
-          solver_(geometry.triangles, view), phong_(data, view), background_(one_background(data, settings)) {}
+          solver_(geometry.triangles, view, tile.rect()), phong_(data, view), background_(one_background(data, settings)) {}
 
     void run() {
         const PixelRect& rect = tile_.rect();

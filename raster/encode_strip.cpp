@@ -17,7 +17,8 @@ Floats code_and_half(Floats x) {
     constexpr std::array<float, 8> kPolynomial{-14.438328742980957f, 32.004051208496094f,   369.8117370605469f,
                                                -285.8165588378906f,  292.361328125f,        -212.61557006835938f,
                                                91.53132629394531f,   -17.33802604675293f};
-    const Floats q = sqrt(sqrt(x));
+    // Where x is tiny, the straight part is chosen.
+    const Floats positive = max(x, Floats(1e-6f)), root = positive * inverse_sqrt(positive), q = root * inverse_sqrt(root);
     Floats curve(kPolynomial.back());
     for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) curve = curve * q + Floats(kPolynomial[i]);
     return xsimd::select(x <= Floats(0.0031308f), x * Floats(255 * 12.92f) + Floats(0.5f), curve);

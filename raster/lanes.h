@@ -80,6 +80,26 @@ inline Doubles widened(const float* from) {
 #endif
 }
 
+/// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
+inline Floats inverse_sqrt(const Floats& x) {
+#if defined(__AVX512F__)
+    const Floats y = _mm512_rsqrt14_ps(x); // xsimd 8's own names no instruction there is
+#else
+    const Floats y = xsimd::rsqrt(x);
+#endif
+    return y * (Floats(1.5f) - Floats(0.5f) * x * y * y);
+}
+
+/// Four points of four numbers each, turned to batches of one coordinate; the fourth is left out.
+using Quads = xsimd::make_sized_batch_t<float, 4>;
+struct Transposed {
+    Quads x, y, z;
+};
+inline Transposed transposed(const Quads& a, const Quads& b, const Quads& c, const Quads& d) {
+    const Quads low_ac = zip_lo(a, c), low_bd = zip_lo(b, d), high_ac = zip_hi(a, c), high_bd = zip_hi(b, d);
+    return {zip_lo(low_ac, low_bd), zip_hi(low_ac, low_bd), zip_lo(high_ac, high_bd)};
+}
+
 /// A bit for each lane that holds true, lane 0 the lowest.
 inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
 #if defined(__AVX512F__)

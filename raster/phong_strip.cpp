@@ -15,7 +15,7 @@ Vec3s load(const std::array<StripOf<float>, 3>& v, std::size_t i) {
 }
 Vec3s spread(Vec3 v) { return {Floats(v.x), Floats(v.y), Floats(v.z)}; }
 Rgbs spread(Rgb c) { return {Floats(c.r), Floats(c.g), Floats(c.b)}; }
-Vec3s unit(Vec3s v) { return v * (Floats(1.0f) / sqrt(dot(v, v))); }
+Vec3s unit(Vec3s v) { return v * inverse_sqrt(dot(v, v)); }
 /// v where the sign is positive, else −v.
 Vec3s with_sign(Vec3s v, Floats sign) {
     const Floats factor = xsimd::select(sign < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
@@ -58,26 +58,23 @@ bool PhongStrips::shade(const StripSolver& solver, int x, int y, SampleOffset of
         const auto narrow = [&](const StripOf<double>& wide) {
             return narrowed(raster::load(wide, i), raster::load(wide, i + Doubles::size));
         };
-        const Floats u = narrow(solver.b1), v = narrow(solver.b2), w = Floats(1.0f) - u - v, depth = narrow(solver.depth);
+        const Floats u = narrow(solver.b1), v = narrow(solver.b2);
         const Floats across = raster::load(kColumns<float>, i), down = raster::load(kRows<float>, i);
         const Vec3s way = spread(start) + spread(step_x) * across + spread(step_y) * down;
         const Vec3s wo = -unit(way);
-        Vec3s n = load(solver.normal[0], i) * w + load(solver.normal[1], i) * u + load(solver.normal[2], i) * v;
-        const Vec3s a = load(solver.position[0], i);
-        Vec3s ng = cross(load(solver.position[1], i) - a, load(solver.position[2], i) - a);
+        Vec3s n = load(solver.n, i) + load(solver.n1, i) * u + load(solver.n2, i) * v, ng = load(solver.ng, i);
         if (!object.identity) {
             n = to_world(to_object, n);
             ng = to_world(to_object, ng);
         }
-        ng = with_sign(ng, dot(ng, wo));
         n = with_sign(unit(n), dot(n, ng)); // in the hemisphere of the side that is seen
-        const Vec3s p = spread(eye) + spread(eye_x) * across + spread(eye_y) * down + way * depth;
         Rgbs sum = ambient;
         for (const Light& light : data_.scene.lights) {
             if (const auto* sun = std::get_if<SunLight>(&light)) {
                 sum += phong(base, n, wo, spread(-sun->direction), spread(sun->irradiance));
             } else {
                 const auto& point = std::get<PointLight>(light);
+                const Vec3s p = spread(eye) + spread(eye_x) * across + spread(eye_y) * down + way * narrow(solver.depth);
                 const Vec3s way_there = spread(point.position) - p;
                 const Floats squared = dot(way_there, way_there);
                 sum += phong(base, n, wo, unit(way_there), spread(point.intensity) * (Floats(1.0f) / squared));
