@@ -20,7 +20,7 @@ Floats code_and_half(Floats x) {
     // Where x is tiny, the straight part is chosen.
     const Floats positive = max(x, Floats(1e-6f)), root = positive * inverse_sqrt(positive), q = root * inverse_sqrt(root);
     Floats curve(kPolynomial.back());
-    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) curve = curve * q + Floats(kPolynomial[i]);
+    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) curve = xsimd::fma(curve, q, Floats(kPolynomial[i]));
     return xsimd::select(x <= Floats(0.0031308f), x * Floats(255 * 12.92f) + Floats(0.5f), curve);
 }
 

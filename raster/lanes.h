@@ -80,6 +80,18 @@ inline Doubles widened(const float* from) {
 #endif
 }
 
+inline Doubles widened(const std::int32_t* from) {
+#if defined(__AVX512F__)
+    return _mm512_cvtepi32_pd(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+#elif defined(__AVX__)
+    return _mm256_cvtepi32_pd(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+#else
+    std::array<double, Doubles::size> wide;
+    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = from[i];
+    return Doubles::load_unaligned(wide.data());
+#endif
+}
+
 /// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
@@ -134,5 +146,12 @@ template <typename T> StripOf<T> strip_rows() {
 }
 template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
 template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
+
+/// The number of each sample of a strip.
+inline const StripOf<std::int32_t> kLanes = [] {
+    StripOf<std::int32_t> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
+    return result;
+}();
 
 } // namespace duet::raster

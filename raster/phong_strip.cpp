@@ -58,11 +58,10 @@ bool PhongStrips::shade(const StripSolver& solver, int x, int y, SampleOffset of
         const auto narrow = [&](const StripOf<double>& wide) {
             return narrowed(raster::load(wide, i), raster::load(wide, i + Doubles::size));
         };
-        const Floats u = narrow(solver.b1), v = narrow(solver.b2);
         const Floats across = raster::load(kColumns<float>, i), down = raster::load(kRows<float>, i);
         const Vec3s way = spread(start) + spread(step_x) * across + spread(step_y) * down;
         const Vec3s wo = -unit(way);
-        Vec3s n = load(solver.n, i) + load(solver.n1, i) * u + load(solver.n2, i) * v, ng = load(solver.ng, i);
+        Vec3s n = load(solver.normal, i), ng = load(solver.ng, i);
         if (!object.identity) {
             n = to_world(to_object, n);
             ng = to_world(to_object, ng);

@@ -16,12 +16,11 @@ void StripSolver::load(const std::int32_t* ids) {
     on_mesh_ = one_object_ != nullptr ? seen : 0;
     if (seen == 0) return;
     const Ints first(ids[std::countr_zero(seen)]);
-    bool same = before != 0, one = true;
+    bool same = before != 0;
     std::int32_t low = kNoTriangle, high = 0;
     for (std::size_t i = 0; i < kStrip; i += Ints::size) {
         const Ints read = Ints::load_aligned(ids + i), filled = xsimd::select(read == none, first, read);
         same = same && xsimd::all(filled == raster::load(ids_, i));
-        one = one && xsimd::all(filled == first);
         store(ids_, i, filled);
     }
     if (same) return;
@@ -42,37 +41,94 @@ void StripSolver::load(const std::int32_t* ids) {
     one_object_ = &triangles_.objects[last.object];
     on_mesh_ = seen;
     first_id_ = last.first_id - last.first;
-    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object_->object].shape];
-    if (one)
-        load_one(vertices);
-    else
-        load_each(vertices);
+    few_ = 0;
+    each_ = false;
+    for (std::uint32_t left = (1u << kStrip) - 1; left != 0 && !each_; left &= ~few_lanes_[few_ - 1]) {
+        each_ = few_ == kFew;
+        if (each_) break;
+        const Ints id(ids_[static_cast<std::size_t>(std::countr_zero(left))]);
+        std::uint32_t lanes = 0;
+        for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(raster::load(ids_, i) == id) << i;
+        few_lanes_[few_++] = lanes;
+    }
+    if (each_) set_up_each();
 }
 
-/// The corners of the samples' triangles, by axis, in the object's space.
-struct StripSolver::Corners {
-    std::array<std::array<StripOf<float>, 3>, 3> p, n;
+namespace {
+
+/// Arithmetic of one triangle, and of as many side by side as a batch has lanes.
+template <typename D> struct PlanesOf {
+    std::array<D, 3> e1, e2, sum, depth_sum;
+    D determinant;
 };
-
-/// All samples see one triangle.
-void StripSolver::load_one(const std::vector<PackedVertex>& vertices) {
-    Corners corners;
-    const auto& triangle = one_mesh_->triangles[index(0)];
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            corners.p[k][axis].fill(vertices[triangle[k]].p[axis]);
-            corners.n[k][axis].fill(vertices[triangle[k]].n[axis]);
-        }
-    set_up(corners);
+template <typename D>
+PlanesOf<D> planes_of(const std::array<D, 3>& x, const std::array<D, 3>& y, const std::array<D, 3>& w,
+                      const std::array<D, 3>& depth) {
+    using xsimd::select, duet::select;
+    std::array<std::array<D, 3>, 3> e; // corner; coefficients of x, y and 1: cross products of the others
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+        e[k] = {y[a] * w[b] - w[a] * y[b], w[a] * x[b] - x[a] * w[b], x[a] * y[b] - y[a] * x[b]};
+    }
+    PlanesOf<D> result;
+    result.determinant = x[0] * e[0][0] + y[0] * e[0][1] + w[0] * e[0][2];
+    const D sign = select(result.determinant < D(0), D(-1), D(1));
+    for (std::size_t c = 0; c < 3; ++c) {
+        result.e1[c] = e[1][c] * sign;
+        result.e2[c] = e[2][c] * sign;
+        result.sum[c] = (e[0][c] + e[1][c] + e[2][c]) * sign;
+        result.depth_sum[c] = (e[0][c] * depth[0] + e[1][c] * depth[1] + e[2][c] * depth[2]) * sign;
+    }
+    return result;
 }
 
-void StripSolver::load_each(const std::vector<PackedVertex>& vertices) {
+template <typename F> std::array<F, 3> minus(const std::array<F, 3>& a, const std::array<F, 3>& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <typename F> std::array<F, 3> cross(const std::array<F, 3>& a, const std::array<F, 3>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+std::array<float, 3> array(Vec3 v) { return {v.x, v.y, v.z}; }
+
+} // namespace
+
+const StripSolver::CachedSetUp& StripSolver::set_up_of(std::size_t i) {
+    CachedSetUp& entry = cache_[id(i) % kCached];
+    if (entry.id == id(i)) return entry;
+    entry.id = id(i);
+    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object_->object].shape];
+    const auto& corners = one_mesh_->triangles[index(i)];
+    std::array<double, 3> x, y, w, d;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const PixelVertex v = pixel_vertex(*one_object_, vertices[corners[k]].p);
+        x[k] = v.xw - origin_x_ * v.w;
+        y[k] = v.yw - origin_y_ * v.w;
+        w[k] = v.w;
+        d[k] = v.depth;
+    }
+    const PlanesOf<double> planes = planes_of(x, y, w, d);
+    entry.e1 = planes.e1;
+    entry.e2 = planes.e2;
+    entry.sum = planes.sum;
+    entry.depth_sum = planes.depth_sum;
+    const PackedVertex &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
+    entry.n = array(a.n);
+    entry.n1 = array(b.n - a.n);
+    entry.n2 = array(c.n - a.n);
+    // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
+    const bool front = (planes.determinant < 0) != one_object_->mirrored;
+    entry.ng = array(duet::cross(b.p - a.p, c.p - a.p) * (front ? 1.0f : -1.0f));
+    return entry;
+}
+
+void StripSolver::set_up_each() {
+    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object_->object].shape];
     std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
     for (std::size_t i = 0; i < kStrip; ++i) { // all the waiting for memory at once
         triangles[i] = one_mesh_->triangles[index(i)];
         for (const std::uint32_t corner : triangles[i]) prefetch(&vertices[corner]);
     }
-    Corners corners;
+    std::array<std::array<StripOf<float>, 3>, 3> p, n; // corner, axis
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kStrip; i += Quads::size) {
             const auto take = [&](std::size_t first, std::array<StripOf<float>, 3>& to) { // number of four in the vertex
@@ -84,85 +140,127 @@ void StripSolver::load_each(const std::vector<PackedVertex>& vertices) {
                 four.y.store_aligned(to[1].at(i));
                 four.z.store_aligned(to[2].at(i));
             };
-            take(0, corners.p[k]);
-            take(4, corners.n[k]);
+            take(0, p[k]);
+            take(4, n[k]);
         }
-    set_up(corners);
-}
-
-void StripSolver::set_up(const Corners& corners) {
     const Mat4d& m = one_object_->to_pixel;
-    const bool orthographic = view_.viewport.orthographic;
-    StripOf<std::int32_t> back;
+    const auto spread = [&](std::size_t r, std::size_t c) { return Doubles(m[r][c]); };
+    const Doubles left(static_cast<double>(origin_x_)), top(static_cast<double>(origin_y_));
+    std::uint32_t front = 0;
     for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
         std::array<Doubles, 3> x, y, w, d;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Doubles px = widened(corners.p[k][0].at(i)), py = widened(corners.p[k][1].at(i)),
-                          pz = widened(corners.p[k][2].at(i));
+            const Doubles px = widened(p[k][0].at(i)), py = widened(p[k][1].at(i)), pz = widened(p[k][2].at(i));
             const auto row = [&](std::size_t r) {
-                return Doubles(m[r][0]) * px + Doubles(m[r][1]) * py + Doubles(m[r][2]) * pz + Doubles(m[r][3]);
+                return spread(r, 0) * px + spread(r, 1) * py + spread(r, 2) * pz + spread(r, 3);
             };
             d[k] = row(2);
-            w[k] = orthographic ? Doubles(1.0) : d[k];
-            x[k] = row(0) - Doubles(static_cast<double>(origin_x_)) * w[k];
-            y[k] = row(1) - Doubles(static_cast<double>(origin_y_)) * w[k];
+            w[k] = view_.viewport.orthographic ? Doubles(1.0) : d[k];
+            x[k] = row(0) - left * w[k];
+            y[k] = row(1) - top * w[k];
         }
-        std::array<std::array<Doubles, 3>, 3> e; // corner; coefficients of x, y and 1: cross products of the others
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-            e[k] = {y[a] * w[b] - w[a] * y[b], w[a] * x[b] - x[a] * w[b], x[a] * y[b] - y[a] * x[b]};
-        }
-        const Doubles determinant = x[0] * e[0][0] + y[0] * e[0][1] + w[0] * e[0][2], zero(0.0);
-        const auto negative = determinant < zero;
-        const Doubles sign = xsimd::select(negative, Doubles(-1.0), Doubles(1.0));
+        const PlanesOf<Doubles> planes = planes_of(x, y, w, d);
         for (std::size_t c = 0; c < 3; ++c) {
-            store(e1_[c], i, e[1][c] * sign);
-            store(e2_[c], i, e[2][c] * sign);
-            store(sum_[c], i, (e[0][c] + e[1][c] + e[2][c]) * sign);
-            store(depth_sum_[c], i, (e[0][c] * d[0] + e[1][c] * d[1] + e[2][c] * d[2]) * sign);
+            store(lanes_.e1[c], i, planes.e1[c]);
+            store(lanes_.e2[c], i, planes.e2[c]);
+            store(lanes_.sum[c], i, planes.sum[c]);
+            store(lanes_.depth_sum[c], i, planes.depth_sum[c]);
         }
-        // Counter-clockwise in the picture (its y points down) is the front, of an object that is not mirrored.
-        const std::uint32_t front = lane_bits(negative) ^ (one_object_->mirrored ? ~0u : 0u);
-        for (std::size_t k = 0; k < Doubles::size; ++k) back[i + k] = front >> k & 1 ? 0 : 1;
+        front |= lane_bits(planes.determinant < Doubles(0.0)) << i;
     }
+    if (one_object_->mirrored) front = ~front;
+    StripOf<float> side;
+    for (std::size_t i = 0; i < kStrip; ++i) side[i] = front >> i & 1 ? 1.0f : -1.0f;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        const auto at = [&](const std::array<StripOf<float>, 3>& v, std::size_t axis) { return raster::load(v[axis], i); };
-        std::array<Floats, 3> ab, ac;
+        using Axes = std::array<Floats, 3>;
+        const auto at = [&](const std::array<StripOf<float>, 3>& v) {
+            return Axes{raster::load(v[0], i), raster::load(v[1], i), raster::load(v[2], i)};
+        };
+        const Axes a = at(p[0]), na = at(n[0]), n1 = minus(at(n[1]), na), n2 = minus(at(n[2]), na);
+        const Axes ng_here = cross(minus(at(p[1]), a), minus(at(p[2]), a));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Floats p0 = at(corners.p[0], axis), n0 = at(corners.n[0], axis);
-            ab[axis] = at(corners.p[1], axis) - p0;
-            ac[axis] = at(corners.p[2], axis) - p0;
-            store(n[axis], i, n0);
-            store(n1[axis], i, at(corners.n[1], axis) - n0);
-            store(n2[axis], i, at(corners.n[2], axis) - n0);
-        }
-        const Floats side = xsimd::select(xsimd::bool_cast(raster::load(back, i) != Ints(0)), Floats(-1.0f), Floats(1.0f));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-            store(ng[axis], i, (ab[a] * ac[b] - ab[b] * ac[a]) * side);
+            store(lanes_.n[axis], i, na[axis]);
+            store(lanes_.n1[axis], i, n1[axis]);
+            store(lanes_.n2[axis], i, n2[axis]);
+            store(lanes_.ng[axis], i, ng_here[axis] * raster::load(side, i));
         }
     }
 }
 
-// Barycentrics are bᵢ = eᵢ / Σe, depth is Σ(e·depth) / Σe: see Interpolation.
+namespace {
+
+Doubles lanes_of(double value, std::size_t) { return Doubles(value); }
+Doubles lanes_of(const StripOf<double>& value, std::size_t i) { return load(value, i); }
+Floats lanes_of(float value, std::size_t) { return Floats(value); }
+Floats lanes_of(const StripOf<float>& value, std::size_t i) { return load(value, i); }
+
+} // namespace
+
+/// Barycentrics are bᵢ = eᵢ / Σe, depth is Σ(e·depth) / Σe: see Interpolation. For the lanes given; `only`: the others
+/// need not be kept.
+template <typename Planes>
+void StripSolver::solve_lanes(const Planes& planes, Vec2d first, std::uint32_t lanes, bool only) {
+    std::uint32_t inside = 0;
+    StripOf<std::int32_t> chosen;
+    if (!only)
+        for (std::size_t i = 0; i < kStrip; i += Ints::size)
+            store(chosen, i, (Ints(static_cast<std::int32_t>(lanes)) >> raster::load(kLanes, i)) & Ints(1));
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+        std::array<Doubles, 2> first_b, second_b;
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::size_t k = i + half * Doubles::size;
+            const Doubles x = Doubles(first.x) + raster::load(kColumns<double>, k),
+                          y = Doubles(first.y) + raster::load(kRows<double>, k), zero(0.0);
+            const auto at = [&](const auto& plane) {
+                return xsimd::fma(lanes_of(plane[0], k), x, xsimd::fma(lanes_of(plane[1], k), y, lanes_of(plane[2], k)));
+            };
+            const Doubles e1 = at(planes.e1), e2 = at(planes.e2), sum = at(planes.sum), inverse = Doubles(1.0) / sum;
+            inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
+            // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
+            const Doubles depth_sum =
+                view_.viewport.orthographic ? at(planes.depth_sum) : lanes_of(planes.depth_sum[2], k);
+            first_b[half] = e1 * inverse;
+            second_b[half] = e2 * inverse;
+            const Doubles depth_here = depth_sum * inverse;
+            if (only) {
+                store(b1, k, first_b[half]);
+                store(b2, k, second_b[half]);
+                store(depth, k, depth_here);
+            } else {
+                const auto mask = widened(chosen.at(k)) > zero;
+                store(b1, k, xsimd::select(mask, first_b[half], raster::load(b1, k)));
+                store(b2, k, xsimd::select(mask, second_b[half], raster::load(b2, k)));
+                store(depth, k, xsimd::select(mask, depth_here, raster::load(depth, k)));
+            }
+        }
+        const Floats u = narrowed(first_b[0], first_b[1]), v = narrowed(second_b[0], second_b[1]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Floats n = xsimd::fma(lanes_of(planes.n1[axis], i), u,
+                                        xsimd::fma(lanes_of(planes.n2[axis], i), v, lanes_of(planes.n[axis], i)));
+            const Floats g = lanes_of(planes.ng[axis], i);
+            if (only) {
+                store(normal[axis], i, n);
+                store(ng[axis], i, g);
+            } else {
+                const auto mask = xsimd::bool_cast(raster::load(chosen, i) != Ints(0));
+                store(normal[axis], i, xsimd::select(mask, n, raster::load(normal[axis], i)));
+                store(ng[axis], i, xsimd::select(mask, g, raster::load(ng[axis], i)));
+            }
+        }
+    }
+    inside_ |= inside & lanes;
+}
+
 void StripSolver::solve(int x, int y, SampleOffset offset) {
     inside_ = 0;
     if (on_mesh_ == 0) return;
     const Vec2d first = offset.position(x - origin_x_, y - origin_y_);
-    for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
-        const Doubles sx = Doubles(first.x) + raster::load(kColumns<double>, i),
-                      sy = Doubles(first.y) + raster::load(kRows<double>, i), zero(0.0);
-        const auto at = [&](const std::array<StripOf<double>, 3>& plane) {
-            return (raster::load(plane[2], i) + raster::load(plane[1], i) * sy) + raster::load(plane[0], i) * sx;
-        };
-        const Doubles e1 = at(e1_), e2 = at(e2_), sum = at(sum_), inverse = Doubles(1.0) / sum;
-        store(b1, i, e1 * inverse);
-        store(b2, i, e2 * inverse);
-        // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
-        const Doubles depth_sum = view_.viewport.orthographic ? at(depth_sum_) : raster::load(depth_sum_[2], i);
-        store(depth, i, depth_sum * inverse);
-        inside_ |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << i;
-    }
+    if (each_)
+        solve_lanes(lanes_, first, ~0u, true);
+    else
+        for (std::size_t k = 0; k < few_; ++k)
+            solve_lanes(set_up_of(static_cast<std::size_t>(std::countr_zero(few_lanes_[k]))), first, few_lanes_[k],
+                        k == 0);
     inside_ &= sabotaged(Guard::kPerspective) ? 0 : on_mesh_;
 }
 

@@ -35,32 +35,44 @@ public:
     const TransformedObject* one_object() const { return one_object_; }
     const Mesh* one_mesh() const { return one_mesh_; }
 
-    // Of each sample's triangle, by axis, in the object's space: the vertex normal n, which changes by n1 and n2 along
-    // the barycentrics b1 and b2, and the geometric normal ng, of any length, on the side that is seen.
-    std::array<StripOf<float>, 3> n, n1, n2, ng;
+    /// After solve(), by axis, in the object's space and of any length: the vertex normals interpolated, and the
+    /// geometric normal on the side that is seen.
+    std::array<StripOf<float>, 3> normal, ng;
     StripOf<double> b1, b2; ///< barycentrics of the second and third corner
     StripOf<double> depth;  ///< camera-space −z
 
 private:
-    struct Corners;
-    void load_one(const std::vector<PackedVertex>& vertices);
-    void load_each(const std::vector<PackedVertex>& vertices);
-    void set_up(const Corners& corners);
+    /// What follows from one triangle, for all its samples; T is a number, or a strip of them, a triangle each. Planes
+    /// are the coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's e[1] and e[2], the
+    /// sum of its three, and Σ(e·depth).
+    template <typename D, typename F> struct SetUp {
+        std::array<D, 3> e1, e2, sum, depth_sum;
+        std::array<F, 3> n, n1, n2, ng; ///< the first corner's normal, and its changes along the barycentrics
+    };
+    struct CachedSetUp : SetUp<double, float> {
+        std::uint32_t id = kNoTriangle;
+    };
+
+    const CachedSetUp& set_up_of(std::size_t i);
+    void set_up_each();
+    template <typename Planes> void solve_lanes(const Planes& planes, Vec2d first, std::uint32_t lanes, bool only);
     std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids_[i]) - first_id_; }
 
     const Triangles& triangles_;
     const PassView& view_;
     StripOf<std::int32_t> ids_; ///< where nothing is seen: another's
-    std::uint32_t one_id_ = kNoTriangle; ///< the only one, if all samples that see any see the same
     const Run* last_run_ = nullptr;
     const TransformedObject* one_object_ = nullptr;
     const Mesh* one_mesh_ = nullptr;
     std::size_t first_id_ = 0; ///< number of the object's first triangle
     std::uint32_t seen_ = 0, on_mesh_ = 0, inside_ = 0;
     int origin_x_, origin_y_;
-    /// Coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's e[1] and e[2], the sum of
-    /// its three, and Σ(e·depth).
-    std::array<StripOf<double>, 3> e1_, e2_, sum_, depth_sum_;
+    bool each_ = false;                   ///< so many triangles that each sample's is set up by itself, side by side
+    SetUp<StripOf<double>, StripOf<float>> lanes_; ///< then
+    static constexpr std::size_t kFew = 5, kCached = 64;
+    std::size_t few_ = 0; ///< else: how many there are
+    std::array<std::uint32_t, kFew> few_lanes_{}; ///< and a bit for each of their samples
+    std::array<CachedSetUp, kCached> cache_; ///< by id; the next strip sees much the same triangles
 };
 
 } // namespace duet::raster
