@@ -1,8 +1,10 @@
 #include "raster/assemble.h"
 
 #include "raster/clip.h"
+#include "raster/planes.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace duet::raster {
 namespace {
@@ -25,7 +27,10 @@ Ints as_ints(const xsimd::batch_bool<std::int32_t>& flags, std::int32_t value) {
     return xsimd::select(flags, Ints(value), Ints(0));
 }
 
-/// An edge's function at the first sample of a box of 2 × 2, and its steps to the next.
+/// Boxes of at most so many samples along a side are small.
+constexpr std::int32_t kSmallSide = 4;
+
+/// An edge's function at the first sample of a small box, and its steps to the next.
 struct SmallEdge {
     Ints at, step_x, step_y;
 
@@ -48,7 +53,7 @@ struct Assembler::Outlines {
     StripOf<std::int32_t> any_outcode, common_outcode;
     StripOf<std::int32_t> verdict;
     StripOf<std::int32_t> sample_x, sample_y; ///< the first pixel of the box
-    /// Of kSmall: bit 2·row + column for each sample of the box that is covered, and that is well inside.
+    /// Of kSmall: bit kSmallSide·row + column for each sample of the box that is covered, and that is well inside.
     StripOf<std::int32_t> covered, well_inside;
 };
 
@@ -65,8 +70,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
         least_ = {std::min(least_.x, offset.x), std::min(least_.y, offset.y)};
         most_ = {std::max(most_.x, offset.x), std::max(most_.y, offset.y)};
     }
-    samples_.clear();
-    edge_samples_.clear();
+    small_.clear();
     touches_.clear();
     const Shape& shape = triangles.shape(run);
     Outlines outlines;
@@ -86,6 +90,16 @@ std::array<std::uint32_t, 3> corners_of(const Mesh* mesh, std::uint32_t triangle
     if (mesh != nullptr) return mesh->triangles[triangle];
     const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
     return {quad, quad + 1 + half, quad + 2 + half};
+}
+
+std::array<Vec3, 3> triangle_corners(const Shape& shape, const Mesh* mesh, std::uint32_t triangle) {
+    if (mesh != nullptr) {
+        const auto& corner = mesh->triangles[triangle];
+        return {mesh->positions[corner[0]], mesh->positions[corner[1]], mesh->positions[corner[2]]};
+    }
+    const Corners four = primitive_corners(shape, triangle / 2);
+    const std::size_t half = triangle % 2;
+    return {four.p[0], four.p[1 + half], four.p[2 + half]};
 }
 
 } // namespace
@@ -138,9 +152,9 @@ void Assembler::judge(Outlines& out) const {
         const auto between = last_x < first_x || last_y < first_y;
         const auto beside = last_x < Ints(region.x0) || first_x >= Ints(region.x1) || last_y < Ints(region.y0) ||
                             first_y >= Ints(region.y1);
-        const auto box_small = last_x - first_x <= Ints(1) && last_y - first_y <= Ints(1);
+        const auto box_small = last_x - first_x < Ints(kSmallSide) && last_y - first_y < Ints(kSmallSide);
 
-        // Of positive winding, the samples of a box of 2 × 2 against the three edges.
+        // Of positive winding, the samples of a small box against the three edges.
         const Ints sample_x = (first_x << kSubPixelBits) + Ints(least_.x),
                    sample_y = (first_y << kSubPixelBits) + Ints(least_.y);
         const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
@@ -149,13 +163,17 @@ void Assembler::judge(Outlines& out) const {
             ca(cx, cy, ax, ay, sample_x, sample_y);
         const Ints margin = width + height + Ints(1);
         Ints covered = zero, well_inside = zero;
-        for (std::int32_t s = 0; s < 4; ++s) {
-            const auto at = [&](const SmallEdge& e) {
-                return e.at + (s & 1 ? e.step_x : zero) + (s & 2 ? e.step_y : zero);
-            };
-            const Ints e0 = at(ab), e1 = at(bc), e2 = at(ca);
-            covered = covered | as_ints((e0 | e1 | e2) >= zero, 1 << s);
-            well_inside = well_inside | as_ints(min(min(e0, e1), e2) >= margin, 1 << s);
+        std::array<Ints, 3> row{ab.at, bc.at, ca.at};
+        for (std::int32_t y = 0; y < kSmallSide; ++y) {
+            std::array<Ints, 3> e = row;
+            for (std::int32_t x = 0; x < kSmallSide; ++x) {
+                const Ints least = min(min(e[0], e[1]), e[2]);
+                const std::int32_t bit = 1 << (kSmallSide * y + x);
+                covered = covered | as_ints(least >= zero, bit);
+                well_inside = well_inside | as_ints(least >= margin, bit);
+                e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
+            }
+            row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
         }
 
         Ints verdict(kDraw);
@@ -198,15 +216,7 @@ void Assembler::sort_out(const Outlines& out) {
     for (std::size_t k = 0; k < left; ++k) {
         const std::uint32_t i = chosen[k], index = out.first + i;
         if (out.verdict[i] == kSmall) {
-            const auto covered = static_cast<unsigned>(out.covered[i]);
-            for (unsigned s = 0; s < 4; ++s) {
-                if (!(covered >> s & 1)) continue;
-                const Sample sample{index, out.sample_x[i] + static_cast<std::int32_t>(s & 1),
-                                    out.sample_y[i] + static_cast<std::int32_t>(s >> 1)};
-                const PixelRect& r = plan_->grid.region;
-                if (sample.x < r.x0 || sample.x >= r.x1 || sample.y < r.y0 || sample.y >= r.y1) continue;
-                (static_cast<unsigned>(out.well_inside[i]) >> s & 1 ? samples_ : edge_samples_).push_back(sample);
-            }
+            add_small(out, i);
         } else if (out.verdict[i] == kDraw) {
             set_up_outline(index, triangles_->whole(run_, index),
                            {FixedPoint{out.x[0][i], out.y[0][i]}, FixedPoint{out.x[1][i], out.y[1][i]},
@@ -250,76 +260,87 @@ void Assembler::set_up_outline(std::uint32_t index, const WholeTriangle& whole, 
     }
 }
 
-/// Nearness of the small triangles' samples. With the vertices moved so that the sample is the origin, the three edge
-/// functions of Interpolation are plain 2 × 2 determinants.
+void Assembler::add_small(const Outlines& out, std::uint32_t i) {
+    Small small{out.first + i, out.sample_x[i], out.sample_y[i], static_cast<std::uint16_t>(out.covered[i]),
+                static_cast<std::uint16_t>(out.well_inside[i])};
+    const PixelRect& r = plan_->grid.region;
+    if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
+        for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
+            const int x = small.x + bit % kSmallSide, y = small.y + bit / kSmallSide;
+            if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1)
+                small.covered = static_cast<std::uint16_t>(small.covered & ~(1u << bit));
+        }
+    if (small.covered != 0) small_.push_back(small);
+}
+
 void Assembler::find_nearness() {
-    const Viewport& viewport = plan_->viewport;
-    const Mat4d& m = object_->to_pixel;
-    const double offset_x = static_cast<double>(least_.x) / kSubPixels,
-                 offset_y = static_cast<double>(least_.y) / kSubPixels;
-    const Shape& shape = triangles_->shape(run_);
-    const Mesh* mesh = std::get_if<Mesh>(&shape);
-    std::array<std::array<StripOf<double>, 3>, 3> p; // vertex, axis
-    StripOf<double> px, py, nearness;
-    for (std::size_t first = 0; first < samples_.size(); first += kStrip) {
-        const std::size_t count = std::min(kStrip, samples_.size() - first);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Sample& sample = samples_[first + i];
-            std::array<Vec3, 3> corners;
-            if (mesh != nullptr) {
-                const auto& corner = mesh->triangles[sample.index];
-                corners = {mesh->positions[corner[0]], mesh->positions[corner[1]], mesh->positions[corner[2]]};
-            } else {
-                const Corners four = primitive_corners(shape, sample.index / 2);
-                const std::size_t half = sample.index % 2;
-                corners = {four.p[0], four.p[1 + half], four.p[2 + half]};
-            }
-            for (std::size_t k = 0; k < 3; ++k) {
-                p[k][0][i] = static_cast<double>(corners[k].x);
-                p[k][1][i] = static_cast<double>(corners[k].y);
-                p[k][2][i] = static_cast<double>(corners[k].z);
-            }
-            px[i] = sample.x + offset_x;
-            py[i] = sample.y + offset_y;
-        }
-        for (std::size_t i = 0; i < count; i += Doubles::size) {
-            std::array<Doubles, 3> x, y, depth;
-            const Doubles sx = load(px, i), sy = load(py, i);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Doubles vx = load(p[k][0], i), vy = load(p[k][1], i), vz = load(p[k][2], i);
-                const auto row = [&](std::size_t r) {
-                    return Doubles(m[r][0]) * vx + Doubles(m[r][1]) * vy + Doubles(m[r][2]) * vz + Doubles(m[r][3]);
-                };
-                depth[k] = row(2);
-                const Doubles w = viewport.orthographic ? Doubles(1.0) : depth[k];
-                x[k] = row(0) - sx * w;
-                y[k] = row(1) - sy * w;
-            }
-            const Doubles e0 = x[1] * y[2] - y[1] * x[2], e1 = x[2] * y[0] - y[2] * x[0],
-                          e2 = x[0] * y[1] - y[0] * x[1];
-            const Doubles depth_sum = e0 * depth[0] + e1 * depth[1] + e2 * depth[2];
-            store(nearness, i, Doubles(viewport.near) * (e0 + e1 + e2) / depth_sum);
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            const Sample& sample = samples_[first + i];
-            add_fragment(sample.index, sample.x, sample.y, kept_nearness(nearness[i]));
-        }
-    }
-    for (const Sample& sample : edge_samples_) {
-        const WholeTriangle whole = triangles_->whole(run_, sample.index);
-        const Interpolated here = interpolate(whole, {sample.x + offset_x, sample.y + offset_y});
-        add_fragment(sample.index, sample.x, sample.y, kept_nearness(here.nearness(viewport.near)));
+    std::array<StripOf<double>, 3> planes;
+    for (std::size_t first = 0; first < small_.size(); first += kStrip) {
+        const std::size_t count = std::min(kStrip, small_.size() - first);
+        find_planes(first, count, planes);
+        for (std::size_t i = 0; i < count; ++i)
+            add_fragments(small_[first + i], planes[0][i], planes[1][i], planes[2][i]);
     }
 }
 
-void Assembler::add_fragment(std::uint32_t index, std::int32_t x, std::int32_t y, float nearness) {
+/// What set_up does for one triangle, side by side: planes of nearness, counted from the first sample of their boxes.
+void Assembler::find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const {
+    const Viewport& viewport = plan_->viewport;
+    const Mat4d& m = object_->to_pixel;
+    const Shape& shape = triangles_->shape(run_);
+    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    std::array<std::array<StripOf<double>, 3>, 3> p; // corner, axis
+    StripOf<double> sample_x, sample_y;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Small& small = small_[first + i];
+        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, small.index);
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k][0][i] = static_cast<double>(corners[k].x);
+            p[k][1][i] = static_cast<double>(corners[k].y);
+            p[k][2][i] = static_cast<double>(corners[k].z);
+        }
+        sample_x[i] = small.x + static_cast<double>(least_.x) / kSubPixels;
+        sample_y[i] = small.y + static_cast<double>(least_.y) / kSubPixels;
+    }
+    for (std::size_t i = 0; i < count; i += Doubles::size) {
+        std::array<Doubles, 3> x, y, w, depth;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Doubles px = load(p[k][0], i), py = load(p[k][1], i), pz = load(p[k][2], i);
+            const auto row = [&](std::size_t r) {
+                return Doubles(m[r][0]) * px + Doubles(m[r][1]) * py + Doubles(m[r][2]) * pz + Doubles(m[r][3]);
+            };
+            depth[k] = row(2);
+            w[k] = viewport.orthographic ? Doubles(1.0) : depth[k];
+            x[k] = row(0) - load(sample_x, i) * w[k];
+            y[k] = row(1) - load(sample_y, i) * w[k];
+        }
+        const TrianglePlanes<Doubles> all = triangle_planes(x, y, w, depth);
+        const Doubles scale = Doubles(viewport.orthographic ? 1.0 : viewport.near) / abs(all.determinant);
+        for (std::size_t c = 0; c < 3; ++c)
+            store(planes[c], i, (viewport.orthographic ? all.depth_sum[c] : all.sum[c]) * scale);
+    }
+}
+
+/// The covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
+void Assembler::add_fragments(const Small& small, double x, double y, double constant) {
     constexpr std::uint32_t kSize = TileGrid::kTileSize;
-    const auto column = static_cast<std::uint32_t>(x - plan_->grid.region.x0),
-               row = static_cast<std::uint32_t>(y - plan_->grid.region.y0);
-    const std::uint32_t tile = row / kSize * static_cast<std::uint32_t>(plan_->grid.columns()) + column / kSize;
-    batch_->fragments.push_back({run_.first_id + index - run_.first, nearness,
-                                 static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize)),
-                                 static_cast<std::uint16_t>(tile)});
+    const std::uint32_t id = run_.first_id + small.index - run_.first;
+    const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
+               top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
+    const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
+    for (std::uint32_t bits = small.covered; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
+        double nearness = (constant + down * y) + across * x;
+        if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
+        if (!(small.well_inside >> bit & 1))
+            nearness = interpolate(triangles_->whole(run_, small.index),
+                                   least_.position(small.x + across, small.y + down))
+                           .nearness(plan_->viewport.near);
+        const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
+        batch_->fragments.push_back({id, kept_nearness(nearness),
+                                     static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize)),
+                                     static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
+    }
 }
 
 } // namespace duet::raster

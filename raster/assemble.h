@@ -19,9 +19,9 @@ struct AssemblyPlan {
     bool front_faces_only = false;
 };
 
-/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 2 × 2 samples, and there is one
-/// sample a pixel, is decided at once, many of them side by side: its covered samples become fragments. The others are
-/// set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
+/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 4 × 4 samples, where there
+/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become fragments. The
+/// others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
 /// twice), a clipped one a fan.
 class Assembler {
 public:
@@ -31,9 +31,10 @@ public:
 
 private:
     struct Outlines;
-    struct Sample { ///< one that a small triangle covers
-        std::uint32_t index; ///< of the run's object's triangles
-        std::int32_t x, y;   ///< pixel
+    struct Small {            ///< a triangle whose samples are known
+        std::uint32_t index;  ///< of the run's object's triangles
+        std::int32_t x, y;    ///< the first pixel of its box
+        std::uint16_t covered, well_inside; ///< a bit for each sample, row by row
     };
 
     void gather(const Shape& shape, std::uint32_t first, std::uint32_t count, Outlines& outlines) const;
@@ -41,8 +42,10 @@ private:
     void judge(Outlines& outlines) const;
     void clip_and_set_up(std::uint32_t index);
     void set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> corners, bool clipped);
+    void add_small(const Outlines& outlines, std::uint32_t i);
     void find_nearness();
-    void add_fragment(std::uint32_t index, std::int32_t x, std::int32_t y, float nearness);
+    void find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const;
+    void add_fragments(const Small& small, double x, double y, double constant);
 
     const AssemblyPlan* plan_ = nullptr;
     const Triangles* triangles_ = nullptr;
@@ -51,7 +54,7 @@ private:
     bool culls_back_faces_ = false;
     SampleOffset least_, most_; ///< of the plan's samples
     Batch* batch_ = nullptr;
-    std::vector<Sample> samples_, edge_samples_; ///< well inside, and where snapping may have had a say
+    std::vector<Small> small_;
     std::vector<TileSorter::Touch> touches_;
     TileSorter sorter_;
 };

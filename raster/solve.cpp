@@ -1,5 +1,7 @@
 #include "raster/solve.h"
 
+#include "raster/planes.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -56,32 +58,6 @@ void StripSolver::load(const std::int32_t* ids) {
 
 namespace {
 
-/// Arithmetic of one triangle, and of as many side by side as a batch has lanes.
-template <typename D> struct PlanesOf {
-    std::array<D, 3> e1, e2, sum, depth_sum;
-    D determinant;
-};
-template <typename D>
-PlanesOf<D> planes_of(const std::array<D, 3>& x, const std::array<D, 3>& y, const std::array<D, 3>& w,
-                      const std::array<D, 3>& depth) {
-    using xsimd::select, duet::select;
-    std::array<std::array<D, 3>, 3> e; // corner; coefficients of x, y and 1: cross products of the others
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-        e[k] = {y[a] * w[b] - w[a] * y[b], w[a] * x[b] - x[a] * w[b], x[a] * y[b] - y[a] * x[b]};
-    }
-    PlanesOf<D> result;
-    result.determinant = x[0] * e[0][0] + y[0] * e[0][1] + w[0] * e[0][2];
-    const D sign = select(result.determinant < D(0), D(-1), D(1));
-    for (std::size_t c = 0; c < 3; ++c) {
-        result.e1[c] = e[1][c] * sign;
-        result.e2[c] = e[2][c] * sign;
-        result.sum[c] = (e[0][c] + e[1][c] + e[2][c]) * sign;
-        result.depth_sum[c] = (e[0][c] * depth[0] + e[1][c] * depth[1] + e[2][c] * depth[2]) * sign;
-    }
-    return result;
-}
-
 template <typename F> std::array<F, 3> minus(const std::array<F, 3>& a, const std::array<F, 3>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
@@ -106,7 +82,7 @@ const StripSolver::CachedSetUp& StripSolver::set_up_of(std::size_t i) {
         w[k] = v.w;
         d[k] = v.depth;
     }
-    const PlanesOf<double> planes = planes_of(x, y, w, d);
+    const TrianglePlanes<double> planes = triangle_planes(x, y, w, d);
     entry.e1 = planes.e1;
     entry.e2 = planes.e2;
     entry.sum = planes.sum;
@@ -159,7 +135,7 @@ void StripSolver::set_up_each() {
             x[k] = row(0) - left * w[k];
             y[k] = row(1) - top * w[k];
         }
-        const PlanesOf<Doubles> planes = planes_of(x, y, w, d);
+        const TrianglePlanes<Doubles> planes = triangle_planes(x, y, w, d);
         for (std::size_t c = 0; c < 3; ++c) {
             store(lanes_.e1[c], i, planes.e1[c]);
             store(lanes_.e2[c], i, planes.e2[c]);
