@@ -73,6 +73,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     small_.clear();
     touches_.clear();
     const Shape& shape = triangles.shape(run);
+    mesh_ = std::get_if<Mesh>(&shape);
     Outlines outlines;
     for (std::uint32_t i = 0; i < run.count; i += kStrip) {
         gather(shape, run.first + i, std::min<std::uint32_t>(kStrip, run.count - i), outlines);
@@ -210,15 +211,16 @@ void Assembler::sort_out(const Outlines& out) {
     culled.degenerate += counts[kDegenerate];
     culled.backfaces += counts[kBackface];
     culled.subpixel += counts[kSubpixel];
-    if (const Mesh* mesh = std::get_if<Mesh>(&triangles_->shape(run_)))
+    if (mesh_ != nullptr)
         for (std::size_t k = 0; k < left; ++k)
-            for (const std::uint32_t corner : mesh->triangles[out.first + chosen[k]]) prefetch(&mesh->positions[corner]);
+            for (const std::uint32_t corner : mesh_->triangles[out.first + chosen[k]])
+                prefetch(&mesh_->positions[corner]);
     for (std::size_t k = 0; k < left; ++k) {
         const std::uint32_t i = chosen[k], index = out.first + i;
         if (out.verdict[i] == kSmall) {
             add_small(out, i);
         } else if (out.verdict[i] == kDraw) {
-            set_up_outline(index, triangles_->whole(run_, index),
+            set_up_outline(index, whole_triangle(index),
                            {FixedPoint{out.x[0][i], out.y[0][i]}, FixedPoint{out.x[1][i], out.y[1][i]},
                             FixedPoint{out.x[2][i], out.y[2][i]}},
                            false);
@@ -228,8 +230,16 @@ void Assembler::sort_out(const Outlines& out) {
     }
 }
 
+/// As Triangles::whole, without the way from number to mesh.
+WholeTriangle Assembler::whole_triangle(std::uint32_t index) const {
+    if (mesh_ == nullptr) return triangles_->whole(run_, index);
+    const auto& corner = mesh_->triangles[index];
+    const auto vertex = [&](std::size_t k) { return pixel_vertex(*object_, mesh_->positions[corner[k]]); };
+    return {vertex(0), vertex(1), vertex(2), Piece::kTriangle};
+}
+
 void Assembler::clip_and_set_up(std::uint32_t index) {
-    const WholeTriangle whole = triangles_->whole(run_, index);
+    const WholeTriangle whole = whole_triangle(index);
     const ClippedPolygon polygon = clip(whole.a, whole.b, whole.c, plan_->viewport);
     if (polygon.count == 0) ++batch_->culled.outside;
     std::array<FixedPoint, 8> p;

@@ -40,6 +40,7 @@ private:
     void gather(const Shape& shape, std::uint32_t first, std::uint32_t count, Outlines& outlines) const;
     void sort_out(const Outlines& outlines);
     void judge(Outlines& outlines) const;
+    WholeTriangle whole_triangle(std::uint32_t index) const;
     void clip_and_set_up(std::uint32_t index);
     void set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> corners, bool clipped);
     void add_small(const Outlines& outlines, std::uint32_t i);
@@ -50,6 +51,7 @@ private:
     const AssemblyPlan* plan_ = nullptr;
     const Triangles* triangles_ = nullptr;
     const TransformedObject* object_ = nullptr;
+    const Mesh* mesh_ = nullptr; ///< null: quads
     Run run_;
     bool culls_back_faces_ = false;
     SampleOffset least_, most_; ///< of the plan's samples

@@ -65,11 +65,13 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
     const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
     if (r.empty()) return;
     const Edges edges(triangle, rect_, offset_, viewport_);
+    const bool large = r.width() > kBlock || r.height() > kBlock; // worth to ask for whole blocks
     for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row)
         for (int column = (r.x0 - rect_.x0) / kBlock; column <= (r.x1 - 1 - rect_.x0) / kBlock; ++column) {
             const auto block = static_cast<std::size_t>(row * kBlocks + column);
             if (triangle.nearest < farthest_[block]) continue;
-            const Edges::Cover cover = edges.of_block(column * kBlock, row * kBlock);
+            const Edges::Cover cover =
+                large ? edges.of_block(column * kBlock, row * kBlock) : Edges::Cover::kSome;
             if (cover == Edges::Cover::kNone) continue;
             const bool all = cover == Edges::Cover::kAll && triangle.sound;
             drawn_[block] = true;

@@ -1,5 +1,7 @@
 #include "raster/setup.h"
 
+#include "raster/planes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -106,12 +108,15 @@ Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPo
 // the divisor is the determinant, whatever the pixel; with w = 1 (orthographic) the dividend is.
 DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
                     bool clipped, const Viewport& viewport) {
-    const Interpolation at = interpolation(whole, corners, viewport);
-    const Vec3d w(whole.a.w, whole.b.w, whole.c.w);
-    const double determinant = at.e[0].z * w.x + at.e[1].z * w.y + at.e[2].z * w.z;
-    const Vec3d sum = viewport.orthographic ? at.e[0] * at.depth.x + at.e[1] * at.depth.y + at.e[2] * at.depth.z
-                                            : at.e[0] + at.e[1] + at.e[2];
-    const Vec3d plane = sum * ((viewport.orthographic ? 1 : viewport.near) / determinant);
+    const Origin from = origin(corners, viewport);
+    const PixelVertex &a = whole.a, &b = whole.b, &c = whole.c;
+    const TrianglePlanes<double> all =
+        triangle_planes<double>({a.xw - from.x * a.w, b.xw - from.x * b.w, c.xw - from.x * c.w},
+                                {a.yw - from.y * a.w, b.yw - from.y * b.w, c.yw - from.y * c.w}, {a.w, b.w, c.w},
+                                {a.depth, b.depth, c.depth});
+    const auto& sum = viewport.orthographic ? all.depth_sum : all.sum;
+    const Vec3d plane = Vec3d(sum[0], sum[1], sum[2]) *
+                        ((viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant));
     const double least_depth = std::min({whole.a.depth, whole.b.depth, whole.c.depth});
     DrawTriangle result{.corners = corners, .id = id};
     result.sound = is_finite(plane) && !sabotaged(Guard::kPerspective);
