@@ -15,7 +15,7 @@ enum Verdict : std::int32_t {
     kDegenerate,
     kBackface,
     kSubpixel,
-    kSmall, ///< its samples are known
+    kSmall,
     kDraw,
     kClip,
 };
@@ -28,7 +28,7 @@ Ints as_ints(const xsimd::batch_bool<std::int32_t>& flags, std::int32_t value) {
 }
 
 /// Boxes of at most so many samples along a side are small.
-constexpr std::int32_t kSmallSide = 4;
+constexpr std::int32_t kSmallSide = 8;
 
 /// An edge's function at the first sample of a small box, and its steps to the next.
 struct SmallEdge {
@@ -53,8 +53,6 @@ struct Assembler::Outlines {
     StripOf<std::int32_t> any_outcode, common_outcode;
     StripOf<std::int32_t> verdict;
     StripOf<std::int32_t> sample_x, sample_y; ///< the first pixel of the box
-    /// Of kSmall: bit kSmallSide·row + column for each sample of the box that is covered, and that is well inside.
-    StripOf<std::int32_t> covered, well_inside;
 };
 
 void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, const Run& run, bool culls_back_faces,
@@ -80,6 +78,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
         judge(outlines);
         sort_out(outlines);
     }
+    cover_candidates();
     find_nearness();
     sorter_.sort(batch, touches_, plan.grid.size());
 }
@@ -137,14 +136,13 @@ void Assembler::judge(Outlines& out) const {
     const Ints zero(0), round_up(kSubPixels - 1);
     for (std::size_t i = 0; i < kStrip; i += Ints::size) {
         const Ints ax = load(out.x[0], i), ay = load(out.y[0], i);
-        Ints bx = load(out.x[1], i), by = load(out.y[1], i), cx = load(out.x[2], i), cy = load(out.y[2], i);
+        const Ints bx = load(out.x[1], i), by = load(out.y[1], i), cx = load(out.x[2], i), cy = load(out.y[2], i);
         const Ints x0 = min(min(ax, bx), cx), x1 = max(max(ax, bx), cx);
         const Ints y0 = min(min(ay, by), cy), y1 = max(max(ay, by), cy);
         const Ints width = x1 - x0, height = y1 - y0;
         const auto narrow = width < Ints(kNarrow) && height < Ints(kNarrow);
         const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // of narrow ones
-        const auto negative = area < zero;
-        const auto front = object_->mirrored ? area > zero : negative;
+        const auto front = object_->mirrored ? area > zero : area < zero;
 
         const Ints first_x = (x0 - Ints(most_.x) + round_up) >> kSubPixelBits,
                    last_x = (x1 - Ints(least_.x)) >> kSubPixelBits;
@@ -155,32 +153,8 @@ void Assembler::judge(Outlines& out) const {
                             first_y >= Ints(region.y1);
         const auto box_small = last_x - first_x < Ints(kSmallSide) && last_y - first_y < Ints(kSmallSide);
 
-        // Of positive winding, the samples of a small box against the three edges.
-        const Ints sample_x = (first_x << kSubPixelBits) + Ints(least_.x),
-                   sample_y = (first_y << kSubPixelBits) + Ints(least_.y);
-        const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
-        cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
-        const SmallEdge ab(ax, ay, px, py, sample_x, sample_y), bc(px, py, cx, cy, sample_x, sample_y),
-            ca(cx, cy, ax, ay, sample_x, sample_y);
-        const Ints margin = width + height + Ints(1);
-        Ints covered = zero, well_inside = zero;
-        std::array<Ints, 3> row{ab.at, bc.at, ca.at};
-        for (std::int32_t y = 0; y < kSmallSide; ++y) {
-            std::array<Ints, 3> e = row;
-            for (std::int32_t x = 0; x < kSmallSide; ++x) {
-                const Ints least = min(min(e[0], e[1]), e[2]);
-                const std::int32_t bit = 1 << (kSmallSide * y + x);
-                covered = covered | as_ints(least >= zero, bit);
-                well_inside = well_inside | as_ints(least >= margin, bit);
-                e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
-            }
-            row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
-        }
-
         Ints verdict(kDraw);
         if (one_sample) verdict = xsimd::select(box_small, Ints(kSmall), verdict);
-        if (one_sample && skips.subpixel)
-            verdict = xsimd::select(box_small && covered == zero, Ints(kSubpixel), verdict);
         if (skips.frustum) verdict = xsimd::select(beside, Ints(kOutside), verdict);
         if (skips.subpixel) verdict = xsimd::select(between, Ints(kSubpixel), verdict);
         if (culls_back_faces_) verdict = xsimd::select(front, verdict, Ints(kBackface));
@@ -192,8 +166,6 @@ void Assembler::judge(Outlines& out) const {
         store(out.verdict, i, verdict);
         store(out.sample_x, i, first_x);
         store(out.sample_y, i, first_y);
-        store(out.covered, i, covered);
-        store(out.well_inside, i, well_inside);
     }
 }
 
@@ -218,7 +190,7 @@ void Assembler::sort_out(const Outlines& out) {
     for (std::size_t k = 0; k < left; ++k) {
         const std::uint32_t i = chosen[k], index = out.first + i;
         if (out.verdict[i] == kSmall) {
-            add_small(out, i);
+            add_candidate(out, i);
         } else if (out.verdict[i] == kDraw) {
             set_up_outline(index, whole_triangle(index),
                            {FixedPoint{out.x[0][i], out.y[0][i]}, FixedPoint{out.x[1][i], out.y[1][i]},
@@ -270,15 +242,74 @@ void Assembler::set_up_outline(std::uint32_t index, const WholeTriangle& whole, 
     }
 }
 
-void Assembler::add_small(const Outlines& out, std::uint32_t i) {
-    Small small{out.first + i, out.sample_x[i], out.sample_y[i], static_cast<std::uint16_t>(out.covered[i]),
-                static_cast<std::uint16_t>(out.well_inside[i])};
+void Assembler::add_candidate(const Outlines& out, std::uint32_t i) {
+    Candidates& c = candidates_;
+    c.index[c.count] = out.first + i;
+    for (std::size_t k = 0; k < 3; ++k) {
+        c.x[k][c.count] = out.x[k][i];
+        c.y[k][c.count] = out.y[k][i];
+    }
+    c.sample_x[c.count] = out.sample_x[i];
+    c.sample_y[c.count] = out.sample_y[i];
+    if (++c.count == kStrip) cover_candidates();
+}
+
+/// The samples of small boxes against their triangles' edges, sixteen triangles side by side.
+void Assembler::cover_candidates() {
+    Candidates& c = candidates_;
+    constexpr std::size_t kWords = kSmallSide * kSmallSide / 32;
+    std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
+    const Ints zero(0);
+    for (std::size_t i = 0; i < c.count; i += Ints::size) {
+        const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
+        Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
+        const auto negative = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < zero; // to be wound the other way
+        const Ints margin = max(max(ax, bx), cx) - min(min(ax, bx), cx) + max(max(ay, by), cy) -
+                            min(min(ay, by), cy) + Ints(1); // inside_margin
+        const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
+                   sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
+        const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
+        cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
+        const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
+        std::array<Ints, 3> row{ab.at, bc.at, ca.at};
+        for (std::size_t word = 0; word < kWords; ++word) {
+            Ints some = zero, sure = zero;
+            for (std::uint32_t bit = 0; bit < 32;) {
+                std::array<Ints, 3> e = row;
+                for (std::int32_t x = 0; x < kSmallSide; ++x, ++bit) {
+                    const Ints least = min(min(e[0], e[1]), e[2]);
+                    some = some | as_ints(least >= zero, static_cast<std::int32_t>(1u << bit));
+                    sure = sure | as_ints(least >= margin, static_cast<std::int32_t>(1u << bit));
+                    e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
+                }
+                row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
+            }
+            store(covered[word], i, some);
+            store(well_inside[word], i, sure);
+        }
+    }
+    for (std::size_t i = 0; i < c.count; ++i) {
+        const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
+            return std::uint64_t{static_cast<std::uint32_t>(words[0][i])} |
+                   std::uint64_t{static_cast<std::uint32_t>(words[1][i])} << 32;
+        };
+        add_small(i, bits(covered), bits(well_inside));
+    }
+    c.count = 0;
+}
+
+void Assembler::add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside) {
+    const Candidates& c = candidates_;
+    if (covered == 0) {
+        batch_->culled.subpixel += plan_->skips.subpixel;
+        return;
+    }
+    Small small{c.index[i], c.sample_x[i], c.sample_y[i], covered, well_inside};
     const PixelRect& r = plan_->grid.region;
     if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
         for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
             const int x = small.x + bit % kSmallSide, y = small.y + bit / kSmallSide;
-            if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1)
-                small.covered = static_cast<std::uint16_t>(small.covered & ~(1u << bit));
+            if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1) small.covered &= ~(std::uint64_t{1} << bit);
         }
     if (small.covered != 0) small_.push_back(small);
 }
@@ -338,7 +369,7 @@ void Assembler::add_fragments(const Small& small, double x, double y, double con
     const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
                top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
     const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
-    for (std::uint32_t bits = small.covered; bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = small.covered; bits != 0; bits &= bits - 1) {
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
         double nearness = (constant + down * y) + across * x;
         if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;

@@ -19,7 +19,7 @@ struct AssemblyPlan {
     bool front_faces_only = false;
 };
 
-/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 4 × 4 samples, where there
+/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 8 × 8 samples, where there
 /// is one sample a pixel, is decided at once, many of them side by side: its covered samples become fragments. The
 /// others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
 /// twice), a clipped one a fan.
@@ -34,7 +34,7 @@ private:
     struct Small {            ///< a triangle whose samples are known
         std::uint32_t index;  ///< of the run's object's triangles
         std::int32_t x, y;    ///< the first pixel of its box
-        std::uint16_t covered, well_inside; ///< a bit for each sample, row by row
+        std::uint64_t covered, well_inside; ///< a bit for each sample, row by row
     };
 
     void gather(const Shape& shape, std::uint32_t first, std::uint32_t count, Outlines& outlines) const;
@@ -43,7 +43,9 @@ private:
     WholeTriangle whole_triangle(std::uint32_t index) const;
     void clip_and_set_up(std::uint32_t index);
     void set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> corners, bool clipped);
-    void add_small(const Outlines& outlines, std::uint32_t i);
+    void add_candidate(const Outlines& outlines, std::uint32_t i);
+    void cover_candidates();
+    void add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside);
     void find_nearness();
     void find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const;
     void add_fragments(const Small& small, double x, double y, double constant);
@@ -56,6 +58,13 @@ private:
     bool culls_back_faces_ = false;
     SampleOffset least_, most_; ///< of the plan's samples
     Batch* batch_ = nullptr;
+    struct Candidates {          ///< small triangles whose samples are not known yet, up to sixteen
+        std::size_t count = 0;
+        std::array<std::uint32_t, kStrip> index{};
+        std::array<StripOf<std::int32_t>, 3> x, y; ///< corners
+        StripOf<std::int32_t> sample_x, sample_y;  ///< the first pixel of the box
+    };
+    Candidates candidates_;
     std::vector<Small> small_;
     std::vector<TileSorter::Touch> touches_;
     TileSorter sorter_;
