@@ -120,8 +120,9 @@ void compare_pictures(FrameRow& row, const Rendering& ours, const ImageFloat& ne
 } // namespace
 
 // A pixel's coverage may differ where an edge passes close by a sample: both snap to a grid of 1/256 pixel, the peer
-// vertices that it transformed in float. Where it does not, both shade the same point.
-bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 5e-3; }
+// vertices that it transformed in float. Where it does not, both shade the same point; the peer's sRGB curve is an
+// approximation that is often one code too low, which makes a FLIP of up to 0.006 over a picture's covered pixels.
+bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 1e-2; }
 
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared& prepared, FrameView frame_kind,
                                      int threads, const std::vector<FrameWork>& works, const FrameSettings& settings) {
