@@ -85,8 +85,8 @@ void Account::add(const Geometry& geometry) {
     transform += geometry.transform_seconds;
     setup += geometry.setup_seconds;
     bin += geometry.bin_seconds;
-    culled += geometry.list.culled;
-    geometry_bytes = std::max(geometry_bytes, geometry.memory_bytes);
+    culled += geometry.culled;
+    geometry_bytes = std::max(geometry_bytes, geometry.memory_bytes());
 }
 
 std::vector<std::pair<std::string, double>> Account::seconds() const {
@@ -103,8 +103,7 @@ void Progress::step() {
 }
 
 void fill_statistics(RenderStatistics& statistics, const PreparedData& data, const Settings& settings,
-                     const Account& account, const std::vector<Pass>& passes, const TileGrid& grid,
-                     std::size_t picture_bytes) {
+                     const Account& account, const std::vector<Pass>& passes, const TileGrid& grid) {
     const std::size_t passes_done = account.tiles_done / grid.size();
     statistics.interrupted = account.tiles_done < grid.size() * passes.size();
     statistics.passes = static_cast<int>(passes_done);
@@ -112,7 +111,7 @@ void fill_statistics(RenderStatistics& statistics, const PreparedData& data, con
         statistics.samples_per_pixel += static_cast<int>(passes[i].samples.size());
     statistics.seconds = account.seconds();
     statistics.triangles = data.primitives;
-    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + picture_bytes);
+    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.picture_bytes);
     statistics.skipped = list_skipped(data, settings, account.culled);
     statistics.approximations = list_approximations(data, settings);
 }

@@ -21,6 +21,7 @@ struct Account {
     std::atomic<std::size_t> tiles_done{0};                           ///< over all passes
     CullCounts culled;                                                ///< over all passes
     std::size_t geometry_bytes = 0;                                   ///< of the pass that needed most
+    std::size_t picture_bytes = 0;
 
     void add(const Geometry& geometry);
     /// By stage. Covering and shading take turns in each tile: each gets its share of the loop's time by its work.
@@ -29,8 +30,7 @@ struct Account {
 
 /// All statistics but the number of invalid samples, which the picture knows.
 void fill_statistics(RenderStatistics& statistics, const PreparedData& data, const Settings& settings,
-                     const Account& account, const std::vector<Pass>& passes, const TileGrid& grid,
-                     std::size_t picture_bytes);
+                     const Account& account, const std::vector<Pass>& passes, const TileGrid& grid);
 
 /// Reports to a Control the steps done, in order, one call at a time.
 class Progress {

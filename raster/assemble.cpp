@@ -1,139 +1,387 @@
 #include "raster/assemble.h"
 
 #include "raster/clip.h"
-
-#include "common/system/parallel.h"
+#include "raster/planes.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace duet::raster {
 namespace {
 
-/// A run of one object's primitives: the unit of parallel work.
-struct Chunk {
-    std::size_t object, first, last;
-};
-constexpr std::size_t kChunk = 4096;
-
-/// Takes primitives one by one to their set-up triangles.
-class Assembler {
-public:
-    Assembler(const TransformedObject& object, const Viewport& viewport, const std::vector<SampleOffset>& samples,
-              const Skips& skips, bool cull_backfaces, DrawList& out)
-        : object_(object), viewport_(viewport), samples_(samples), skips_(skips), cull_backfaces_(cull_backfaces),
-          out_(out) {}
-
-    void add(std::uint32_t primitive, Piece piece, std::array<std::size_t, 3> index) {
-        const unsigned a = object_.outcodes[index[0]], b = object_.outcodes[index[1]], c = object_.outcodes[index[2]];
-        if (skips_.frustum && (a & b & c & kFrustum) != 0) {
-            ++out_.culled.outside;
-            return;
-        }
-        const Whole whole{primitive, piece, object_.vertices[index[0]], object_.vertices[index[1]],
-                          object_.vertices[index[2]]};
-        if (((a | b | c) & kMustClip) == 0) {
-            set_up(whole, {object_.snapped[index[0]], object_.snapped[index[1]], object_.snapped[index[2]]});
-            return;
-        }
-        const ClippedPolygon polygon = clip(whole.a, whole.b, whole.c, viewport_);
-        if (polygon.count == 0) ++out_.culled.outside;
-        std::array<FixedPoint, 8> p;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i) p[i] = snap(polygon.vertices[i]);
-        for (std::size_t i = 2; i < static_cast<std::size_t>(polygon.count); ++i) set_up(whole, {p[0], p[i - 1], p[i]});
-    }
-
-private:
-    /// A primitive as it was before clipping: where depth and barycentrics come from.
-    struct Whole {
-        std::uint32_t primitive;
-        Piece piece;
-        const PixelVertex &a, &b, &c;
-    };
-
-    void set_up(const Whole& whole, std::array<FixedPoint, 3> p) {
-        const std::int64_t area = doubled_area(p[0], p[1], p[2]);
-        if (area == 0 && skips_.degenerate) {
-            ++out_.culled.degenerate;
-        } else if (cull_backfaces_ && is_backface(area, object_.mirrored)) {
-            ++out_.culled.backfaces;
-        } else if (skips_.subpixel && !may_cover_a_sample(p)) {
-            ++out_.culled.subpixel;
-        } else {
-            const FixedPoint beside{std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport_.width * kSubPixels),
-                                    std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport_.height * kSubPixels)};
-            if (area < 0) std::swap(p[1], p[2]);
-            out_.triangles.push_back(
-                {p, object_.object, whole.primitive, whole.piece, Interpolation(whole.a, whole.b, whole.c, beside)});
-        }
-    }
-
-    bool may_cover_a_sample(const std::array<FixedPoint, 3>& p) const {
-        return std::any_of(samples_.begin(), samples_.end(),
-                           [&](SampleOffset offset) { return !pixels_within(p, offset).empty(); });
-    }
-
-    const TransformedObject& object_;
-    const Viewport& viewport_;
-    const std::vector<SampleOffset>& samples_;
-    const Skips& skips_;
-    bool cull_backfaces_;
-    DrawList& out_;
+/// What becomes of a triangle.
+enum Verdict : std::int32_t {
+    kOutside,
+    kDegenerate,
+    kBackface,
+    kSubpixel,
+    kSmall,
+    kDraw,
+    kClip,
 };
 
-void assemble_chunk(const Shape& shape, const Chunk& chunk, Assembler& assembler) {
-    const Mesh* mesh = std::get_if<Mesh>(&shape);
-    for (std::size_t i = chunk.first; i < chunk.last; ++i) {
-        const auto primitive = static_cast<std::uint32_t>(i);
-        if (mesh) {
-            const auto& index = mesh->triangles[i];
-            assembler.add(primitive, Piece::kTriangle, {index[0], index[1], index[2]});
-        } else {
-            assembler.add(primitive, Piece::kQuadFirst, {4 * i, 4 * i + 1, 4 * i + 2});
-            assembler.add(primitive, Piece::kQuadSecond, {4 * i, 4 * i + 2, 4 * i + 3});
-        }
-    }
+/// Boxes below this side, in grid points, have edge functions that fit into 32 bits.
+constexpr std::int32_t kNarrow = 1 << 14;
+
+Ints as_ints(const xsimd::batch_bool<std::int32_t>& flags, std::int32_t value) {
+    return xsimd::select(flags, Ints(value), Ints(0));
 }
 
-/// The chunks' lists one after the other, copied in parallel.
-DrawList concatenate(const std::vector<DrawList>& parts, int threads) {
-    DrawList all;
-    std::vector<std::size_t> start;
-    std::size_t count = 0;
-    for (const DrawList& part : parts) {
-        start.push_back(count);
-        count += part.triangles.size();
-        all.culled += part.culled;
+/// Boxes of at most so many samples along a side are small.
+constexpr std::int32_t kSmallSide = 8;
+
+/// An edge's function at the first sample of a small box, and its steps to the next.
+struct SmallEdge {
+    Ints at, step_x, step_y;
+
+    SmallEdge(Ints from_x, Ints from_y, Ints to_x, Ints to_y, Ints sample_x, Ints sample_y) {
+        const Ints dx = to_x - from_x, dy = to_y - from_y, zero(0);
+        const auto left_or_top = dy < zero || (dy == zero && dx > zero);
+        at = dx * (sample_y - from_y) - dy * (sample_x - from_x);
+        if (!sabotaged(Guard::kTopLeftRule)) at = at + xsimd::select(left_or_top, zero, Ints(-1));
+        step_x = zero - dy * Ints(kSubPixels);
+        step_y = dx * Ints(kSubPixels);
     }
-    all.triangles.resize(count);
-    parallel_for(parts.size(), threads, [&](std::size_t i) {
-        std::copy(parts[i].triangles.begin(), parts[i].triangles.end(),
-                  all.triangles.begin() + static_cast<std::ptrdiff_t>(start[i]));
-    });
-    return all;
+};
+
+} // namespace
+
+/// Sixteen triangles side by side.
+struct Assembler::Outlines {
+    std::uint32_t first = 0, count = 0; ///< triangles of the object
+    std::array<StripOf<std::int32_t>, 3> x, y;
+    StripOf<std::int32_t> any_outcode, common_outcode;
+    StripOf<std::int32_t> verdict;
+    StripOf<std::int32_t> sample_x, sample_y; ///< the first pixel of the box
+};
+
+void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, const Run& run, bool culls_back_faces,
+                         Batch& batch) {
+    plan_ = &plan;
+    triangles_ = &triangles;
+    object_ = &triangles.objects[run.object];
+    run_ = run;
+    culls_back_faces_ = culls_back_faces;
+    batch_ = &batch;
+    least_ = most_ = plan.samples.front();
+    for (const SampleOffset offset : plan.samples) {
+        least_ = {std::min(least_.x, offset.x), std::min(least_.y, offset.y)};
+        most_ = {std::max(most_.x, offset.x), std::max(most_.y, offset.y)};
+    }
+    small_.clear();
+    touches_.clear();
+    const Shape& shape = triangles.shape(run);
+    mesh_ = std::get_if<Mesh>(&shape);
+    Outlines outlines;
+    for (std::uint32_t i = 0; i < run.count; i += kStrip) {
+        gather(shape, run.first + i, std::min<std::uint32_t>(kStrip, run.count - i), outlines);
+        judge(outlines);
+        sort_out(outlines);
+    }
+    cover_candidates();
+    find_nearness();
+    sorter_.sort(batch, touches_, plan.grid.size());
+}
+
+namespace {
+
+/// The corners of a triangle among its object's vertices.
+std::array<std::uint32_t, 3> corners_of(const Mesh* mesh, std::uint32_t triangle) {
+    if (mesh != nullptr) return mesh->triangles[triangle];
+    const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
+    return {quad, quad + 1 + half, quad + 2 + half};
+}
+
+std::array<Vec3, 3> triangle_corners(const Shape& shape, const Mesh* mesh, std::uint32_t triangle) {
+    if (mesh != nullptr) {
+        const auto& corner = mesh->triangles[triangle];
+        return {mesh->positions[corner[0]], mesh->positions[corner[1]], mesh->positions[corner[2]]};
+    }
+    const Corners four = primitive_corners(shape, triangle / 2);
+    const std::size_t half = triangle % 2;
+    return {four.p[0], four.p[1 + half], four.p[2 + half]};
 }
 
 } // namespace
 
-DrawList assemble(const PreparedData& data, const std::vector<TransformedObject>& objects, const Viewport& viewport,
-                  const std::vector<SampleOffset>& samples, const Skips& skips, int threads) {
-    const Scene& scene = data.scene;
-    const auto shape_of = [&](std::size_t i) -> const Shape& {
-        return scene.shapes[scene.objects[objects[i].object].shape];
-    };
-    std::vector<Chunk> chunks;
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        const std::size_t count = primitive_count(shape_of(i));
-        for (std::size_t first = 0; first < count; first += kChunk)
-            chunks.push_back({i, first, std::min(first + kChunk, count)});
+void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t count, Outlines& out) const {
+    out.first = first;
+    out.count = count;
+    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const SnappedVertex* vertices = object_->vertices.data();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::array<std::uint32_t, 3> corner = corners_of(mesh, first + i);
+        unsigned any = 0, common = ~0u;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const SnappedVertex& vertex = vertices[corner[k]];
+            out.x[k][i] = vertex.p.x;
+            out.y[k][i] = vertex.p.y;
+            any |= vertex.outcode;
+            common &= vertex.outcode;
+        }
+        out.any_outcode[i] = static_cast<std::int32_t>(any);
+        out.common_outcode[i] = static_cast<std::int32_t>(common);
     }
-    std::vector<DrawList> parts(chunks.size());
-    parallel_for(chunks.size(), threads, [&](std::size_t c) {
-        const TransformedObject& object = objects[chunks[c].object];
-        const bool cull_backfaces = skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid);
-        Assembler assembler(object, viewport, samples, skips, cull_backfaces, parts[c]);
-        assemble_chunk(shape_of(chunks[c].object), chunks[c], assembler);
-    });
-    return concatenate(parts, threads);
+    // The next sixteen's vertices, while these are worked on.
+    const std::uint32_t end = std::min(first + 2 * static_cast<std::uint32_t>(kStrip), run_.first + run_.count);
+    for (std::uint32_t i = first + kStrip; i < end; ++i)
+        for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
+}
+
+/// Decides sixteen triangles, all the tests side by side.
+void Assembler::judge(Outlines& out) const {
+    const bool one_sample = plan_->samples.size() == 1 && !sabotaged(Guard::kPerspective);
+    const PixelRect& region = plan_->grid.region;
+    const Skips& skips = plan_->skips;
+    const Ints zero(0), round_up(kSubPixels - 1);
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const Ints ax = load(out.x[0], i), ay = load(out.y[0], i);
+        const Ints bx = load(out.x[1], i), by = load(out.y[1], i), cx = load(out.x[2], i), cy = load(out.y[2], i);
+        const Ints x0 = min(min(ax, bx), cx), x1 = max(max(ax, bx), cx);
+        const Ints y0 = min(min(ay, by), cy), y1 = max(max(ay, by), cy);
+        const Ints width = x1 - x0, height = y1 - y0;
+        const auto narrow = width < Ints(kNarrow) && height < Ints(kNarrow);
+        const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // of narrow ones
+        const auto front = object_->mirrored ? area > zero : area < zero;
+
+        const Ints first_x = (x0 - Ints(most_.x) + round_up) >> kSubPixelBits,
+                   last_x = (x1 - Ints(least_.x)) >> kSubPixelBits;
+        const Ints first_y = (y0 - Ints(most_.y) + round_up) >> kSubPixelBits,
+                   last_y = (y1 - Ints(least_.y)) >> kSubPixelBits;
+        const auto between = last_x < first_x || last_y < first_y;
+        const auto beside = last_x < Ints(region.x0) || first_x >= Ints(region.x1) || last_y < Ints(region.y0) ||
+                            first_y >= Ints(region.y1);
+        const auto box_small = last_x - first_x < Ints(kSmallSide) && last_y - first_y < Ints(kSmallSide);
+
+        Ints verdict(kDraw);
+        if (one_sample) verdict = xsimd::select(box_small, Ints(kSmall), verdict);
+        if (skips.frustum) verdict = xsimd::select(beside, Ints(kOutside), verdict);
+        if (skips.subpixel) verdict = xsimd::select(between, Ints(kSubpixel), verdict);
+        if (culls_back_faces_) verdict = xsimd::select(front, verdict, Ints(kBackface));
+        verdict = xsimd::select(area == zero, Ints(skips.degenerate ? kDegenerate : kDraw), verdict);
+        verdict = xsimd::select(narrow, verdict, Ints(kDraw)); // to be judged in 64 bits
+        verdict = xsimd::select((load(out.any_outcode, i) & Ints(kMustClip)) != zero, Ints(kClip), verdict);
+        if (skips.frustum)
+            verdict = xsimd::select((load(out.common_outcode, i) & Ints(kFrustum)) != zero, Ints(kOutside), verdict);
+        store(out.verdict, i, verdict);
+        store(out.sample_x, i, first_x);
+        store(out.sample_y, i, first_y);
+    }
+}
+
+void Assembler::sort_out(const Outlines& out) {
+    std::array<std::int64_t, kClip + 1> counts{};
+    std::array<std::uint32_t, kStrip> chosen; // those not culled, without a branch to be guessed wrong
+    std::size_t left = 0;
+    for (std::uint32_t i = 0; i < out.count; ++i) {
+        ++counts[static_cast<std::size_t>(out.verdict[i])];
+        chosen[left] = i;
+        left += out.verdict[i] >= kSmall;
+    }
+    CullCounts& culled = batch_->culled;
+    culled.outside += counts[kOutside];
+    culled.degenerate += counts[kDegenerate];
+    culled.backfaces += counts[kBackface];
+    culled.subpixel += counts[kSubpixel];
+    if (mesh_ != nullptr)
+        for (std::size_t k = 0; k < left; ++k)
+            for (const std::uint32_t corner : mesh_->triangles[out.first + chosen[k]])
+                prefetch(&mesh_->positions[corner]);
+    for (std::size_t k = 0; k < left; ++k) {
+        const std::uint32_t i = chosen[k], index = out.first + i;
+        if (out.verdict[i] == kSmall) {
+            add_candidate(out, i);
+        } else if (out.verdict[i] == kDraw) {
+            set_up_outline(index, whole_triangle(index),
+                           {FixedPoint{out.x[0][i], out.y[0][i]}, FixedPoint{out.x[1][i], out.y[1][i]},
+                            FixedPoint{out.x[2][i], out.y[2][i]}},
+                           false);
+        } else {
+            clip_and_set_up(index);
+        }
+    }
+}
+
+/// As Triangles::whole, without the way from number to mesh.
+WholeTriangle Assembler::whole_triangle(std::uint32_t index) const {
+    if (mesh_ == nullptr) return triangles_->whole(run_, index);
+    const auto& corner = mesh_->triangles[index];
+    const auto vertex = [&](std::size_t k) { return pixel_vertex(*object_, mesh_->positions[corner[k]]); };
+    return {vertex(0), vertex(1), vertex(2), Piece::kTriangle};
+}
+
+void Assembler::clip_and_set_up(std::uint32_t index) {
+    const WholeTriangle whole = whole_triangle(index);
+    const ClippedPolygon polygon = clip(whole.a, whole.b, whole.c, plan_->viewport);
+    if (polygon.count == 0) ++batch_->culled.outside;
+    std::array<FixedPoint, 8> p;
+    const auto count = static_cast<std::size_t>(polygon.count);
+    for (std::size_t i = 0; i < count; ++i) p[i] = snap(polygon.vertices[i]);
+    for (std::size_t i = 2; i < count; ++i) set_up_outline(index, whole, {p[0], p[i - 1], p[i]}, true);
+}
+
+void Assembler::set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> p,
+                               bool clipped) {
+    const std::int64_t area = doubled_area(p[0], p[1], p[2]);
+    const PixelRect first = pixels_within(p, least_), last = pixels_within(p, most_);
+    const PixelRect touched{last.x0, last.y0, first.x1, first.y1}; // over all samples
+    if (area == 0 && plan_->skips.degenerate) {
+        ++batch_->culled.degenerate;
+    } else if (culls_back_faces_ && is_backface(area, object_->mirrored)) {
+        ++batch_->culled.backfaces;
+    } else if (plan_->skips.subpixel && touched.empty()) {
+        ++batch_->culled.subpixel;
+    } else {
+        if (area < 0) std::swap(p[1], p[2]);
+        const auto number = static_cast<std::uint32_t>(batch_->triangles.size());
+        batch_->triangles.push_back(
+            set_up(whole, p, run_.first_id + index - run_.first, clipped, plan_->viewport));
+        plan_->grid.for_each(touched, [&](std::size_t tile) {
+            touches_.push_back({static_cast<std::uint32_t>(tile), number});
+        });
+    }
+}
+
+void Assembler::add_candidate(const Outlines& out, std::uint32_t i) {
+    Candidates& c = candidates_;
+    c.index[c.count] = out.first + i;
+    for (std::size_t k = 0; k < 3; ++k) {
+        c.x[k][c.count] = out.x[k][i];
+        c.y[k][c.count] = out.y[k][i];
+    }
+    c.sample_x[c.count] = out.sample_x[i];
+    c.sample_y[c.count] = out.sample_y[i];
+    if (++c.count == kStrip) cover_candidates();
+}
+
+/// The samples of small boxes against their triangles' edges, sixteen triangles side by side.
+void Assembler::cover_candidates() {
+    Candidates& c = candidates_;
+    constexpr std::size_t kWords = kSmallSide * kSmallSide / 32;
+    std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
+    const Ints zero(0);
+    for (std::size_t i = 0; i < c.count; i += Ints::size) {
+        const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
+        Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
+        const auto negative = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < zero; // to be wound the other way
+        const Ints margin = max(max(ax, bx), cx) - min(min(ax, bx), cx) + max(max(ay, by), cy) -
+                            min(min(ay, by), cy) + Ints(1); // inside_margin
+        const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
+                   sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
+        const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
+        cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
+        const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
+        std::array<Ints, 3> row{ab.at, bc.at, ca.at};
+        for (std::size_t word = 0; word < kWords; ++word) {
+            Ints some = zero, sure = zero;
+            for (std::uint32_t bit = 0; bit < 32;) {
+                std::array<Ints, 3> e = row;
+                for (std::int32_t x = 0; x < kSmallSide; ++x, ++bit) {
+                    const Ints least = min(min(e[0], e[1]), e[2]);
+                    some = some | as_ints(least >= zero, static_cast<std::int32_t>(1u << bit));
+                    sure = sure | as_ints(least >= margin, static_cast<std::int32_t>(1u << bit));
+                    e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
+                }
+                row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
+            }
+            store(covered[word], i, some);
+            store(well_inside[word], i, sure);
+        }
+    }
+    for (std::size_t i = 0; i < c.count; ++i) {
+        const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
+            return std::uint64_t{static_cast<std::uint32_t>(words[0][i])} |
+                   std::uint64_t{static_cast<std::uint32_t>(words[1][i])} << 32;
+        };
+        add_small(i, bits(covered), bits(well_inside));
+    }
+    c.count = 0;
+}
+
+void Assembler::add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside) {
+    const Candidates& c = candidates_;
+    if (covered == 0) {
+        batch_->culled.subpixel += plan_->skips.subpixel;
+        return;
+    }
+    Small small{c.index[i], c.sample_x[i], c.sample_y[i], covered, well_inside};
+    const PixelRect& r = plan_->grid.region;
+    if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
+        for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
+            const int x = small.x + bit % kSmallSide, y = small.y + bit / kSmallSide;
+            if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1) small.covered &= ~(std::uint64_t{1} << bit);
+        }
+    if (small.covered != 0) small_.push_back(small);
+}
+
+void Assembler::find_nearness() {
+    std::array<StripOf<double>, 3> planes;
+    for (std::size_t first = 0; first < small_.size(); first += kStrip) {
+        const std::size_t count = std::min(kStrip, small_.size() - first);
+        find_planes(first, count, planes);
+        for (std::size_t i = 0; i < count; ++i)
+            add_fragments(small_[first + i], planes[0][i], planes[1][i], planes[2][i]);
+    }
+}
+
+/// What set_up does for one triangle, side by side: planes of nearness, counted from the first sample of their boxes.
+void Assembler::find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const {
+    const Viewport& viewport = plan_->viewport;
+    const Mat4d& m = object_->to_pixel;
+    const Shape& shape = triangles_->shape(run_);
+    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    std::array<std::array<StripOf<double>, 3>, 3> p; // corner, axis
+    StripOf<double> sample_x, sample_y;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Small& small = small_[first + i];
+        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, small.index);
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k][0][i] = static_cast<double>(corners[k].x);
+            p[k][1][i] = static_cast<double>(corners[k].y);
+            p[k][2][i] = static_cast<double>(corners[k].z);
+        }
+        sample_x[i] = small.x + static_cast<double>(least_.x) / kSubPixels;
+        sample_y[i] = small.y + static_cast<double>(least_.y) / kSubPixels;
+    }
+    for (std::size_t i = 0; i < count; i += Doubles::size) {
+        std::array<Doubles, 3> x, y, w, depth;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Doubles px = load(p[k][0], i), py = load(p[k][1], i), pz = load(p[k][2], i);
+            const auto row = [&](std::size_t r) {
+                return Doubles(m[r][0]) * px + Doubles(m[r][1]) * py + Doubles(m[r][2]) * pz + Doubles(m[r][3]);
+            };
+            depth[k] = row(2);
+            w[k] = viewport.orthographic ? Doubles(1.0) : depth[k];
+            x[k] = row(0) - load(sample_x, i) * w[k];
+            y[k] = row(1) - load(sample_y, i) * w[k];
+        }
+        const TrianglePlanes<Doubles> all = triangle_planes(x, y, w, depth);
+        const Doubles scale = Doubles(viewport.orthographic ? 1.0 : viewport.near) / abs(all.determinant);
+        for (std::size_t c = 0; c < 3; ++c)
+            store(planes[c], i, (viewport.orthographic ? all.depth_sum[c] : all.sum[c]) * scale);
+    }
+}
+
+/// The covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
+void Assembler::add_fragments(const Small& small, double x, double y, double constant) {
+    constexpr std::uint32_t kSize = TileGrid::kTileSize;
+    const std::uint32_t id = run_.first_id + small.index - run_.first;
+    const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
+               top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
+    const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
+    for (std::uint64_t bits = small.covered; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
+        double nearness = (constant + down * y) + across * x;
+        if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
+        if (!(small.well_inside >> bit & 1))
+            nearness = interpolate(triangles_->whole(run_, small.index),
+                                   least_.position(small.x + across, small.y + down))
+                           .nearness(plan_->viewport.near);
+        const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
+        batch_->fragments.push_back({id, kept_nearness(nearness),
+                                     static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize)),
+                                     static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
+    }
 }
 
 } // namespace duet::raster

@@ -1,8 +1,9 @@
 // Stage 5: which tiles of the picture a primitive may touch.
 #pragma once
 
-#include "raster/assemble.h"
+#include "raster/batch.h"
 #include "raster/sphere.h"
+#include "raster/tiles.h"
 
 #include <cstdint>
 #include <span>
@@ -10,21 +11,11 @@
 
 namespace duet::raster {
 
-/// The picture cut into squares, row by row; those at the right and lower edges may be smaller.
-struct TileGrid {
-    static constexpr int kTileSize = 32;
-    int width = 0, height = 0;
-
-    int columns() const { return (width + kTileSize - 1) / kTileSize; }
-    int rows() const { return (height + kTileSize - 1) / kTileSize; }
-    std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
-    PixelRect tile(std::size_t index) const;
-};
-
 /// For each tile a list of indices, all in one array.
 class Bins {
 public:
-    /// Puts item i into each tile that bounds[i], cut to the picture, touches. Lists are in ascending order.
+    Bins() = default;
+    /// Puts item i into each tile that bounds[i] touches. Lists are in ascending order.
     Bins(const TileGrid& grid, const std::vector<PixelRect>& bounds);
 
     std::span<const std::uint32_t> tile(std::size_t index) const {
@@ -39,7 +30,26 @@ private:
     std::vector<std::uint32_t> items_;
 };
 
-Bins bin(const TileGrid& grid, const std::vector<SetupTriangle>& triangles, const std::vector<SampleOffset>& samples);
 Bins bin(const TileGrid& grid, const std::vector<DrawSphere>& spheres);
+
+/// For each tile the segments of the batches that belong to it, in the order of the batches: so what they refer to is in
+/// the order of submission, though batches were sorted side by side.
+class TileLists {
+public:
+    struct Item {
+        std::uint32_t batch = 0, first = 0, count = 0;
+    };
+    /// `segments`: which of a batch's lists.
+    void gather(const std::vector<Batch>& batches, std::vector<Segment> Batch::*segments, std::size_t tiles);
+
+    std::span<const Item> tile(std::size_t index) const {
+        return std::span(items_).subspan(first_[index], first_[index + 1] - first_[index]);
+    }
+    std::size_t memory_bytes() const { return items_.size() * sizeof(Item) + first_.size() * sizeof(std::size_t); }
+
+private:
+    std::vector<std::size_t> first_, next_;
+    std::vector<Item> items_;
+};
 
 } // namespace duet::raster

@@ -1,24 +1,32 @@
-// Stage 6: the samples of a tile, and what each of them sees.
+// Stage 7: the image of Hits of a tile.
 #pragma once
 
+#include "raster/depth_tile.h"
 #include "raster/geometry.h"
+
+#include "common/geometry/hit.h"
 
 #include <vector>
 
 namespace duet::raster {
 
-/// One sample a pixel of a tile: the camera rays through the samples, and the visibility buffer: an image of Hits, with
-/// the nearness of each for the depth test.
-///
-/// Nearness is reversed depth, near / depth, in (0, 1], as a float: its relative error is 2^-24 at any depth, as that
-/// of Hit::t itself, and nothing is lost to a far plane. Of equal nearness the lower (object, primitive) wins, so that
-/// the result does not depend on the order of drawing.
+/// The ray in float.
+Ray rounded(const Rayd& exact, float time);
+
+/// Draws all that may be seen of a tile of the picture: its depths, and the number of what each sample sees.
+void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
+           std::size_t index, DepthTile& tile);
+
+/// What a sample sees of a triangle: the naive way, one at a time, that all others are held to. `pixel` is the sample's
+/// place, distance_per_depth the length of its ray for each metre of depth.
+Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
+                 double distance_per_depth, double near);
+
+/// One sample a pixel of a tile: the camera rays through the samples, and the visibility buffer: an image of Hits.
 class HitTile {
 public:
-    HitTile(const PixelRect& rect, const Pinhole& pinhole, SampleOffset offset, float time);
-
-    void draw(const SetupTriangle& triangle);
-    void draw(const DrawSphere& sphere);
+    /// Looks up what was drawn into `tile`.
+    HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
@@ -30,23 +38,15 @@ public:
 
 private:
     std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y - rect_.y0) * static_cast<std::size_t>(rect_.x1 - rect_.x0) +
+        return static_cast<std::size_t>(y - rect_.y0) * static_cast<std::size_t>(rect_.width()) +
                static_cast<std::size_t>(x - rect_.x0);
     }
-    void cover(const SetupTriangle& triangle, int x, int y);
-    bool wins(std::size_t i, float nearness, std::uint32_t object, std::uint32_t primitive) const;
 
     PixelRect rect_;
-    double near_;
-    SampleOffset offset_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;
     std::vector<Hit> hits_;
 };
-
-/// A fresh tile, drawn: one sample a pixel of tile `index` of the picture, whose pixels are `rect`.
-HitTile cover(const PixelRect& rect, const PassView& view, SampleOffset offset, const Geometry& geometry,
-              std::size_t index);
 
 } // namespace duet::raster

@@ -1,6 +1,7 @@
 #include "raster/direct.h"
 
 #include "common/light/lambert.h"
+#include "raster/phong.h"
 
 #include <array>
 #include <cmath>
@@ -116,6 +117,17 @@ Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const Sha
         if (surface != nullptr && is_own(*surface, point.surface)) continue;
         const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(light, point.surface.p);
         if (incident) sum += reflected(bsdf, point, *incident);
+    }
+    return sum;
+}
+
+Rgb phong_light(std::span<const Light> lights, Rgb ambient, Rgb base_color, const ShadingPoint& point, Vec3 to_viewer) {
+    Rgb sum = ambient * base_color;
+    for (const Light& light : lights) {
+        const auto* surface = std::get_if<SurfaceLight>(&light);
+        if (surface != nullptr && is_own(*surface, point.surface)) continue;
+        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(light, point.surface.p);
+        if (incident) sum += phong(base_color, point.ns, to_viewer, incident->wi, incident->irradiance);
     }
     return sum;
 }

@@ -34,4 +34,8 @@ Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
 Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point);
 Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point);
 
+/// Phong's model (raster/phong.h) under the lights and an ambient radiance from all around. A surface light counts as a
+/// distant one of the same irradiance at its centre.
+Rgb phong_light(std::span<const Light> lights, Rgb ambient, Rgb base_color, const ShadingPoint& point, Vec3 to_viewer);
+
 } // namespace duet::raster

@@ -1,9 +1,16 @@
 #include "raster/geometry.h"
 
+#include "common/system/error.h"
+#include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
+
+#include <algorithm>
+#include <mutex>
 
 namespace duet::raster {
 namespace {
+
+constexpr std::uint32_t kRun = 4096; ///< triangles at most
 
 /// The objects whose bounds touch the frustum; the others' primitives are counted.
 std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
@@ -18,43 +25,119 @@ std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vecto
     return result;
 }
 
-std::size_t memory_of(const std::vector<TransformedObject>& objects) {
-    std::size_t vertices = 0;
-    for (const TransformedObject& object : objects) vertices += object.vertices.size();
-    return vertices * (sizeof(PixelVertex) + sizeof(FixedPoint) + sizeof(std::uint8_t));
+/// Runs of the objects' triangles and of the spheres, in the order of objects. Spheres get their numbers.
+std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
+                            std::vector<DrawSphere>& spheres) {
+    std::vector<Run> runs;
+    std::uint64_t id = 0;
+    std::size_t sphere = 0;
+    const auto add_spheres = [&](std::uint32_t before) {
+        for (; sphere < spheres.size() && spheres[sphere].object < before; ++sphere) {
+            spheres[sphere].id = static_cast<std::uint32_t>(id);
+            runs.push_back({static_cast<std::uint32_t>(sphere), 0, 1, static_cast<std::uint32_t>(id++), true});
+        }
+    };
+    for (std::uint32_t slot = 0; slot < polygonal.size(); ++slot) {
+        add_spheres(polygonal[slot]);
+        const Shape& shape = scene.shapes[scene.objects[polygonal[slot]].shape];
+        const std::uint32_t count = primitive_count(shape) * (std::holds_alternative<Mesh>(shape) ? 1 : 2);
+        for (std::uint32_t first = 0; first < count; first += kRun) {
+            runs.push_back({slot, first, std::min(kRun, count - first), static_cast<std::uint32_t>(id), false});
+            id += runs.back().count;
+        }
+        if (id >= kNoTriangle) throw Error("more than 2^31 triangles in view");
+    }
+    add_spheres(kNoObject);
+    return runs;
+}
+
+/// Lends each of a loop's threads one of the assemblers.
+class Lender {
+public:
+    explicit Lender(std::vector<Assembler>& all) : all_(all) {}
+    Assembler take() {
+        const std::lock_guard lock(mutex_);
+        if (all_.empty()) return {};
+        Assembler one = std::move(all_.back());
+        all_.pop_back();
+        return one;
+    }
+    void give_back(Assembler one) {
+        const std::lock_guard lock(mutex_);
+        all_.push_back(std::move(one));
+    }
+
+private:
+    std::vector<Assembler>& all_;
+    std::mutex mutex_;
+};
+
+void assemble(const PreparedData& data, const AssemblyPlan& plan, int threads, Geometry& geometry) {
+    const Triangles& triangles = geometry.triangles;
+    geometry.batches.resize(triangles.runs.size());
+    Lender lender(geometry.assemblers);
+    parallel_for(triangles.runs.size(), threads, [&](std::size_t i) {
+        const Run& run = triangles.runs[i];
+        geometry.batches[i].clear();
+        if (run.sphere) return;
+        const TransformedObject& object = triangles.objects[run.object];
+        const bool cull = plan.front_faces_only ||
+                          (plan.skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid));
+        Assembler assembler = lender.take();
+        assembler.assemble(plan, triangles, run, cull, geometry.batches[i]);
+        lender.give_back(std::move(assembler));
+    });
+    for (const Batch& batch : geometry.batches) geometry.culled += batch.culled;
 }
 
 } // namespace
 
-Geometry process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                          const Settings& settings) {
+std::unique_ptr<Geometry> GeometryPool::take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Geometry>();
+    std::unique_ptr<Geometry> geometry = std::move(free_.back());
+    free_.pop_back();
+    return geometry;
+}
+
+void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(geometry));
+}
+
+std::size_t Geometry::memory_bytes() const {
+    std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
+                        fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
+    for (const TransformedObject& object : triangles.objects)
+        bytes += object.vertices.size() * sizeof(SnappedVertex);
+    for (const Batch& batch : batches) bytes += batch.memory_bytes();
+    return bytes;
+}
+
+void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                      Geometry& result) {
     Stopwatch watch;
-    CullCounts culled;
+    result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
-        return settings.skips.frustum ? in_frustum(data, objects, view, culled) : objects;
+        return settings.skips.frustum ? in_frustum(data, objects, view, result.culled) : objects;
     };
-    const std::vector<TransformedObject> objects =
-        transform(data.scene, visible(data.polygonal), view.pinhole, view.time, view.viewport, settings.threads);
-    const double transform_seconds = watch.lap();
+    const std::vector<std::uint32_t> polygonal = visible(data.polygonal);
+    result.triangles.scene = &data.scene;
+    result.triangles.vertices = &data.vertices;
+    transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,
+              result.triangles.objects);
+    result.transform_seconds = watch.lap();
 
-    DrawList list = assemble(data, objects, view.viewport, view.samples, settings.skips, settings.threads);
-    std::vector<DrawSphere> spheres =
-        set_up_spheres(data.scene, visible(data.spheres), view.pinhole, view.time, view.viewport);
-    list.culled += culled;
-    const double setup_seconds = watch.lap();
+    result.spheres = set_up_spheres(data.scene, visible(data.spheres), view.pinhole, view.time, view.viewport);
+    result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
+    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only}, settings.threads,
+             result);
+    result.setup_seconds = watch.lap();
 
-    Bins triangle_bins = bin(grid, list.triangles, view.samples), sphere_bins = bin(grid, spheres);
-    const std::size_t bytes = memory_of(objects) + list.triangles.size() * sizeof(SetupTriangle) +
-                              spheres.size() * sizeof(DrawSphere) + triangle_bins.memory_bytes() +
-                              sphere_bins.memory_bytes();
-    return {.list = std::move(list),
-            .spheres = std::move(spheres),
-            .triangle_bins = std::move(triangle_bins),
-            .sphere_bins = std::move(sphere_bins),
-            .transform_seconds = transform_seconds,
-            .setup_seconds = setup_seconds,
-            .bin_seconds = watch.lap(),
-            .memory_bytes = bytes};
+    result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
+    result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
+    result.sphere_bins = bin(grid, result.spheres);
+    result.bin_seconds = watch.lap();
 }
 
 } // namespace duet::raster

@@ -1,9 +1,13 @@
 // The front half of the pipeline: transform → cull → clip → set up → bin, for one pass.
 #pragma once
 
+#include "raster/assemble.h"
 #include "raster/bin.h"
 #include "raster/prepare.h"
 #include "raster/samples.h"
+
+#include <memory>
+#include <mutex>
 
 namespace duet::raster {
 
@@ -15,17 +19,47 @@ struct PassView {
     const std::vector<SampleOffset>& samples;
 };
 
-/// A pass's primitives, ready to be drawn tile by tile.
+/// A pass's primitives, ready to be drawn tile by tile. Made anew for each pass in the same memory.
 struct Geometry {
-    DrawList list;
+    Triangles triangles;
+    std::vector<Batch> batches; ///< a run each
+    TileLists outlines, fragments;
     std::vector<DrawSphere> spheres;
-    Bins triangle_bins, sphere_bins;
+    Bins sphere_bins;
+    CullCounts culled;
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
-    std::size_t memory_bytes = 0;
+    std::vector<Assembler> assemblers; ///< of threads at work, each taken by one at a time
+
+    std::size_t memory_bytes() const;
 };
 
-/// The same for any number of threads.
-Geometry process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                          const Settings& settings);
+/// The same for any number of threads. Throws Error for more triangles in view than can be numbered (2^31).
+void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                      Geometry& result);
+
+/// Memory of geometries, kept from frame to frame: one for each rendering that runs at a time.
+class GeometryPool {
+public:
+    std::unique_ptr<Geometry> take();
+    void give_back(std::unique_ptr<Geometry> geometry);
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Geometry>> free_;
+};
+
+/// A geometry of the pool, given back at the end.
+class GeometryLoan {
+public:
+    explicit GeometryLoan(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}
+    ~GeometryLoan() { pool_.give_back(std::move(geometry_)); }
+    GeometryLoan(const GeometryLoan&) = delete;
+    GeometryLoan& operator=(const GeometryLoan&) = delete;
+    Geometry& operator*() { return *geometry_; }
+
+private:
+    GeometryPool& pool_;
+    std::unique_ptr<Geometry> geometry_;
+};
 
 } // namespace duet::raster

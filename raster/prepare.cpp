@@ -1,5 +1,7 @@
 #include "raster/prepare.h"
 
+#include "raster/geometry.h"
+
 #include <algorithm>
 
 namespace duet::raster {
@@ -16,12 +18,20 @@ bool any_emissive(const Scene& scene, const Object& object) {
                        [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
 }
 
+std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
+    if (object.materials.size() != 1) return std::nullopt;
+    const Material& material = scene.materials[object.materials.front()];
+    if (texture_slot(material).texture >= 0) return std::nullopt;
+    return base_color(material, scene.textures, SurfacePoint{});
+}
+
 PreparedObject prepare_object(const Scene& scene, const Object& object) {
     const Shape& shape = scene.shapes[object.shape];
     PreparedObject result;
     result.bounds = bounds(shape, object.to_world);
     // Matrix entries are interpolated, so a point moves on a straight line: between the bounds of both ends.
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
+    result.one_color = one_color(scene, object);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
@@ -29,12 +39,28 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
 
 } // namespace
 
+std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene) {
+    std::vector<std::vector<PackedVertex>> result(scene.shapes.size());
+    for (std::size_t s = 0; s < result.size(); ++s) {
+        const Mesh* mesh = std::get_if<Mesh>(&scene.shapes[s]);
+        if (mesh == nullptr) continue;
+        result[s].resize(mesh->positions.size());
+        for (std::size_t i = 0; i < result[s].size(); ++i) {
+            result[s][i].p = mesh->positions[i];
+            if (!mesh->normals.empty()) result[s][i].n = mesh->normals[i];
+        }
+    }
+    return result;
+}
+
 Prepared prepare(const Scene& scene, const Settings& settings) {
     PreparedData data{.scene = scene,
                       .objects = {},
                       .polygonal = {},
                       .spheres = {},
-                      .irradiance = Irradiance(scene.environment, settings.threads)};
+                      .irradiance = Irradiance(scene.environment, settings.threads),
+                      .vertices = pack_vertices(scene),
+                      .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -45,8 +71,11 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         data.unsampled_emitters =
             data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
     }
-    data.memory_bytes = static_cast<std::int64_t>(sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
+    std::size_t vertices = 0;
+    for (const auto& shape : data.vertices) vertices += shape.size();
+    data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
+    data.geometries = std::make_shared<GeometryPool>();
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

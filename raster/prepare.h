@@ -6,14 +6,29 @@
 #include "raster/render.h"
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace duet::raster {
 
 struct PreparedObject {
     Box3 bounds;        ///< in the world, over all of the object's motion
+    std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
+
+/// A mesh's vertex as shading wants it: whole in half a line of the cache.
+struct alignas(32) PackedVertex {
+    Vec3 p;
+    float unused_p = 0;
+    Vec3 n; ///< (0, 0, 0) where the mesh has none
+    float unused_n = 0;
+};
+/// Of each shape of the scene; of those that are no meshes: none.
+std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);
+
+class GeometryPool; // raster/geometry.h
 
 struct PreparedData {
     const Scene& scene;
@@ -22,8 +37,11 @@ struct PreparedData {
     std::vector<std::uint32_t> spheres;   ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
+    std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
+    Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
+    std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
 };
 
 } // namespace duet::raster

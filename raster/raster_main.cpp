@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     program.example = "raster models/demo.json -o demo.png --size 1280x720 --spp 4";
     program.spp_help = "Coverage samples a pixel (default 1: its centre)";
     program.add_options = [&](CLI::App& app) {
-        app.add_option("--shading", shading_name, "lit (default: materials and lights), normal, albedo or depth");
+        app.add_option("--shading", shading_name, "lit (default: materials and lights), phong, normal, albedo or depth");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");

@@ -2,10 +2,12 @@
 
 #include "raster/account.h"
 #include "raster/cover.h"
+#include "raster/display.h"
 #include "raster/geometry.h"
 #include "raster/picture.h"
 #include "raster/shade.h"
 
+#include "common/image/srgb.h"
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
@@ -28,60 +30,122 @@ std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraM
                        (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
 
-void shade_tile(const PreparedData& data, const Settings& settings, const HitTile& tile, Picture& picture) {
-    const PixelRect& r = tile.rect();
-    for (int y = r.y0; y < r.y1; ++y)
-        for (int x = r.x0; x < r.x1; ++x) picture.add(tile, x, y, shade(data, settings, tile, x, y));
+/// What all passes of a rendering have in common.
+struct Frame {
+    const PreparedData& data;
+    const Settings& settings;
+    TileGrid grid;
+    Geometry& geometry;
+    Account& account;
+    Progress& progress;
+    Control& control;
+};
+
+/// One pass: its geometry, then each tile, which render_tile(view, index) makes.
+template <typename RenderTile>
+void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                 const RenderTile& render_tile) {
+    const Pinhole pinhole = camera.through(pass.lens);
+    const PassView pass_view{.pinhole = pinhole,
+                             .time = static_cast<float>(camera.time(pass.time)),
+                             .viewport = viewport_of(view, pinhole),
+                             .samples = pass.samples};
+    process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
+    frame.account.add(frame.geometry);
+    const Stopwatch watch;
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
+        if (frame.control.stopped()) return;
+        render_tile(pass_view, i);
+        frame.account.tiles_done += 1;
+        frame.progress.step();
+    });
+    frame.account.tiles += watch.seconds();
 }
 
-/// One tile: each of its samples a pixel is covered, then shaded.
-void render_tile(const PreparedData& data, const Settings& settings, const PassView& view, const Geometry& geometry,
-                 const PixelRect& rect, std::size_t index, Picture& picture, Account& account) {
+/// One tile of a picture: each of its samples a pixel is covered, then shaded.
+void render_tile(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
+    const PixelRect rect = frame.grid.tile(index);
+    DepthTile depths;
     for (const SampleOffset offset : view.samples) {
         Stopwatch watch;
-        const HitTile tile = cover(rect, view, offset, geometry, index);
-        account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        shade_tile(data, settings, tile, picture);
-        account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+        cover(frame.geometry, view, offset, rect, index, depths);
+        const HitTile tile(depths, frame.geometry, view);
+        frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                picture.add(tile, x, y, shade(frame.data, frame.settings, tile, x, y));
+        frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
-    account.tiles_done += 1;
+}
+
+/// A pass a lens point or moment, all added up.
+Rendering render_picture(const Frame& frame, const CameraModel& camera, const View& view,
+                         const std::vector<Pass>& passes) {
+    Picture picture(view, frame.settings);
+    for (const Pass& pass : passes) {
+        if (frame.control.stopped()) break;
+        render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
+            render_tile(frame, pass_view, i, picture);
+        });
+    }
+    const Stopwatch watch;
+    frame.account.picture_bytes = picture.memory_bytes();
+    Rendering result = picture.finish(frame.settings.threads);
+    frame.account.resolve = watch.seconds();
+    return result;
+}
+
+template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
+    if (image.width() != view.width || image.height() != view.height) image = Image<Pixel>(view.width, view.height);
+}
+
+/// A single sample a pixel, straight to what a display or a shadow map takes.
+void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                    Rendering& result) {
+    const bool depths_only = frame.settings.output == Output::kNearness;
+    if (depths_only) {
+        resize(result.nearness, view);
+        frame.account.picture_bytes = result.nearness.size() * sizeof(float);
+    } else {
+        resize(result.srgb, view);
+        frame.account.picture_bytes = result.srgb.size() * sizeof(Rgba8);
+    }
+    render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
+        if (depths_only)
+            keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
+        else
+            display_tile(frame.data, frame.settings, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
+    });
 }
 
 } // namespace
 
-Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {
+void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
     check(view, settings);
     const PreparedData& data = prepared.data();
     const CameraModel camera(view);
-    const std::vector<Pass> passes = plan(data, view, camera, settings);
-    const TileGrid grid{view.width, view.height};
-    Picture picture(view, settings);
+    Settings used = settings;
+    if (settings.output == Output::kNearness) used.samples_per_pixel = 1;
+    const std::vector<Pass> passes = plan(data, view, camera, used);
+    const TileGrid grid{{0, 0, view.width, view.height}};
     Account account;
     Progress progress(control, grid.size() * passes.size());
+    GeometryLoan geometry(*data.geometries);
+    const Frame frame{data, used, grid, *geometry, account, progress, control};
 
-    for (const Pass& pass : passes) {
-        if (control.stopped()) break;
-        const Pinhole pinhole = camera.through(pass.lens);
-        const PassView pass_view{.pinhole = pinhole,
-                                 .time = static_cast<float>(camera.time(pass.time)),
-                                 .viewport = {view.width, view.height, pinhole.near},
-                                 .samples = pass.samples};
-        const Geometry geometry = process_geometry(data, grid, pass_view, settings);
-        account.add(geometry);
-        const Stopwatch watch;
-        parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
-            if (control.stopped()) return;
-            render_tile(data, settings, pass_view, geometry, grid.tile(i), i, picture, account);
-            progress.step();
-        });
-        account.tiles += watch.seconds();
+    if (settings.output != Output::kRadiance && used.samples_per_pixel == 1) {
+        render_display(frame, camera, view, passes.front(), result);
+        result.statistics = {};
+    } else {
+        result = render_picture(frame, camera, view, passes);
+        if (settings.output == Output::kSrgb8) encode(result.radiance, settings.threads, result.srgb);
     }
+    fill_statistics(result.statistics, data, used, account, passes, grid);
+}
 
-    const Stopwatch watch;
-    const std::size_t picture_bytes = picture.memory_bytes();
-    Rendering result = picture.finish(settings.threads);
-    account.resolve = watch.seconds();
-    fill_statistics(result.statistics, data, settings, account, passes, grid, picture_bytes);
+Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {
+    Rendering result;
+    render(prepared, view, settings, control, result);
     return result;
 }
 

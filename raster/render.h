@@ -18,8 +18,9 @@ enum class Shading {
     kNormal, ///< the shading normal as a colour: (n + 1)/2
     kAlbedo, ///< base colours
     kDepth,  ///< near / depth
+    kPhong,  ///< Phong's model: highlights and diffuse light of the scene's lights, the environment's mean for ambient
 };
-/// "lit", "normal", "albedo", "depth"; throws Error for another name.
+/// "lit", "normal", "albedo", "depth", "phong"; throws Error for another name.
 Shading shading(std::string_view name);
 
 /// The parts of Shading::kLit (LightParts in raster/split.h): one that is left out is not computed.
@@ -27,8 +28,17 @@ struct PartSet {
     bool emission = true, direct = true, environment = true, reflection = true;
 };
 
+/// What is made of a picture's samples.
+enum class Output {
+    kRadiance, ///< Rendering::radiance, and the auxiliary pictures asked for
+    kSrgb8,    ///< Rendering::srgb: each pixel encoded as soon as it is shaded, as a display takes it
+    kNearness, ///< Rendering::nearness: depths alone, as a shadow map takes them; nothing is shaded
+};
+
 struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
+    Output output = Output::kRadiance; ///< others: of the first sample a pixel, without auxiliary pictures
+    bool front_faces_only = false;     ///< draw no back faces of any mesh or quad, as real-time renderers do
     PartSet parts; ///< all, but for a look at one, and for its price
     bool environment =
         true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
@@ -52,5 +62,8 @@ Prepared prepare(const Scene& scene, const Settings& settings);
 std::vector<std::string> approximations(const Prepared& prepared, const Settings& settings);
 /// One picture. Stopped by `control`, it returns what is finished, the rest black.
 Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
+/// The same into an earlier rendering: pictures of the right size are drawn over. So that who draws frame after frame
+/// takes memory once.
+void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result);
 
 } // namespace duet::raster

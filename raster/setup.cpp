@@ -1,31 +1,12 @@
 #include "raster/setup.h"
 
+#include "raster/planes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace duet::raster {
-namespace {
-
-int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
-int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
-
-} // namespace
-
-PixelRect intersect(const PixelRect& a, const PixelRect& b) {
-    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
-EdgeFunction::EdgeFunction(FixedPoint from, FixedPoint to) {
-    const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-    a = -dy;
-    b = dx;
-    c = dy * from.x - dx * from.y;
-    // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
-    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-    if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
-}
-
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
     const auto local = [&](const PixelVertex& v) {
@@ -111,11 +92,38 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     return result;
 }
 
-PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
-    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
-            floor_pixel(y1 - offset.y) + 1};
+Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
+    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
+                            static_cast<std::int32_t>(pixel.y) * kSubPixels};
+    return Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.piece);
+}
+
+Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+                            const Viewport& viewport) {
+    const Origin from = origin(corners, viewport);
+    return {whole.a, whole.b, whole.c, {from.x * kSubPixels, from.y * kSubPixels}};
+}
+
+// Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective) Σ eᵢ·(xᵢ, yᵢ, wᵢ) = det · (x, y, 1), so
+// the divisor is the determinant, whatever the pixel; with w = 1 (orthographic) the dividend is.
+DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+                    bool clipped, const Viewport& viewport) {
+    const Origin from = origin(corners, viewport);
+    const PixelVertex &a = whole.a, &b = whole.b, &c = whole.c;
+    const TrianglePlanes<double> all =
+        triangle_planes<double>({a.xw - from.x * a.w, b.xw - from.x * b.w, c.xw - from.x * c.w},
+                                {a.yw - from.y * a.w, b.yw - from.y * b.w, c.yw - from.y * c.w}, {a.w, b.w, c.w},
+                                {a.depth, b.depth, c.depth});
+    const auto& sum = viewport.orthographic ? all.depth_sum : all.sum;
+    const Vec3d plane = Vec3d(sum[0], sum[1], sum[2]) *
+                        ((viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant));
+    const double least_depth = std::min({whole.a.depth, whole.b.depth, whole.c.depth});
+    DrawTriangle result{.corners = corners, .id = id};
+    result.sound = is_finite(plane) && !sabotaged(Guard::kPerspective);
+    result.clipped = clipped;
+    if (!clipped) result.nearest = static_cast<float>(viewport.near / least_depth) * (1 + 0x1p-22f);
+    result.nearness = {plane.x, plane.y, plane.z};
+    return result;
 }
 
 } // namespace duet::raster

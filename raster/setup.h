@@ -3,21 +3,17 @@
 
 #include "common/system/sabotage.h"
 #include "raster/samples.h"
+#include "raster/tiles.h"
 #include "raster/transform.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace duet::raster {
 
-/// Half-open ranges of pixels.
-struct PixelRect {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-
-    bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
-PixelRect intersect(const PixelRect& a, const PixelRect& b);
+inline int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
+inline int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
 
 /// The line through two grid points as an integer function of the sample's place: a·x + b·y + c >= 0 where the sample
 /// is inside. The interior of a positive (clockwise in the picture) triangle is where all its edges' are. c carries the
@@ -26,12 +22,26 @@ PixelRect intersect(const PixelRect& a, const PixelRect& b);
 struct EdgeFunction {
     std::int64_t a, b, c;
 
-    EdgeFunction(FixedPoint from, FixedPoint to);
+    EdgeFunction(FixedPoint from, FixedPoint to) {
+        const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+        a = -dy;
+        b = dx;
+        c = dy * from.x - dx * from.y;
+        // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
+        const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
+        if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
+    }
     std::int64_t at(std::int64_t x, std::int64_t y) const {
         const std::int64_t value = a * x + b * y + c;
         return sabotaged(Guard::kWideEdges) ? static_cast<std::int32_t>(value) : value;
     }
 };
+
+/// A nearness as a tile keeps it.
+inline float kept_nearness(double nearness) {
+    const auto n = static_cast<float>(nearness);
+    return sabotaged(Guard::kReversedDepth) ? 1 - (1 - n) : n; // as the books': 0 near, 1 far
+}
 
 /// What an interpolated barycentric triple means for Hit::u and v.
 enum class Piece : std::uint8_t {
@@ -46,6 +56,17 @@ struct Interpolated {
     double b0, b1, b2; ///< in proportion to the barycentrics, not normalized; >= 0, but beyond a quad's diagonal
     double sum;        ///< of the three, > 0
     double depth_sum;  ///< depth × sum
+
+    /// near / depth. Moved to the triangle's border, a point may come to lie before the near plane at which the outline
+    /// was cut.
+    double nearness(double near) const { return depth_sum > near * sum ? near * sum / depth_sum : 1.0; }
+};
+
+/// Nearness, near / depth, over the picture. Under perspective it is linear, in an orthographic view its inverse is.
+/// Pixels are counted from one beside the outline (origin); all in double, so that the one rounding to float is all the
+/// error that counts.
+struct NearnessPlane {
+    double x = 0, y = 0, constant = 0;
 };
 
 /// Perspective-correct barycentrics without a division by w: with homogeneous pixel vertices Vᵢ = (xw, yw, w), eᵢ(x, y)
@@ -66,16 +87,59 @@ private:
     Vec2d nearest_on_outline(Vec2d p) const;
 };
 
-/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, its interpolation what is
-/// there.
-struct SetupTriangle {
-    std::array<FixedPoint, 3> corners; ///< of positive area
-    std::uint32_t object = 0, primitive = 0;
+/// A triangle as its mesh has it, or a half of a quad, before any clipping.
+struct WholeTriangle {
+    PixelVertex a, b, c;
     Piece piece = Piece::kTriangle;
-    Interpolation interpolation;
 };
 
+/// A triangle that is ready to be drawn: its snapped outline says which samples it covers, the plane how near it is
+/// there. What else is asked of a sample follows from the whole triangle, whose number it has.
+struct alignas(64) DrawTriangle { // a line of the cache
+    std::array<FixedPoint, 3> corners; ///< of positive area
+    bool sound = false;    ///< its plane can be trusted, as that of a triangle seen edge-on can not
+    bool clipped = false;  ///< the outline is a part of it only, with corners of its own
+    std::uint32_t id = 0;  ///< in order of (object, primitive)
+    float nearest = 1;     ///< no sample is nearer
+    NearnessPlane nearness{};
+};
+
+/// A pixel beside the outline, within the picture: where Interpolation and NearnessPlane count from.
+struct Origin {
+    int x, y;
+};
+inline Origin origin(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
+    return {floor_pixel(std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport.width * kSubPixels)),
+            floor_pixel(std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport.height * kSubPixels))};
+}
+/// At one sample, the naive way.
+Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
+/// About the outline's origin.
+Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+                            const Viewport& viewport);
+/// From the whole triangle and an outline of positive area, its own or one of its clipped parts'.
+DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+                    bool clipped, const Viewport& viewport);
+
 /// The pixels in which a sample of `offset` lies within the closed box that three grid points span.
-PixelRect pixels_within(const std::array<FixedPoint, 3>& corners, SampleOffset offset);
+inline PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
+            floor_pixel(y1 - offset.y) + 1};
+}
+
+/// How far inside of the snapped outline, in values of its edge functions, a sample must lie to be inside of the
+/// unsnapped triangle for certain. Snapping moves each corner by at most half a grid point along x and y. So at a point
+/// of the box of width w and height h that bounds the corners, an edge function (pₖ − pᵢ) × (p − pᵢ) changes by at
+/// most ½ (w + h) for each of its two corners, and ½ for both at once: w + h + ½. New corners, where it is clipped, have
+/// rounding errors besides: a whole pixel is left to them.
+inline std::int64_t inside_margin(const DrawTriangle& triangle) {
+    const auto& p = triangle.corners;
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    const std::int64_t size = std::int64_t{x1} - x0 + y1 - y0;
+    return size + 1 + (triangle.clipped ? size * kSubPixels : 0);
+}
 
 } // namespace duet::raster

@@ -71,11 +71,18 @@ Bsdf bsdf_of(const PreparedData& data, const SurfacePoint& surface) {
 }
 
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
-    if (settings.shading != Shading::kLit || !settings.parts.emission || !shows_environment(data, settings)) return {};
+    if (const std::optional<Rgb> everywhere = constant_background(data, settings)) return *everywhere;
     return radiance(data.scene.environment, ray.direction);
 }
 
 } // namespace
+
+std::optional<Rgb> constant_background(const PreparedData& data, const Settings& settings) {
+    if (settings.shading != Shading::kLit || !settings.parts.emission || !shows_environment(data, settings))
+        return Rgb();
+    const auto* constant = std::get_if<ConstantEnvironment>(&data.scene.environment);
+    return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
+}
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer) {
@@ -108,6 +115,9 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
         break;
     case Shading::kAlbedo:
         result.radiance = color();
+        break;
+    case Shading::kPhong:
+        result.radiance = phong_light(scene.lights, data.ambient, color(), point, -ray.direction);
         break;
     case Shading::kDepth:
         result.radiance = Rgb(tile.nearness(x, y));

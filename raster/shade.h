@@ -4,6 +4,8 @@
 #include "raster/cover.h"
 #include "raster/prepare.h"
 
+#include <optional>
+
 namespace duet::raster {
 
 /// What one sample gives to the picture and to the auxiliary pictures.
@@ -16,5 +18,8 @@ struct Shaded {
 /// Shades one sample of a tile. Where nothing is hit, radiance is the environment's, or black where that is off or the
 /// shading shows none. The albedo is filled in where the settings ask for it.
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
+
+/// What is seen where nothing is, if it is the same everywhere.
+std::optional<Rgb> constant_background(const PreparedData& data, const Settings& settings);
 
 } // namespace duet::raster

@@ -7,13 +7,14 @@
 namespace duet::raster {
 
 Shading shading(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, Shading>, 4> kNames{{{"lit", Shading::kLit},
+    constexpr std::array<std::pair<std::string_view, Shading>, 5> kNames{{{"lit", Shading::kLit},
                                                                           {"normal", Shading::kNormal},
                                                                           {"albedo", Shading::kAlbedo},
-                                                                          {"depth", Shading::kDepth}}};
+                                                                          {"depth", Shading::kDepth},
+                                                                          {"phong", Shading::kPhong}}};
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
-    throw Error(message("shading: found ", name, ", expected lit, normal, albedo or depth"));
+    throw Error(message("shading: found ", name, ", expected lit, normal, albedo, depth or phong"));
 }
 
 } // namespace duet::raster

@@ -97,6 +97,7 @@ std::vector<DrawSphere> set_up_spheres(const Scene& scene, const std::vector<std
     for (const std::uint32_t index : objects) {
         const Object& object = scene.objects[index];
         DrawSphere draw{.object = index,
+                        .id = 0,
                         .bounds = {},
                         .sphere = std::get<Sphere>(scene.shapes[object.shape]),
                         .identity = object.identity,

@@ -13,6 +13,7 @@ namespace duet::raster {
 /// A sphere, or under an instance's transform an ellipsoid, that may be seen.
 struct DrawSphere {
     std::uint32_t object = 0;
+    std::uint32_t id = 0; ///< its number among the pass's triangles
     PixelRect bounds; ///< pixels that may see it, within the picture
     Sphere sphere;    ///< in its object's space
     bool identity = true;

@@ -5,6 +5,7 @@
 #include "common/scene/scene.h"
 #include "raster/samples.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,9 @@ struct FixedPoint {
 struct Viewport {
     int width = 0, height = 0;
     double near = 0; ///< smallest depth seen
+    bool orthographic = false;
 };
+Viewport viewport_of(const View& view, const Pinhole& pinhole);
 
 /// How far beyond the picture's edges a vertex may lie before its primitives are clipped, in pixels. With pictures of
 /// up to kMaxPictureSide = 2^14 pixels a side fixed-point coordinates stay below 2^24.4 and edge functions below 2^52:
@@ -49,22 +52,37 @@ std::uint8_t outcode(const PixelVertex& vertex, const Viewport& viewport);
 /// Rounded to the nearest grid point. The vertex needs w > 0 and a place within the guard band.
 FixedPoint snap(const PixelVertex& vertex);
 
+struct SnappedVertex {
+    FixedPoint p; ///< meaningless where the outcode has a bit of kMustClip
+    std::uint32_t outcode = 0;
+};
+
 /// An object's vertices in the picture. Quads have four a primitive (corner, +u, +u+v, +v); a mesh has its own.
 struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< its transform has a negative determinant: windings are flipped
-    std::vector<PixelVertex> vertices;
-    std::vector<FixedPoint> snapped; ///< meaningless where the outcode has a bit of kMustClip
-    std::vector<std::uint8_t> outcodes;
-    std::uint8_t any_outside = 0; ///< all outcodes or-ed
+    Mat4d to_pixel;           ///< object_to_pixel
+    Mat4d to_pixel_columns;   ///< its transpose: its columns lie together
+    std::vector<SnappedVertex> vertices;
+    unsigned any_outside = 0; ///< all outcodes or-ed
 };
 
 /// The map of an object's space to homogeneous pixels at a time. One product in double, so no world position is
 /// rounded: a vertex is as exact as the object's floats.
 Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
+/// A vertex under an object's map: cheap enough to be worked out again where it is needed, instead of being kept. The
+/// four rows side by side.
+inline PixelVertex pixel_vertex(const TransformedObject& object, Vec3 p) {
+    const auto& m = object.to_pixel_columns.m;
+    const double x = static_cast<double>(p.x), y = static_cast<double>(p.y), z = static_cast<double>(p.z);
+    std::array<double, 4> v;
+    for (std::size_t r = 0; r < 4; ++r) v[r] = m[0][r] * x + m[1][r] * y + m[2][r] * z + m[3][r];
+    return {.xw = v[0], .yw = v[1], .w = v[3], .depth = v[2]};
+}
 
 /// Transforms the meshes and quads of the listed objects, in parallel; the result has one entry an object, in order.
-std::vector<TransformedObject> transform(const Scene& scene, const std::vector<std::uint32_t>& objects,
-                                         const Pinhole& pinhole, float time, const Viewport& viewport, int threads);
+/// `result` may be an earlier one, whose memory is used again.
+void transform(const Scene& scene, const std::vector<std::uint32_t>& objects, const Pinhole& pinhole, float time,
+               const Viewport& viewport, int threads, std::vector<TransformedObject>& result);
 
 } // namespace duet::raster

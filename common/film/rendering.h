@@ -75,6 +75,9 @@ struct Rendering {
     Image<Hit> hit;
     ImageRgb variance;            ///< of the pixel's mean; of replicates (see Film)
     Image<std::uint32_t> samples; ///< number of samples taken
+    // Instead of radiance, where the rasterizer is asked for them (raster::Output).
+    Image<Rgba8> srgb;   ///< 8 bits a channel, encoded by the sRGB curve, opaque
+    ImageFloat nearness; ///< near / depth, in (0, 1]; 0 where nothing is seen
     RenderStatistics statistics;
 };
 

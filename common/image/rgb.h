@@ -3,6 +3,8 @@
 
 #include "common/vec/vec.h"
 
+#include <cstdint>
+
 namespace duet {
 
 /// A spectrum of three channels: radiance, irradiance, reflectance … whatever the name of the variable says.
@@ -46,5 +48,11 @@ inline Rgb direction_color(Vec3 n) {
 template <Arithmetic T> bool is_finite(RgbT<T> c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }
+
+/// A pixel of four bytes, as displays take them; what the values mean says the variable's name.
+struct Rgba8 {
+    std::uint8_t r = 0, g = 0, b = 0, a = 255;
+    friend bool operator==(const Rgba8&, const Rgba8&) = default;
+};
 
 } // namespace duet

@@ -58,7 +58,7 @@ private:
 Image<int> count_careful(const Mesh& floor, const TrialView& v) {
     Image<int> count(kSide, kSide, 0);
     CoverageProbe probe(v.window);
-    for (const raster::SetupTriangle& triangle : set_up(floor, v.view, v.window.offset)) {
+    for (const raster::DrawTriangle& triangle : set_up(floor, v.view, v.window.offset).outlines) {
         probe.draw(triangle.corners);
         v.window.for_each(
             [&](int x, int y) { count(x - v.window.rect.x0, y - v.window.rect.y0) += probe.covers(x, y); });

@@ -52,7 +52,7 @@ std::optional<double> depth_at(const Mesh& layer, const Pinhole& pinhole, Vec2d 
 // Draw order ---------------------------------------------------------------------------------------------------------
 
 /// Triangles over the window, some of them twice, or at the same depth as others.
-std::vector<raster::SetupTriangle> random_pile(TrialRandom& random, const TrialView& v) {
+Pile random_pile(TrialRandom& random, const TrialView& v) {
     Mesh mesh;
     const auto add = [&](const std::array<Vec3, 3>& corners) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -87,17 +87,17 @@ struct Seen {
 };
 
 /// Each triangle drawn by itself, then the nearest chosen.
-Image<Seen> choose_nearest(const std::vector<raster::SetupTriangle>& pile, const TrialView& v) {
+Image<Seen> choose_nearest(const Pile& pile, const TrialView& v) {
     Image<Seen> seen(kSide, kSide);
-    for (const raster::SetupTriangle& triangle : pile) {
-        const raster::HitTile alone = draw({triangle}, v.view, v.window);
+    for (const raster::DrawTriangle& outline : pile.outlines) {
+        const auto alone = draw(pile, {outline}, v.view, v.window);
         v.window.for_each([&](int x, int y) {
             Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
-            const float nearness = alone.nearness(x, y);
+            const float nearness = alone->nearness(x, y);
             if (nearness > here.nearness)
-                here = {nearness, triangle.primitive, triangle.primitive};
+                here = {nearness, outline.id, outline.id};
             else if (nearness > 0 && nearness == here.nearness)
-                here.lowest = min(here.lowest, triangle.primitive);
+                here.lowest = min(here.lowest, outline.id);
         });
     }
     return seen;
@@ -117,11 +117,11 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
         const int steps = static_cast<int>(random.magnitude(1, 64));
         // The one behind has the lower number: a tie would go to it.
         const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
-        std::vector<raster::SetupTriangle> triangles = set_up(before, v.view, v.window.offset);
-        for (raster::SetupTriangle& triangle : triangles) triangle.object = 1;
-        const std::vector<raster::SetupTriangle> others = set_up(behind, v.view, v.window.offset);
-        triangles.insert(random.coin() ? triangles.begin() : triangles.end(), others.begin(), others.end());
-        const raster::HitTile tile = draw(triangles, v.view, v.window);
+        Pile pile = set_up(behind, v.view, v.window.offset);
+        const auto first_before = static_cast<std::uint32_t>(pile.wholes.size());
+        pile.append(set_up(before, v.view, v.window.offset));
+        if (random.coin()) std::reverse(pile.outlines.begin(), pile.outlines.end());
+        const auto tile = draw(pile, v.view, v.window);
 
         trial.note("corners ", exact(behind.positions[0]), ", ", exact(behind.positions[1]), ", ",
                    exact(behind.positions[2]), "; others ", steps, " floats nearer");
@@ -131,7 +131,8 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
                                         near = depth_at(before, v.pinhole, pixel);
             constexpr double kResolved = 0x1p-23 * (1 + 1e-6);
             if (!far || !near || *far / *near - 1 < kResolved) return;
-            trial.careful_wrong(tile.hit(x, y).object != 1);
+            const std::uint32_t seen = tile->id(x, y);
+            trial.careful_wrong(seen < first_before || seen == raster::kNoTriangle);
             const auto z = [](double d) { return book_z(static_cast<float>(d), kNear, kFar); };
             trial.naive_wrong(!(z(*near) < z(*far)));
         });
@@ -141,18 +142,18 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
 StressResult draw_order(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         const TrialView v = random_view(trial.random, kSide);
-        std::vector<raster::SetupTriangle> pile = random_pile(trial.random, v);
-        shuffle(pile, trial.random);
-        const raster::HitTile tile = draw(pile, v.view, v.window);
+        Pile pile = random_pile(trial.random, v);
+        shuffle(pile.outlines, trial.random);
+        const auto tile = draw(pile, v.view, v.window);
         const Image<Seen> seen = choose_nearest(pile, v);
         int wrong = 0, naive_wrong = 0;
         v.window.for_each([&](int x, int y) {
             const Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
-            const Hit& hit = tile.hit(x, y);
-            wrong += (hit.valid() ? hit.primitive : kNoObject) != here.lowest;
+            const std::uint32_t id = tile->id(x, y);
+            wrong += (id == raster::kNoTriangle ? kNoObject : id) != here.lowest;
             naive_wrong += here.first != here.lowest;
         });
-        trial.note(pile.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (", v.window.rect.x0,
+        trial.note(pile.outlines.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (", v.window.rect.x0,
                    ", ", v.window.rect.y0, ')');
         trial.careful(wrong);
         trial.naive(naive_wrong);

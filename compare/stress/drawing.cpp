@@ -1,56 +1,136 @@
 #include "compare/stress/drawing.h"
 
-#include "raster/assemble.h"
-
 namespace duet::compare {
 
-using raster::PixelVertex, raster::SetupTriangle;
+using raster::PixelVertex;
 
-CoverageProbe::CoverageProbe(const Window& window)
-    : tile_(window.rect, CameraModel({Camera{}, raster::kSubPixels, raster::kSubPixels}).through(), window.offset, 0) {}
+namespace {
 
+constexpr double kProbeNear = 1e-6; ///< so many depths before it, each nearer than the last
+
+/// A pass over the window alone.
+struct WindowPass {
+    std::vector<raster::SampleOffset> samples;
+    raster::PassView view;
+    raster::TileGrid grid;
+
+    WindowPass(const View& seen, const Window& window) : WindowPass(seen, window, CameraModel(seen).through()) {}
+    WindowPass(const WindowPass&) = delete;
+    WindowPass& operator=(const WindowPass&) = delete;
+
+private:
+    WindowPass(const View& seen, const Window& window, const Pinhole& pinhole)
+        : samples{window.offset}, view{pinhole, 0, raster::viewport_of(seen, pinhole), samples}, grid{window.rect} {}
+};
+
+/// A scene of one mesh, and what the rasterizer knows of it.
+struct MeshScene {
+    Scene scene;
+    raster::PreparedData data;
+
+    explicit MeshScene(const Mesh& mesh)
+        : scene(make(mesh)), data{.scene = scene,
+                                  .objects = std::vector<raster::PreparedObject>(1),
+                                  .polygonal = {0},
+                                  .spheres = {},
+                                  .irradiance = raster::Irradiance(scene.environment, 1),
+                                  .vertices = raster::pack_vertices(scene)} {}
+    MeshScene(const MeshScene&) = delete;
+    MeshScene& operator=(const MeshScene&) = delete;
+
+    static Scene make(const Mesh& mesh) {
+        Scene scene;
+        scene.shapes = {mesh};
+        scene.objects.resize(1);
+        return scene;
+    }
+};
+
+raster::Settings everything() {
+    raster::Settings settings;
+    settings.threads = 1;
+    settings.skips.frustum = settings.skips.back_faces = false;
+    return settings;
+}
+
+} // namespace
+
+CoverageProbe::CoverageProbe(const Window& window) {
+    plan_.viewport = {1 << 14, 1 << 14, kProbeNear, true};
+    plan_.grid = {window.rect};
+    plan_.samples = {window.offset};
+    plan_.skips = everything().skips;
+    Mesh mesh;
+    mesh.positions.resize(3);
+    mesh.triangles = {{0, 1, 2}};
+    scene_ = MeshScene::make(mesh);
+    triangles_.scene = &scene_;
+    triangles_.objects.resize(1); // their map is the identity: orthographic, (x, y, depth, 1)
+    triangles_.objects[0].vertices.resize(3);
+    triangles_.runs.resize(1);
+    tile_.reset(window.rect, window.offset, plan_.viewport);
+}
+
+// Parallel to the picture, so that its depth is the same everywhere; nearer than the one before by 1/count.
 void CoverageProbe::draw(GridTriangle t) {
     ++count_;
-    const int turn = winding(t);
-    if (turn == 0) return;
-    if (turn < 0) std::swap(t[1], t[2]);
-    // Parallel to the picture, so that its depth is the same everywhere; nearer than the one before by 1/count.
-    const double depth = 1.0 / count_;
-    const auto vertex = [&](raster::FixedPoint p) {
-        const double x = static_cast<double>(p.x) / raster::kSubPixels,
-                     y = static_cast<double>(p.y) / raster::kSubPixels;
-        return PixelVertex{.xw = x * depth, .yw = y * depth, .w = depth, .depth = depth};
-    };
-    tile_.draw({.corners = t,
-                .object = 0,
-                .primitive = count_,
-                .interpolation = raster::Interpolation(vertex(t[0]), vertex(t[1]), vertex(t[2]), t[0])});
+    if (winding(t) == 0) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+        triangles_.objects[0].vertices[i].p = t[i];
+        std::get<Mesh>(scene_.shapes[0]).positions[i] =
+            Vec3(Vec3d(t[i].x, t[i].y, 0) * (1.0 / raster::kSubPixels) + Vec3d(0, 0, 1.0 / count_));
+    }
+    triangles_.runs[0] = {0, 0, 1, count_, false};
+    raster::Batch batch;
+    assembler_.assemble(plan_, triangles_, triangles_.runs[0], false, batch);
+    for (const raster::DrawTriangle& outline : batch.triangles) tile_.draw(outline, triangles_);
+    tile_.draw(batch.fragments);
 }
 
-bool CoverageProbe::covers(int x, int y) const {
-    const Hit& hit = tile_.hit(x, y);
-    return hit.valid() && hit.primitive == count_;
+bool CoverageProbe::covers(int x, int y) const { return tile_.id(x, y) == count_; }
+
+void Pile::append(const Pile& other) {
+    const auto first = static_cast<std::uint32_t>(wholes.size());
+    wholes.insert(wholes.end(), other.wholes.begin(), other.wholes.end());
+    for (raster::DrawTriangle outline : other.outlines) {
+        outline.id += first;
+        outlines.push_back(outline);
+    }
 }
 
-std::vector<SetupTriangle> set_up(const Mesh& mesh, const View& view, raster::SampleOffset offset) {
-    Scene scene;
-    scene.shapes = {mesh};
-    scene.objects.resize(1);
-    const raster::PreparedData data{.scene = scene,
-                                    .objects = std::vector<raster::PreparedObject>(1),
-                                    .polygonal = {0},
-                                    .spheres = {},
-                                    .irradiance = raster::Irradiance(scene.environment, 1)};
-    const Pinhole pinhole = CameraModel(view).through();
-    const raster::Viewport viewport{view.width, view.height, pinhole.near};
-    const std::vector<raster::TransformedObject> objects = transform(scene, data.polygonal, pinhole, 0, viewport, 1);
-    return assemble(data, objects, viewport, {offset}, {.frustum = false, .back_faces = false}, 1).triangles;
+Pile set_up(const Mesh& mesh, const View& view, raster::SampleOffset offset) {
+    const MeshScene scene(mesh);
+    const WindowPass pass(view, {{0, 0, view.width, view.height}, offset});
+    raster::Geometry geometry;
+    transform(scene.scene, {0}, pass.view.pinhole, 0, pass.view.viewport, 1, geometry.triangles.objects);
+    geometry.triangles.scene = &scene.scene;
+    // Two samples a pixel, at one place: no triangle is decided in the assembly.
+    const raster::AssemblyPlan plan{pass.view.viewport, pass.grid, {offset, offset}, everything().skips, false};
+    geometry.triangles.runs = {{0, 0, static_cast<std::uint32_t>(mesh.triangles.size()), 0, false}};
+    raster::Batch batch;
+    raster::Assembler().assemble(plan, geometry.triangles, geometry.triangles.runs[0], false, batch);
+    Pile pile;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) pile.wholes.push_back(geometry.triangles.whole(i));
+    pile.outlines = batch.triangles;
+    return pile;
 }
 
-raster::HitTile draw(const std::vector<SetupTriangle>& triangles, const View& view, const Window& window) {
-    raster::HitTile tile(window.rect, CameraModel(view).through(), window.offset, 0);
-    for (const SetupTriangle& triangle : triangles) tile.draw(triangle);
+std::unique_ptr<raster::DepthTile> draw(const Pile& pile, const std::vector<raster::DrawTriangle>& outlines,
+                                        const View& view, const Window& window) {
+    auto tile = std::make_unique<raster::DepthTile>();
+    tile->reset(window.rect, window.offset, raster::viewport_of(view, CameraModel(view).through()));
+    for (const raster::DrawTriangle& outline : outlines) tile->draw(outline, pile);
     return tile;
+}
+
+raster::HitTile draw(const Mesh& mesh, const View& view, const Window& window) {
+    const MeshScene scene(mesh);
+    const WindowPass pass(view, window);
+    raster::Geometry geometry;
+    process_geometry(scene.data, pass.grid, pass.view, everything(), geometry);
+    raster::DepthTile tile;
+    cover(geometry, pass.view, window.offset, window.rect, 0, tile);
+    return {tile, geometry, pass.view};
 }
 
 } // namespace duet::compare

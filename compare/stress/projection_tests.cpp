@@ -38,7 +38,7 @@ template <MakeTriangle make> StressResult displaced(const StressTest& test, cons
         const std::array<Vec3, 3> corners = make(trial.random, v);
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
         if (exact_triangle.edge_on()) return;
-        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
         const BookTriangle book = as_book(v.pinhole, corners);
         double worst = 0, book_worst = 0;
         v.window.for_each([&](int x, int y) {
@@ -75,7 +75,7 @@ template <MakeTriangle make> StressResult barycentrics(const StressTest& test, c
         const TrialView v = random_view(trial.random, kSide);
         const std::array<Vec3, 3> corners = make(trial.random, v);
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
-        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
         const BookTriangle book = as_book(v.pinhole, corners);
         note_trial(trial, v, corners);
         for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
@@ -95,7 +95,7 @@ StressResult points_aside(const StressTest& test, const StressSetting& setting) 
     return run_trials(test, setting, [](Trial& trial) {
         const TrialView v = random_view(trial.random, kSide);
         const std::array<Vec3, 3> corners = random_sliver(trial.random, v);
-        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
         const BookTriangle book = as_book(v.pinhole, corners);
         note_trial(trial, v, corners);
         const auto aside = [&](Vec2d pixel, double u, double w) {
@@ -133,7 +133,7 @@ template <MakeTriangle make> StressResult depths(const StressTest& test, const S
         const TrialView v = random_view(trial.random, kSide, static_cast<double>(kBookNear));
         const std::array<Vec3, 3> corners = make(trial.random, v);
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
-        const raster::HitTile tile = draw(set_up(one_triangle(corners), v.view, v.window.offset), v.view, v.window);
+        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
         const BookTriangle book = as_book(v.pinhole, corners);
         note_trial(trial, v, corners);
         for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {

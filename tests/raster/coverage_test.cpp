@@ -1,7 +1,5 @@
 // Coverage by fixed-point edge functions against an oracle in wider integers.
-#include "raster/cover.h"
-
-#include "compare/stress/exact_coverage.h"
+#include "compare/stress/drawing.h"
 
 #include <doctest/doctest.h>
 
@@ -17,38 +15,28 @@ namespace {
 constexpr int kSize = 48; // pixels a side of the test picture
 const PixelRect kPicture{0, 0, kSize, kSize};
 
-Pinhole test_pinhole() { return CameraModel({Camera{}, kSize, kSize}).through(); }
+using compare::CoverageProbe, compare::GridTriangle;
 
-SetupTriangle triangle(FixedPoint a, FixedPoint b, FixedPoint c) {
-    if (doubled_area(a, b, c) < 0) std::swap(b, c);
-    const auto vertex = [](FixedPoint p) {
-        return PixelVertex{.xw = static_cast<double>(p.x) / kSubPixels,
-                           .yw = static_cast<double>(p.y) / kSubPixels,
-                           .w = 1,
-                           .depth = 1};
-    };
-    return {.corners = {a, b, c}, .interpolation = Interpolation(vertex(a), vertex(b), vertex(c), a)};
-}
+bool has_area(const GridTriangle& t) { return doubled_area(t[0], t[1], t[2]) != 0; }
 
 /// How often the triangles cover each sample of the picture.
-Image<int> covered(const std::vector<SetupTriangle>& triangles, SampleOffset offset) {
+Image<int> covered(const std::vector<GridTriangle>& triangles, SampleOffset offset) {
     Image<int> count(kSize, kSize, 0);
-    const Pinhole pinhole = test_pinhole();
-    for (const SetupTriangle& t : triangles) {
-        HitTile tile(kPicture, pinhole, offset, 0);
-        tile.draw(t);
+    CoverageProbe probe({kPicture, offset});
+    for (const GridTriangle& t : triangles) {
+        probe.draw(t);
         for (int y = 0; y < kSize; ++y)
-            for (int x = 0; x < kSize; ++x) count(x, y) += tile.hit(x, y).valid() ? 1 : 0;
+            for (int x = 0; x < kSize; ++x) count(x, y) += probe.covers(x, y) ? 1 : 0;
     }
     return count;
 }
 
-Image<int> expected(const std::vector<SetupTriangle>& triangles, SampleOffset offset) {
+Image<int> expected(const std::vector<GridTriangle>& triangles, SampleOffset offset) {
     Image<int> count(kSize, kSize, 0);
-    for (const SetupTriangle& t : triangles)
+    for (const GridTriangle& t : triangles)
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x)
-                count(x, y) += compare::covers(t.corners, x * kSubPixels + offset.x, y * kSubPixels + offset.y) ? 1 : 0;
+                count(x, y) += compare::covers(t, x * kSubPixels + offset.x, y * kSubPixels + offset.y) ? 1 : 0;
     return count;
 }
 
@@ -65,10 +53,10 @@ std::string difference_map(const Image<int>& found, const Image<int>& wanted) {
     return map;
 }
 
-void check_equal(const Image<int>& found, const Image<int>& wanted, const SetupTriangle& t) {
+void check_equal(const Image<int>& found, const Image<int>& wanted, const GridTriangle& t) {
     const bool equal = found.pixels() == wanted.pixels();
     if (!equal)
-        for (const FixedPoint p : t.corners) MESSAGE("corner (1/256 pixel): ", p.x, ", ", p.y);
+        for (const FixedPoint p : t) MESSAGE("corner (1/256 pixel): ", p.x, ", ", p.y);
     REQUIRE_MESSAGE(equal, "coverage differs ('-': missing, digits: too much)\n", difference_map(found, wanted));
 }
 
@@ -99,8 +87,8 @@ TEST_SUITE("unit") {
                 return FixedPoint{near.x + random.integer(-reach, reach), near.y + random.integer(-reach, reach)};
             };
             const SampleOffset offset{random.integer(0, 256), random.integer(0, 256)};
-            const std::vector<SetupTriangle> one{triangle(corner(), corner(), corner())};
-            if (doubled_area(one[0].corners[0], one[0].corners[1], one[0].corners[2]) == 0) continue;
+            const std::vector<GridTriangle> one{{corner(), corner(), corner()}};
+            if (!has_area(one[0])) continue;
             check_equal(covered(one, offset), expected(one, offset), one[0]);
         }
     }
@@ -113,8 +101,8 @@ TEST_SUITE("unit") {
                 return FixedPoint{random.integer(-4, kSize + 4) * kSubPixels + offset.x,
                                   random.integer(-4, kSize + 4) * kSubPixels + offset.y};
             };
-            const std::vector<SetupTriangle> one{triangle(corner(), corner(), corner())};
-            if (doubled_area(one[0].corners[0], one[0].corners[1], one[0].corners[2]) == 0) continue;
+            const std::vector<GridTriangle> one{{corner(), corner(), corner()}};
+            if (!has_area(one[0])) continue;
             check_equal(covered(one, offset), expected(one, offset), one[0]);
         }
     }
@@ -124,8 +112,8 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 1500; ++i) {
             const FixedPoint a = random.point(-kFull, 2 * kFull), b = random.point(-kFull, 2 * kFull);
             const FixedPoint c{b.x + random.integer(-3, 3), b.y + random.integer(-3, 3)};
-            const std::vector<SetupTriangle> one{triangle(a, b, c)};
-            if (doubled_area(one[0].corners[0], one[0].corners[1], one[0].corners[2]) == 0) continue;
+            const std::vector<GridTriangle> one{{a, b, c}};
+            if (!has_area(one[0])) continue;
             check_equal(covered(one, {}), expected(one, {}), one[0]);
         }
     }
@@ -161,9 +149,9 @@ TEST_SUITE("unit") {
             const FixedPoint hub = i % 2 == 0 ? FixedPoint{128 + 256 * random.integer(2, kSize - 3),
                                                            128 + 256 * random.integer(2, kSize - 3)}
                                               : random.point(500, kFull - 500);
-            std::vector<SetupTriangle> fan;
+            std::vector<GridTriangle> fan;
             for (std::size_t k = 0; k < frame.size(); ++k)
-                fan.push_back(triangle(hub, frame[k], frame[(k + 1) % frame.size()]));
+                fan.push_back({hub, frame[k], frame[(k + 1) % frame.size()]});
             const Image<int> count = covered(fan, {});
             REQUIRE_MESSAGE(std::all_of(count.begin(), count.end(), [](int c) { return c == 1; }), "hub at ", hub.x,
                             ", ", hub.y, " (1/256 pixel)\n", difference_map(count, Image<int>(kSize, kSize, 1)));
@@ -180,13 +168,13 @@ TEST_SUITE("unit") {
                 grid.push_back({-400 + x * step + random.integer(-jitter, jitter),
                                 -400 + y * step + random.integer(-jitter, jitter)});
             }
-        std::vector<SetupTriangle> mesh;
+        std::vector<GridTriangle> mesh;
         for (std::size_t y = 0; y < kCells; ++y)
             for (std::size_t x = 0; x < kCells; ++x) {
                 const FixedPoint a = grid[y * (kCells + 1) + x], b = grid[y * (kCells + 1) + x + 1];
                 const FixedPoint c = grid[(y + 1) * (kCells + 1) + x + 1], d = grid[(y + 1) * (kCells + 1) + x];
-                mesh.push_back(triangle(a, b, c));
-                mesh.push_back(triangle(a, c, d));
+                mesh.push_back({a, b, c});
+                mesh.push_back({a, c, d});
             }
         for (const SampleOffset offset : {SampleOffset{}, SampleOffset{0, 0}, SampleOffset{256, 77}}) {
             const Image<int> count = covered(mesh, offset);
@@ -195,39 +183,83 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("drawing into tiles gives what drawing at once gives") {
+    TEST_CASE("drawing into the tiles of a grid covers what the oracle says") {
         Random random(6);
-        const TileGrid grid{kSize, kSize};
-        const Pinhole pinhole = test_pinhole();
-        for (int i = 0; i < 200; ++i) {
-            const std::vector<SetupTriangle> one{triangle(
-                random.point(-kFull, 2 * kFull), random.point(-kFull, 2 * kFull), random.point(-kFull, 2 * kFull))};
-            const std::vector<SampleOffset> samples{{random.integer(0, 256), random.integer(0, 256)}, {0, 256}};
-            const Bins bins = bin(grid, one, samples);
-            Image<int> count(kSize, kSize, 0);
+        constexpr int kWidth = 150, kHeight = 130; // three by three tiles, those at the edges smaller
+        const TileGrid grid{{0, 0, kWidth, kHeight}};
+        for (int i = 0; i < 100; ++i) {
+            const auto place = [&] { return random.integer(-kFull, 4 * kFull); };
+            std::vector<GridTriangle> one{{FixedPoint{place(), place()}, FixedPoint{place(), place()},
+                                           FixedPoint{place(), place()}}};
+            if (i % 2 == 0) one[0][1] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
+            if (i % 2 == 0) one[0][2] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
+            const SampleOffset offset{random.integer(0, 256), random.integer(0, 256)};
+            int wrong = 0;
             for (std::size_t k = 0; k < grid.size(); ++k) {
-                HitTile tile(grid.tile(k), pinhole, samples[0], 0);
-                for (const std::uint32_t index : bins.tile(k)) tile.draw(one[index]);
-                for (int y = tile.rect().y0; y < tile.rect().y1; ++y)
-                    for (int x = tile.rect().x0; x < tile.rect().x1; ++x) count(x, y) += tile.hit(x, y).valid() ? 1 : 0;
+                const PixelRect rect = grid.tile(k);
+                CoverageProbe probe({rect, offset});
+                probe.draw(one[0]);
+                for (int y = rect.y0; y < rect.y1; ++y)
+                    for (int x = rect.x0; x < rect.x1; ++x)
+                        wrong += probe.covers(x, y) != compare::covers(one[0], x * kSubPixels + offset.x,
+                                                                       y * kSubPixels + offset.y);
             }
-            check_equal(count, expected(one, samples[0]), one[0]);
+            REQUIRE(wrong == 0);
         }
     }
 
-    TEST_CASE("of coincident surfaces the lower object, then primitive, wins in any order") {
-        const FixedPoint a{0, 0}, b{kFull, 0}, c{0, kFull};
-        std::vector<SetupTriangle> same(4, triangle(a, b, c));
-        same[0].object = 2, same[0].primitive = 0;
-        same[1].object = 1, same[1].primitive = 7;
-        same[2].object = 1, same[2].primitive = 3;
-        same[3].object = 5, same[3].primitive = 1;
+    TEST_CASE("a batch's outlines and fragments are sorted by tile, in their order within each") {
+        Random random(7);
+        TileSorter sorter;
+        for (int trial = 0; trial < 20; ++trial) {
+            constexpr std::size_t kTiles = 50;
+            Batch batch;
+            std::vector<TileSorter::Touch> touches;
+            std::array<std::vector<std::uint32_t>, kTiles> wanted, wanted_fragments;
+            for (std::uint32_t i = 0; i < 500; ++i) {
+                const auto tile = static_cast<std::uint32_t>(random.integer(0, kTiles - 1) * random.integer(0, 1));
+                touches.push_back({tile, i});
+                wanted[tile].push_back(i);
+                Fragment fragment;
+                fragment.id = i;
+                fragment.tile = static_cast<std::uint16_t>(kTiles - 1 - tile);
+                batch.fragments.push_back(fragment);
+                wanted_fragments[kTiles - 1 - tile].push_back(i);
+            }
+            sorter.sort(batch, touches, kTiles);
+            const std::vector<Batch> batches{batch};
+            TileLists outlines, fragments;
+            outlines.gather(batches, &Batch::triangle_segments, kTiles);
+            fragments.gather(batches, &Batch::fragment_segments, kTiles);
+            for (std::size_t tile = 0; tile < kTiles; ++tile) {
+                std::vector<std::uint32_t> found, found_fragments;
+                for (const TileLists::Item& item : outlines.tile(tile))
+                    for (std::uint32_t k = 0; k < item.count; ++k) found.push_back(batch.order[item.first + k]);
+                for (const TileLists::Item& item : fragments.tile(tile))
+                    for (std::uint32_t k = 0; k < item.count; ++k)
+                        found_fragments.push_back(batch.fragments[item.first + k].id);
+                REQUIRE(found == wanted[tile]);
+                REQUIRE(found_fragments == wanted_fragments[tile]);
+            }
+        }
+    }
+
+    TEST_CASE("of coincident surfaces the lower number wins in any order") {
+        const auto vertex = [](double x, double y) { return PixelVertex{.xw = x, .yw = y, .w = 1, .depth = 1}; };
+        const Viewport viewport{kSize, kSize, 0.5, true};
+        compare::Pile pile;
+        const std::array<FixedPoint, 3> corners{{{0, 0}, {kFull, 0}, {0, kFull}}};
+        for (std::uint32_t id = 0; id < 4; ++id) {
+            pile.wholes.push_back({vertex(0, 0), vertex(kSize, 0), vertex(0, kSize)});
+            pile.outlines.push_back(set_up(pile.wholes[id], corners, id, false, viewport));
+        }
         std::vector<std::size_t> order{0, 1, 2, 3};
         do {
-            HitTile tile(kPicture, test_pinhole(), {}, 0);
-            for (const std::size_t i : order) tile.draw(same[i]);
-            REQUIRE(tile.hit(5, 5).object == 1);
-            REQUIRE(tile.hit(5, 5).primitive == 3);
+            DepthTile tile;
+            tile.reset(kPicture, {}, viewport);
+            for (const std::size_t i : order) tile.draw(pile.outlines[i], pile);
+            REQUIRE(tile.id(5, 5) == 0);
+            REQUIRE(tile.nearness(5, 5) == 0.5f);
         } while (std::next_permutation(order.begin(), order.end()));
     }
 }

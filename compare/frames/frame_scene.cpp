@@ -1,0 +1,48 @@
+#include "compare/frames/frame_scene.h"
+
+#include "common/scene/obj/load_obj.h"
+
+#include <algorithm>
+
+namespace duet::compare {
+
+const char* name(FrameView view) { return view == FrameView::kWhole ? "whole" : "close"; }
+
+Scene frame_scene(const std::filesystem::path& mesh) {
+    ObjFile file = load_obj(mesh, {MeshNormals::kAuto, false});
+    Scene scene;
+    scene.path = mesh;
+    scene.files = file.files;
+    scene.shapes.emplace_back(std::move(file.mesh));
+    scene.materials = {Diffuse{{Rgb(0.7f, 0.65f, 0.6f)}}};
+    scene.material_names = {"grey"};
+    Object object;
+    object.name = mesh.stem().string();
+    object.materials = {0};
+    scene.objects = {object};
+    scene.lights = {SunLight{Vec3(normalize(Vec3d(0.5, -1, -0.8))), Rgb(3.0f, 2.9f, 2.7f)}};
+    scene.environment = ConstantEnvironment{Rgb(0.1f, 0.11f, 0.13f)};
+    finish_scene(scene);
+    return scene;
+}
+
+View frame_view(const Scene& scene, FrameView view, int width, int height) {
+    const Vec3d back = normalize(Vec3d(0.4, 0.3, 1)); // from the mesh to the eye
+    const Vec3d right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
+    Camera camera;
+    camera.fov_degrees = 30;
+    camera.look_at = Vec3d(scene.bounds.center());
+    const double tan_y = std::tan(radians(camera.fov_degrees / 2)), tan_x = tan_y * width / height;
+    double distance = 0; // as near as the whole mesh allows: |x| ≤ (distance − z)·tan for each vertex
+    for (const Vec3 p : std::get<Mesh>(scene.shapes[0]).positions) {
+        const Vec3d d = Vec3d(p) - camera.look_at;
+        distance = max(distance, dot(d, back) + max(abs(dot(d, right)) / tan_x, abs(dot(d, up)) / tan_y));
+    }
+    camera.eye = camera.look_at + back * (1.02 * distance);
+    camera.near = 1e-2 * distance;
+    constexpr double kCloser = 2.4; // by a longer lens, so that the eye stays outside
+    if (view == FrameView::kClose) camera.fov_degrees = degrees(2 * std::atan(tan_y / kCloser));
+    return {camera, width, height};
+}
+
+} // namespace duet::compare

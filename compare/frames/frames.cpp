@@ -1,0 +1,185 @@
+#include "compare/frames/frames.h"
+
+#include "common/image/image_file.h"
+#include "common/image/srgb.h"
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "compare/frames/processors.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace duet::compare {
+
+const char* name(FrameWork work) { return work == FrameWork::kPhong ? "phong" : "depth"; }
+
+namespace {
+
+using nlohmann::json;
+
+/// The rows of one mesh.
+struct MeshRows {
+    std::string mesh;
+    std::size_t triangles = 0;
+    std::vector<FrameRow> rows;
+};
+
+/// How many times as fast as on one processor; 0 where that was not measured.
+double scaling(const MeshRows& mesh, const FrameRow& row) {
+    for (const FrameRow& one : mesh.rows)
+        if (one.threads == 1 && row.threads > 1 && one.work == row.work && one.view == row.view)
+            return one.ours / row.ours;
+    return 0;
+}
+
+json row_json(const MeshRows& mesh, const FrameRow& row) {
+    json result = {{"mesh", mesh.mesh},          {"triangles", mesh.triangles},   {"work", name(row.work)},
+                   {"view", name(row.view)},     {"threads", row.threads},        {"covered", row.covered},
+                   {"ours", 1 / row.ours},       {"peer", nullptr},               {"peer_name", nullptr},
+                   {"ratio", nullptr},           {"difference", nullptr},         {"scaling", nullptr}};
+    if (const double times = scaling(mesh, row); times > 0) result["scaling"] = times;
+    if (!row.difference) return result;
+    result["peer"] = 1 / row.peer;
+    result["peer_name"] = row.peer_name;
+    result["ratio"] = {{"min", row.ratio.min}, {"median", row.ratio.median}, {"max", row.ratio.max}};
+    const FrameDifference& d = *row.difference;
+    result["difference"] = {{"coverage", d.coverage}, {"mean", d.mean}, {"flip", d.flip}, {"same", d.same()}};
+    return result;
+}
+
+std::string fixed(double value, int digits) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(digits) << value;
+    return text.str();
+}
+
+std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
+
+std::string difference_text(const FrameRow& row) {
+    if (!row.difference) return "";
+    const FrameDifference& d = *row.difference;
+    std::ostringstream text;
+    text << std::setprecision(2) << "coverage " << 100 * d.coverage << " %, mean " << d.mean;
+    if (row.work == FrameWork::kPhong) text << ", FLIP " << d.flip;
+    return text.str() + (d.same() ? "" : " NOT THE SAME PICTURE");
+}
+
+void print_table(std::ostream& out, const FramesOptions& options, const std::vector<MeshRows>& meshes) {
+    out << options.settings.width << "x" << options.settings.height << " pixels, milliseconds a frame (medians of "
+        << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
+    const auto line = [&](const std::vector<std::pair<std::string, int>>& cells, const std::string& rest) {
+        for (const auto& [text, width] : cells)
+            out << (width < 0 ? std::left : std::right) << std::setw(std::abs(width)) << text;
+        out << "  " << rest << '\n';
+    };
+    const auto row_line = [&](const std::string& mesh, const std::vector<std::string>& cells, const std::string& rest) {
+        const int widths[] = {-7, -7, 8, 9, 9, 9, 8, 8, 8, 8};
+        std::vector<std::pair<std::string, int>> all{{mesh, -26}};
+        for (std::size_t i = 0; i < cells.size(); ++i) all.emplace_back(cells[i], widths[i]);
+        line(all, rest);
+    };
+    row_line("mesh", {"view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling"},
+             "difference of the pictures");
+    for (const MeshRows& mesh : meshes)
+        for (const FrameRow& row : mesh.rows) {
+            const bool peer = row.difference.has_value();
+            const auto ratio = [&](double value) { return peer ? fixed(value, 2) : "-"; };
+            const double times = scaling(mesh, row);
+            row_line(mesh.mesh + " " + std::to_string(mesh.triangles),
+                     {name(row.view), name(row.work), std::to_string(row.threads), fixed(100 * row.covered, 1) + " %",
+                      milliseconds(row.ours), peer ? milliseconds(row.peer) : "-", ratio(row.ratio.min),
+                      ratio(row.ratio.median), ratio(row.ratio.max), times > 0 ? fixed(times, 2) : "-"},
+                     difference_text(row));
+        }
+    for (const MeshRows& mesh : meshes)
+        for (const FrameRow& row : mesh.rows)
+            if (!row.peer_name.empty()) {
+                out << "peer: " << row.peer_name << '\n';
+                return;
+            }
+    out << (Peer::built() ? "no peer was asked for\n" : "no peer: this program was built without EGL\n");
+}
+
+void write_pictures(const std::filesystem::path& folder, const MeshRows& mesh) {
+    const auto write = [&](const FrameRow& row, const char* whose, ImageRgb picture) {
+        if (picture.empty()) return;
+        for (Rgb& pixel : picture.pixels())
+            pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
+        write_image(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), picture);
+    };
+    for (const FrameRow& row : mesh.rows) {
+        if (row.threads != mesh.rows.front().threads) continue;
+        write(row, "ours", row.picture);
+        write(row, "peer", row.peer_picture);
+    }
+}
+
+/// Whether every row was measured: false where a signal came.
+bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
+                  ProgressBar& bar, double first, double share, const InterruptFlag& interrupt) {
+    const raster::Prepared prepared = raster::prepare(scene, {});
+    FrameSettings settings = options.settings;
+    settings.stop = &interrupt.flag();
+    double done = 0;
+    for (const FrameView view : options.views)
+        for (const int count : threads) {
+            std::vector<FrameRow> rows = measure_frames(scene, prepared, view, count, options.works, settings);
+            if (interrupt.raised()) return false;
+            std::move(rows.begin(), rows.end(), std::back_inserter(mesh.rows));
+            done += 1;
+            bar.update(first + share * done / static_cast<double>(options.views.size() * threads.size()));
+        }
+    return true;
+}
+
+std::vector<int> thread_counts(const FramesOptions& options) {
+    if (!options.threads.empty()) return options.threads;
+    const int all = Processors::available();
+    return all > 1 ? std::vector<int>{1, all} : std::vector<int>{1};
+}
+
+} // namespace
+
+int frames(const FramesOptions& options) {
+    check_json_path(options.stats);
+    const InterruptFlag interrupt;
+    const std::vector<int> threads = thread_counts(options);
+    if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
+    std::vector<MeshRows> meshes;
+    {
+        ProgressBar bar("frames", options.quiet);
+        const double share = 1.0 / static_cast<double>(options.meshes.size());
+        for (std::size_t i = 0; i < options.meshes.size(); ++i) {
+            const Scene scene = frame_scene(options.meshes[i]);
+            MeshRows mesh{options.meshes[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
+            if (!measure_mesh(options, threads, mesh, scene, bar, static_cast<double>(i) * share, share, interrupt))
+                return kExitInterrupted;
+            if (!options.folder.empty()) write_pictures(options.folder, mesh);
+            meshes.push_back(std::move(mesh));
+        }
+    }
+    if (!options.quiet && options.stats != "-") print_table(std::cout, options, meshes);
+    json rows = json::array();
+    int code = kExitOk;
+    for (const MeshRows& mesh : meshes)
+        for (const FrameRow& row : mesh.rows) {
+            rows.push_back(row_json(mesh, row));
+            if (!row.difference || row.difference->same()) continue;
+            std::cerr << "compare: " << mesh.mesh << ", " << name(row.view) << ", " << name(row.work)
+                      << ": our picture and the peer's differ: " << difference_text(row) << '\n';
+            code = kExitFailed;
+        }
+    if (!options.stats.empty())
+        write_json(options.stats, {{"program", "compare frames"},
+                                   {"version", DUET_VERSION},
+                                   {"width", options.settings.width},
+                                   {"height", options.settings.height},
+                                   {"repeats", options.settings.repeats},
+                                   {"rows", rows}});
+    return code;
+}
+
+} // namespace duet::compare

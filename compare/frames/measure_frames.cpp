@@ -1,0 +1,154 @@
+#include "compare/frames/measure_frames.h"
+
+#include "common/image/srgb.h"
+#include "common/system/stopwatch.h"
+#include "compare/frames/processors.h"
+#include "compare/metrics/flip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <functional>
+
+namespace duet::compare {
+namespace {
+
+raster::Settings settings_for(FrameWork work, int threads) {
+    raster::Settings settings;
+    settings.threads = threads;
+    settings.front_faces_only = true; // as the peer
+    settings.shading = raster::Shading::kPhong;
+    settings.output = work == FrameWork::kPhong ? raster::Output::kSrgb8 : raster::Output::kNearness;
+    return settings;
+}
+
+ImageRgb encoded_values(const Image<Rgba8>& picture) {
+    ImageRgb result(picture.width(), picture.height());
+    const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = {value(picture[i].r), value(picture[i].g), value(picture[i].b)};
+    return result;
+}
+
+double share_covered(const ImageFloat& nearness) {
+    return static_cast<double>(std::count_if(nearness.begin(), nearness.end(), [](float n) { return n > 0; })) /
+           static_cast<double>(nearness.size());
+}
+
+double share_uncovered(const ImageFloat& ours, const ImageFloat& peer) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) count += (ours[i] > 0) != (peer[i] > 0);
+    return static_cast<double>(count) / static_cast<double>(ours.size());
+}
+
+FrameDifference difference(const ImageRgb& ours, const ImageRgb& peer, double coverage) {
+    double sum = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            sum += std::abs(static_cast<double>(ours[i][channel] - peer[i][channel]));
+    return {coverage, sum / (3 * static_cast<double>(ours.size())), flip(ours, peer).mean};
+}
+
+FrameDifference difference(const ImageFloat& ours, const ImageFloat& peer) {
+    std::size_t common = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        if (!(ours[i] > 0 && peer[i] > 0)) continue;
+        ++common;
+        sum += std::abs(static_cast<double>(ours[i]) / static_cast<double>(peer[i]) - 1);
+    }
+    return {share_uncovered(ours, peer), common > 0 ? sum / static_cast<double>(common) : 0, 0};
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+/// What this process has used, on all its threads.
+double processor_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Seconds a frame, of as many frames as fill the burst.
+double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
+    const double start = processor_seconds();
+    const Stopwatch watch;
+    int frames = 0;
+    do {
+        draw();
+        ++frames;
+    } while (watch.seconds() < settings.burst);
+    return (settings.processor_time ? processor_seconds() - start : watch.seconds()) / frames;
+}
+
+void measure(FrameRow& row, const std::function<void()>& ours, const std::function<void()>& peer,
+             const FrameSettings& settings) {
+    std::vector<double> our_seconds, peer_seconds, ratios;
+    time_burst(ours, settings); // warm up: memory, shaders, threads
+    if (peer) time_burst(peer, settings);
+    for (int i = 0; i < settings.repeats; ++i) {
+        if (settings.stop != nullptr && *settings.stop) return;
+        our_seconds.push_back(time_burst(ours, settings));
+        if (!peer) continue;
+        peer_seconds.push_back(time_burst(peer, settings));
+        ratios.push_back(peer_seconds.back() / our_seconds.back());
+    }
+    row.ours = median(our_seconds);
+    if (!peer) return;
+    row.peer = median(peer_seconds);
+    const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+    row.ratio = {*least, median(ratios), *most};
+}
+
+void compare_pictures(FrameRow& row, const Rendering& ours, const ImageFloat& nearness,
+                      const std::optional<Peer>& peer) {
+    if (row.work == FrameWork::kPhong) row.picture = encoded_values(ours.srgb);
+    if (!peer) return;
+    row.peer_name = peer->name();
+    if (row.work == FrameWork::kPhong) {
+        row.peer_picture = peer->picture();
+        row.difference = difference(row.picture, row.peer_picture, share_uncovered(nearness, peer->nearness()));
+    } else {
+        row.difference = difference(ours.nearness, peer->nearness());
+    }
+}
+
+} // namespace
+
+// A pixel's coverage may differ where an edge passes close by a sample: both snap to a grid of 1/256 pixel, the peer
+// vertices that it transformed in float. Where it does not, both shade the same point; the peer's sRGB curve is an
+// approximation that is often one code too low, which makes a FLIP of up to 0.006 over a picture's covered pixels.
+bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 1e-2; }
+
+std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared& prepared, FrameView frame_kind,
+                                     int threads, const std::vector<FrameWork>& works, const FrameSettings& settings) {
+    const Processors pinned(threads);
+    const View view = frame_view(scene, frame_kind, settings.width, settings.height);
+    std::optional<Peer> peer;
+    if (settings.peer && Peer::built()) peer.emplace(scene, view, threads);
+    Control control;
+    Rendering depth, picture;
+    raster::render(prepared, view, settings_for(FrameWork::kDepth, threads), control, depth);
+    std::vector<FrameRow> rows;
+    for (const FrameWork work : works) {
+        FrameRow row;
+        row.work = work;
+        row.view = frame_kind;
+        row.threads = threads;
+        row.covered = share_covered(depth.nearness);
+        const raster::Settings ours = settings_for(work, threads);
+        const auto draw_ours = [&] { raster::render(prepared, view, ours, control, picture); };
+        std::function<void()> draw_peer;
+        if (peer) draw_peer = [&] { peer->draw(work); };
+        measure(row, draw_ours, draw_peer, settings);
+        compare_pictures(row, picture, depth.nearness, peer);
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,38 @@
+#include "compare/frames/processors.h"
+
+#include "common/system/error.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace duet::compare {
+namespace {
+
+/// Also of the threads that libraries keep. One that ends meanwhile needs no processor.
+void set_for_all_threads(const cpu_set_t& set) {
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task"))
+        sched_setaffinity(std::atoi(task.path().filename().c_str()), sizeof(set), &set);
+}
+
+} // namespace
+
+Processors::Processors(int count) {
+    sched_getaffinity(0, sizeof(before_), &before_);
+    cpu_set_t chosen;
+    CPU_ZERO(&chosen);
+    for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&chosen) < count; ++i)
+        if (CPU_ISSET(i, &before_)) CPU_SET(i, &chosen);
+    if (CPU_COUNT(&chosen) < count)
+        throw Error(message(count, " threads: this process may use ", CPU_COUNT(&before_), " processors"));
+    set_for_all_threads(chosen);
+}
+
+Processors::~Processors() { set_for_all_threads(before_); }
+
+int Processors::available() {
+    cpu_set_t set;
+    sched_getaffinity(0, sizeof(set), &set);
+    return CPU_COUNT(&set);
+}
+
+} // namespace duet::compare

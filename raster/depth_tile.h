@@ -1,0 +1,72 @@
+// Stage 6: which triangle each sample of a tile sees.
+#pragma once
+
+#include "raster/batch.h"
+#include "raster/lanes.h"
+#include "raster/triangles.h"
+
+#include <array>
+#include <span>
+
+namespace duet::raster {
+
+/// One sample a pixel of a tile: how near what it sees is, and the number of it.
+///
+/// Nearness is reversed depth, near / depth, in (0, 1], as a float: its relative error is 2^-24 at any depth, as that
+/// of Hit::t itself, and nothing is lost to a far plane. Of equal nearness the lower number wins, so that the result
+/// does not depend on the order of drawing.
+///
+/// Samples lie by blocks of 8 × 8 (place_in_tile). Each block knows how near its farthest sample is at least: what is
+/// wholly behind that is left out (Greene, Kass and Miller 1993, «Hierarchical Z-Buffer Visibility», of two levels).
+class DepthTile {
+public:
+    DepthTile() {} // what is not reset has no contents
+
+    /// Empties the tile and moves it: at most TileGrid::kTileSize pixels a side.
+    void reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport);
+
+    /// Draws a triangle. `whole` is asked for what it is a part of where snapping has a say.
+    void draw(const DrawTriangle& triangle, const WholeTriangles& whole);
+    void draw(std::span<const Fragment> fragments);
+    /// One sample: `x` and `y` are the pixel's.
+    void draw(int x, int y, std::uint32_t id, float nearness) { keep_nearest(place(x, y), id, nearness); }
+
+    const PixelRect& rect() const { return rect_; }
+    SampleOffset offset() const { return offset_; }
+    /// kNoTriangle where nothing is seen.
+    std::uint32_t id(int x, int y) const { return static_cast<std::uint32_t>(ids_[place(x, y)]); }
+    float nearness(int x, int y) const { return nearness_[place(x, y)]; }
+    std::uint32_t place(int x, int y) const {
+        return place_in_tile(static_cast<std::uint32_t>(x - rect_.x0), static_cast<std::uint32_t>(y - rect_.y0));
+    }
+    /// The same by place, for who walks along strips.
+    const std::int32_t* ids() const { return ids_.data(); }
+    const float* nearness() const { return nearness_.data(); }
+    /// Whether any sample of the block may see something.
+    bool drawn(std::size_t block) const { return drawn_[block]; }
+
+    static constexpr int kBlock = 8;
+    static constexpr int kBlocks = TileGrid::kTileSize / kBlock;       ///< along a side
+    static constexpr int kStripRows = kStrip / kStripWidth;
+
+private:
+    struct Edges;
+    struct Nearness;
+    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0, int y1,
+                             bool all);
+    void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
+                           std::uint64_t samples);
+    void keep_nearest(std::size_t place, std::uint32_t id, float nearness);
+    void find_farthest(std::size_t block);
+
+    PixelRect rect_;
+    SampleOffset offset_;
+    Viewport viewport_;
+    alignas(64) std::array<float, kTileSamples> nearness_;
+    alignas(64) std::array<std::int32_t, kTileSamples> ids_;
+    std::array<float, kBlocks * kBlocks> farthest_;        ///< of a block: no sample is farther
+    std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< times drawn to since that was found
+    std::array<bool, kBlocks * kBlocks> drawn_;
+};
+
+} // namespace duet::raster

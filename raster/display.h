@@ -1,0 +1,21 @@
+// The end of the pipeline for pictures that go straight to a display or a shadow map: a sample a pixel, and each tile
+// finished while it lies in the cache.
+#pragma once
+
+#include "raster/cover.h"
+#include "raster/prepare.h"
+
+namespace duet::raster {
+
+/// Draws a tile and shades, encodes and keeps its pixels.
+void display_tile(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
+                  const PixelRect& rect, std::size_t index, Image<Rgba8>& picture);
+
+/// Draws a tile and keeps its depths, as near / depth.
+void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
+                   ImageFloat& picture);
+
+/// A whole picture of radiance, encoded.
+void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& picture);
+
+} // namespace duet::raster

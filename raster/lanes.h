@@ -1,0 +1,157 @@
+// SIMD batches as wide as the machine has them, by xsimd: the rasterizer works through arrays of 16 samples, of which
+// every width is a part.
+#pragma once
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wuninitialized" // GCC 12 says so, wrongly, of its own AVX-512 header
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <xsimd/xsimd.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace duet::raster {
+
+using Floats = xsimd::batch<float>;
+using Ints = xsimd::batch<std::int32_t>;
+using Doubles = xsimd::batch<double>;
+
+/// Samples that are worked on together: two rows of a block of 8 × 8 (raster/depth_tile.h).
+inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
+static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
+
+/// Asks for a line of memory that will be read soon.
+inline void prefetch(const void* address) { __builtin_prefetch(address); }
+
+/// One number a sample of a strip.
+template <typename T> struct alignas(64) StripOf {
+    std::array<T, kStrip> v{};
+
+    T& operator[](std::size_t i) { return v[i]; }
+    const T& operator[](std::size_t i) const { return v[i]; }
+    void fill(T x) { v.fill(x); }
+    T* at(std::size_t i) { return v.data() + i; }
+    const T* at(std::size_t i) const { return v.data() + i; }
+};
+
+template <typename T> xsimd::batch<T> load(const StripOf<T>& strip, std::size_t i) {
+    return xsimd::batch<T>::load_aligned(strip.at(i));
+}
+template <typename T> void store(StripOf<T>& strip, std::size_t i, const xsimd::batch<T>& value) {
+    value.store_aligned(strip.at(i));
+}
+
+static_assert(Floats::size == 2 * Doubles::size);
+
+/// Doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion; by way of memory it would
+/// wait for narrow stores to become a wide load.)
+inline Floats narrowed(const Doubles& low, const Doubles& high) {
+#if defined(__AVX512F__)
+    return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(_mm512_cvtpd_ps(low))),
+                                               _mm256_castps_pd(_mm512_cvtpd_ps(high)), 1));
+#elif defined(__AVX__)
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+#else
+    alignas(64) std::array<double, Floats::size> wide;
+    alignas(64) std::array<float, Floats::size> result;
+    low.store_aligned(wide.data());
+    high.store_aligned(wide.data() + Doubles::size);
+    for (std::size_t i = 0; i < Floats::size; ++i) result[i] = static_cast<float>(wide[i]);
+    return Floats::load_aligned(result.data());
+#endif
+}
+
+/// Floats from memory to doubles.
+inline Doubles widened(const float* from) {
+#if defined(__AVX512F__)
+    return _mm512_cvtps_pd(_mm256_loadu_ps(from));
+#elif defined(__AVX__)
+    return _mm256_cvtps_pd(_mm_loadu_ps(from));
+#else
+    std::array<double, Doubles::size> wide;
+    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = static_cast<double>(from[i]);
+    return Doubles::load_unaligned(wide.data());
+#endif
+}
+
+inline Doubles widened(const std::int32_t* from) {
+#if defined(__AVX512F__)
+    return _mm512_cvtepi32_pd(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+#elif defined(__AVX__)
+    return _mm256_cvtepi32_pd(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+#else
+    std::array<double, Doubles::size> wide;
+    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = from[i];
+    return Doubles::load_unaligned(wide.data());
+#endif
+}
+
+/// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
+inline Floats inverse_sqrt(const Floats& x) {
+#if defined(__AVX512F__)
+    const Floats y = _mm512_rsqrt14_ps(x); // xsimd 8's own names no instruction there is
+#else
+    const Floats y = xsimd::rsqrt(x);
+#endif
+    return y * (Floats(1.5f) - Floats(0.5f) * x * y * y);
+}
+
+/// Four points of four numbers each, turned to batches of one coordinate; the fourth is left out.
+using Quads = xsimd::make_sized_batch_t<float, 4>;
+struct Transposed {
+    Quads x, y, z;
+};
+inline Transposed transposed(const Quads& a, const Quads& b, const Quads& c, const Quads& d) {
+    const Quads low_ac = zip_lo(a, c), low_bd = zip_lo(b, d), high_ac = zip_hi(a, c), high_bd = zip_hi(b, d);
+    return {zip_lo(low_ac, low_bd), zip_hi(low_ac, low_bd), zip_lo(high_ac, high_bd)};
+}
+
+/// A bit for each lane that holds true, lane 0 the lowest.
+inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
+#if defined(__AVX512F__)
+    return static_cast<std::uint32_t>(static_cast<__mmask16>(lanes));
+#elif defined(__AVX__)
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(lanes)));
+#else
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(lanes)));
+#endif
+}
+
+inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
+#if defined(__AVX512F__)
+    return static_cast<std::uint32_t>(static_cast<__mmask8>(lanes));
+#elif defined(__AVX__)
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(lanes));
+#else
+    return static_cast<std::uint32_t>(_mm_movemask_pd(lanes));
+#endif
+}
+
+/// The column and row of each sample of a strip.
+template <typename T> StripOf<T> strip_columns() {
+    StripOf<T> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i % kStripWidth);
+    return result;
+}
+template <typename T> StripOf<T> strip_rows() {
+    StripOf<T> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i / kStripWidth);
+    return result;
+}
+template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
+template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
+
+/// The number of each sample of a strip.
+inline const StripOf<std::int32_t> kLanes = [] {
+    StripOf<std::int32_t> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
+    return result;
+}();
+
+} // namespace duet::raster

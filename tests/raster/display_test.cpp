@@ -1,0 +1,272 @@
+// Pictures for displays and shadow maps: the fast ways against the naive ones.
+#include "raster/cover.h"
+#include "raster/encode_strip.h"
+#include "tests/raster/scenes.h"
+
+#include "common/image/srgb.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <random>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+Mesh smooth_torus(int around, int across) {
+    Mesh mesh = torus(around, across);
+    for (int i = 0; i < around; ++i)
+        for (int k = 0; k < across; ++k) {
+            const double u = 2 * kPiDouble * i / around, v = 2 * kPiDouble * k / across;
+            mesh.normals.push_back(Vec3(Vec3d(std::cos(u) * std::cos(v), std::sin(v), -std::sin(u) * std::cos(v))));
+        }
+    return mesh;
+}
+
+/// Meshes with and without normals, placed once, mirrored and stretched; a sphere and a quad.
+Scene varied(int around) {
+    Scene scene;
+    add(scene, smooth_torus(around, around / 2), Mat4(), Diffuse{{Rgb(0.8f, 0.5f, 0.3f)}});
+    add_instance(scene, 0, Mat4(translation(Vec3(1.2f, 0.9f, -0.5f)) * scaling(Vec3(-0.5f, 0.5f, 0.7f))));
+    add(scene, torus(20, 10), Mat4(translation(Vec3(-1.3f, 0.4f, 0.5f))), Diffuse{{Rgb(0.2f, 0.5f, 0.9f)}});
+    add(scene, Sphere{Vec3(0, 0.3f, 1.2f), 0.4f}, Mat4(), Diffuse{{Rgb(0.6f)}});
+    add(scene, QuadList{{Quad{Vec3(-4, -0.5f, 3), Vec3(8, 0, 0), Vec3(0, 0, -9)}}}, Mat4(), Diffuse{{Rgb(0.5f)}});
+    scene.lights = {SunLight{normalize(Vec3(0.4f, -1, -0.5f)), Rgb(2, 1.9f, 1.7f)},
+                    PointLight{Vec3(-1, 3, 2), Rgb(4, 3, 5)}};
+    scene.environment = ConstantEnvironment{Rgb(0.1f, 0.12f, 0.15f)};
+    finish_scene(scene);
+    return scene;
+}
+
+View perspective() { return {look({1.5, 2.2, 4.2}, {0, 0, 0}, 45), 331, 237}; }
+View orthographic() {
+    View view = perspective();
+    view.camera.projection = Camera::Projection::kOrthographic;
+    view.camera.height = 4;
+    return view;
+}
+
+raster::Settings phong(raster::Output output) {
+    raster::Settings settings;
+    settings.shading = raster::Shading::kPhong;
+    settings.output = output;
+    return settings;
+}
+
+int largest_difference(Rgba8 a, Rgba8 b) {
+    return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b), std::abs(a.a - b.a)});
+}
+
+std::array<Rgba8, raster::kStrip> encode_all(float value) {
+    raster::StripColors colors;
+    colors.r.fill(value);
+    colors.g.fill(value);
+    colors.b.fill(value);
+    std::array<Rgba8, raster::kStrip> codes;
+    raster::encode_strip(colors, codes);
+    return codes;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("strips of pixels get the very codes that single values get") {
+        std::vector<float> values{0.0f, -1.0f, 1.0f, 2.0f, kInfinity, -kInfinity, std::nanf(""), 1e-30f, 1e-40f};
+        for (int code = 0; code < 255; ++code) { // about each change of code
+            const auto middle = static_cast<float>(srgb_decode((code + 0.5) / 255));
+            for (int step = -200; step <= 200; ++step)
+                values.push_back(std::bit_cast<float>(std::bit_cast<std::uint32_t>(middle) + static_cast<std::uint32_t>(step)));
+        }
+        std::mt19937 engine(1);
+        std::uniform_real_distribution<float> uniform(0, 1.01f);
+        for (int i = 0; i < 200'000; ++i) values.push_back(uniform(engine));
+        for (std::uint32_t bits = 0; bits < 0x3f800000u; bits += 7919) values.push_back(std::bit_cast<float>(bits));
+        int wrong = 0;
+        for (std::size_t i = 0; i + raster::kStrip <= values.size(); i += raster::kStrip) {
+            raster::StripColors colors;
+            for (std::size_t k = 0; k < raster::kStrip; ++k) {
+                colors.r[k] = values[i + k];
+                colors.g[k] = values[values.size() - 1 - i - k];
+                colors.b[k] = values[i + k] * 0.5f;
+            }
+            std::array<Rgba8, raster::kStrip> codes;
+            raster::encode_strip(colors, codes);
+            for (std::size_t k = 0; k < raster::kStrip; ++k)
+                wrong += codes[k] != Rgba8{srgb_encode_8bit(colors.r[k]), srgb_encode_8bit(colors.g[k]),
+                                           srgb_encode_8bit(colors.b[k]), 255};
+        }
+        CHECK(wrong == 0);
+        CHECK(encode_all(0.5f)[7] == Rgba8{188, 188, 188, 255});
+    }
+
+    TEST_CASE("Phong's fast way shows what the naive one shows") {
+        for (const int around : {12, 60, 400}) // triangles of many pixels, of some, and of less than one
+            for (const View& view : {perspective(), orthographic()}) {
+                const Scene scene = varied(around);
+                const Rendering naive = render(scene, view, phong(raster::Output::kRadiance));
+                const Rendering fast = render(scene, view, phong(raster::Output::kSrgb8));
+                REQUIRE(fast.srgb.width() == view.width);
+                int different = 0, worst = 0;
+                for (std::size_t i = 0; i < naive.radiance.size(); ++i) {
+                    const Rgb c = naive.radiance[i];
+                    const Rgba8 wanted{srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b), 255};
+                    different += fast.srgb[i] != wanted;
+                    worst = std::max(worst, largest_difference(fast.srgb[i], wanted));
+                }
+                CAPTURE(around);
+                CHECK(worst <= 1);          // float against double, where a value lies at a change of code
+                CHECK(different <= 80);     // of 78447 pixels
+            }
+    }
+
+    TEST_CASE("a depth-only picture has the very nearness that shading sees") {
+        for (const View& view : {perspective(), orthographic()}) {
+            const Scene scene = varied(90);
+            raster::Settings settings = phong(raster::Output::kNearness);
+            const Rendering depths = render(scene, view, settings);
+            settings.output = raster::Output::kRadiance;
+            settings.shading = raster::Shading::kDepth;
+            const Rendering shaded = render(scene, view, settings);
+            int wrong = 0, seen = 0;
+            for (std::size_t i = 0; i < depths.nearness.size(); ++i) {
+                wrong += depths.nearness[i] != shaded.radiance[i].r;
+                seen += depths.nearness[i] > 0;
+            }
+            CHECK(wrong == 0);
+            CHECK(seen > 10'000);
+        }
+    }
+
+    TEST_CASE("pictures are the same for any number of threads, and drawn over an earlier one") {
+        const Scene scene = varied(120);
+        const View view = perspective();
+        for (const raster::Output output : {raster::Output::kSrgb8, raster::Output::kNearness}) {
+            raster::Settings settings = phong(output);
+            const raster::Prepared prepared = raster::prepare(scene, settings);
+            Control control;
+            settings.threads = 1;
+            const Rendering one = raster::render(prepared, view, settings, control);
+            Rendering again;
+            for (const int threads : {2, 3, 7}) {
+                settings.threads = threads;
+                View other = view; // something else in between, of another size
+                other.camera.eye.x += 1;
+                other.width += 100;
+                raster::render(prepared, other, settings, control, again);
+                raster::render(prepared, view, settings, control, again);
+                CHECK(again.srgb.pixels() == one.srgb.pixels());
+                CHECK(again.nearness.pixels() == one.nearness.pixels());
+            }
+        }
+    }
+
+    TEST_CASE("front faces only: nothing is seen of a mesh turned inside out but its far side") {
+        Scene scene;
+        add(scene, turned_inside_out(torus(40, 20)));
+        finish_scene(scene);
+        const View view{look({0, 3, 0.01}, {0, 0, 0}, 60), 120, 120};
+        raster::Settings settings = phong(raster::Output::kNearness);
+        const Rendering both = render(scene, view, settings);
+        settings.front_faces_only = true;
+        const Rendering fronts = render(scene, view, settings);
+        int seen = 0, farther = 0;
+        for (std::size_t i = 0; i < both.nearness.size(); ++i) {
+            REQUIRE((both.nearness[i] > 0) == (fronts.nearness[i] > 0)); // its silhouette is the same
+            seen += both.nearness[i] > 0;
+            farther += fronts.nearness[i] < both.nearness[i];
+        }
+        CHECK(seen > 2000);
+        CHECK(farther > seen * 9 / 10);
+    }
+
+    TEST_CASE("hits found side by side are those found one by one") {
+        const Scene scene = varied(200);
+        for (const View& view : {perspective(), orthographic()}) {
+            const raster::Settings settings;
+            const raster::Prepared prepared = raster::prepare(scene, settings);
+            const Pinhole pinhole = CameraModel(view).through();
+            const std::vector<raster::SampleOffset> samples{{37, 201}};
+            const raster::PassView pass{pinhole, 0, raster::viewport_of(view, pinhole), samples};
+            const raster::TileGrid grid{{0, 0, view.width, view.height}};
+            raster::Geometry geometry;
+            process_geometry(prepared.data(), grid, pass, settings, geometry);
+            double worst = 0;
+            int compared = 0;
+            for (std::size_t t = 0; t < grid.size(); ++t) {
+                raster::DepthTile depths;
+                cover(geometry, pass, samples[0], grid.tile(t), t, depths);
+                const raster::HitTile tile(depths, geometry, pass);
+                const raster::PixelRect& r = tile.rect();
+                for (int y = r.y0; y < r.y1; ++y)
+                    for (int x = r.x0; x < r.x1; ++x) {
+                        const Hit& hit = tile.hit(x, y);
+                        REQUIRE(hit.valid() == (depths.id(x, y) != raster::kNoTriangle));
+                        if (!hit.valid() || scene.objects[hit.object].shape == 2) continue;
+                        const raster::Run& run = geometry.triangles.run_of(depths.id(x, y));
+                        if (run.sphere) continue;
+                        const Vec2d pixel = samples[0].position(x, y);
+                        const Hit naive =
+                            hit_triangle(geometry.triangles.whole(depths.id(x, y)), hit.object, hit.primitive, pixel,
+                                         pinhole.ray(pixel).t_min / pinhole.near, pinhole.near);
+                        REQUIRE(naive.object == hit.object);
+                        const auto apart = [](float a, float b) { return std::abs(static_cast<double>(a) - static_cast<double>(b)); };
+                        worst = std::max({worst, apart(hit.u, naive.u), apart(hit.v, naive.v), apart(hit.t, naive.t)});
+                        ++compared;
+                    }
+            }
+            CHECK(compared > 10'000);
+            CHECK(worst < 1e-6); // a float's rounding of numbers up to 8
+        }
+    }
+
+    TEST_CASE("what is wholly behind is left out, and nothing else") {
+        // Large triangles before each other in any order: blocks get full, and later ones are refused by their depth.
+        std::mt19937 engine(3);
+        const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+        const raster::Viewport viewport{64, 64, 0.1, false};
+        for (int trial = 0; trial < 30; ++trial) {
+            struct Pile : raster::WholeTriangles {
+                std::vector<raster::WholeTriangle> wholes;
+                std::vector<raster::DrawTriangle> outlines;
+                raster::WholeTriangle whole(std::uint32_t id) const override { return wholes[id]; }
+            } pile;
+            for (std::uint32_t id = 0; id < 40; ++id) {
+                const double middle = number(1, 10);
+                const auto vertex = [&] {
+                    const double depth = middle * number(0.9, 1.1);
+                    return raster::PixelVertex{.xw = number(-60, 120) * depth, .yw = number(-60, 120) * depth, .w = depth, .depth = depth};
+                };
+                pile.wholes.push_back({vertex(), vertex(), vertex()});
+                const raster::WholeTriangle& t = pile.wholes.back();
+                std::array<raster::FixedPoint, 3> p{snap(t.a), snap(t.b), snap(t.c)};
+                if (raster::doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
+                if (raster::doubled_area(p[0], p[1], p[2]) != 0) pile.outlines.push_back(set_up(t, p, id, false, viewport));
+            }
+            raster::DepthTile together, alone;
+            together.reset({0, 0, 64, 64}, {}, viewport);
+            Image<float> nearest(64, 64, 0.0f);
+            Image<std::uint32_t> id(64, 64, raster::kNoTriangle);
+            for (const raster::DrawTriangle& outline : pile.outlines) {
+                together.draw(outline, pile);
+                alone.reset({0, 0, 64, 64}, {}, viewport);
+                alone.draw(outline, pile);
+                for (int y = 0; y < 64; ++y)
+                    for (int x = 0; x < 64; ++x) {
+                        if (!(alone.nearness(x, y) > nearest(x, y))) continue;
+                        nearest(x, y) = alone.nearness(x, y);
+                        id(x, y) = alone.id(x, y);
+                    }
+            }
+            int wrong = 0;
+            for (int y = 0; y < 64; ++y)
+                for (int x = 0; x < 64; ++x)
+                    wrong += together.id(x, y) != id(x, y) || together.nearness(x, y) != nearest(x, y);
+            REQUIRE(wrong == 0);
+        }
+    }
+}
