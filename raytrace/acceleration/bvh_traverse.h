@@ -17,7 +17,8 @@ inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
 
 /// Asks for what a visit of this child reads, before it is needed.
 inline void prefetch(const Bvh& bvh, BvhRef child) {
-    const bool leaf = child.is_leaf(); // of triangles most likely; otherwise nothing is lost
+    const bool leaf = child.is_leaf();
+    if (leaf && child.kind() != PrimitiveKind::kTriangle) return; // few, and at hand
     const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
                              : reinterpret_cast<const char*>(&node_at(bvh, child));
     constexpr std::size_t kLine = 64;
