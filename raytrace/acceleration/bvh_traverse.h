@@ -26,9 +26,16 @@ inline void prefetch(const Bvh& bvh, BvhRef child) {
         __builtin_prefetch(place + i);
 }
 
-/// Whether a ray can be traced: finite, with a direction. Others hit nothing.
+/// Numbers of a ray that are larger, and directions all of whose components are smaller than its reciprocal, would
+/// overflow on the way. (Scenes are refused beyond 1e18 long before.)
+inline constexpr float kLargestNumber = 1e37f;
+/// Whether a ray can be traced: in range, with a direction. Others hit nothing.
 inline bool traceable(const Ray& ray) {
-    return is_finite(ray.origin) && is_finite(ray.direction) && max_component(abs(ray.direction)) > 0;
+    const auto in_range = [](Vec3 v) {
+        const Vec3 size = abs(v);
+        return size.x <= kLargestNumber && size.y <= kLargestNumber && size.z <= kLargestNumber; // and not NaN
+    };
+    return in_range(ray.origin) && in_range(ray.direction) && max_component(abs(ray.direction)) >= 1 / kLargestNumber;
 }
 
 /// A child that waits to be visited: where the ray enters its box, and which it is. In one number, so that a stack of
