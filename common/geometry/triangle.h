@@ -78,7 +78,9 @@ template <typename T> struct TriangleTest {
 
     T det() const { return e0 + e1 + e2; }
     /// The distance along the ray; inv_det = 1 / det().
-    [[gnu::always_inline]] T distance(T inv_det) const { return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z; }
+    [[gnu::always_inline]] T distance(T inv_det) const {
+        return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z;
+    }
 
     /// The bound on the error of that distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products
     /// ordered so that they stay in range wherever the edge functions do.

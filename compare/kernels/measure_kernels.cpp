@@ -69,6 +69,8 @@ public:
         steps_.next().report(1);
         for (const Work& work : works_)
             for (const int threads : thread_counts()) measure_rays(work, threads);
+        // A box around a mesh faces inwards and is not closed in this sense: its rays are watched by the counts of lost
+        // ones instead.
         if (settings_.watertight > 0 && scene_.triangles().closed && !control_.stopped()) aim_at_weak_places();
         mark_best(table_.rows);
         return std::move(table_);

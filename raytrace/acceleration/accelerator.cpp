@@ -254,7 +254,9 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
-    return traceable(ray) && find_any(world_, ray, kNoObject, end, instance_test<true>(ray));
+    Hit clamped = end;
+    clamped.t = min(end.t, std::numeric_limits<float>::max()); // as above
+    return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
 }
 
 std::int64_t Accelerator::memory_bytes() const {

@@ -15,8 +15,8 @@ public:
     /// threads: for building, 0 = all. The result does not depend on it.
     Accelerator(const Scene& scene, int threads);
 
-    /// The first hit with t in (t_min, t_max]; invalid where there is none, or where the ray is not finite or has no
-    /// direction. At equal t the lower (object, primitive).
+    /// The first hit with t in (t_min, t_max], t_min not negative; invalid where there is none, or where the ray's
+    /// numbers are out of range (`traceable`) or it has no direction. At equal t the lower (object, primitive).
     Hit closest(const Ray& ray) const;
     /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
     /// neighbouring pixels do. As many hits as rays.

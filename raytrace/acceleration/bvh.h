@@ -28,7 +28,8 @@ template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) Polyg
     std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< of each x, y, z
     BlockLanes<std::uint32_t> object, primitive;
 
-    void set(std::size_t lane, const std::array<Vec3, kCorners>& corners, std::uint32_t its_object, std::uint32_t its_primitive) {
+    void set(std::size_t lane, const std::array<Vec3, kCorners>& corners, std::uint32_t its_object,
+             std::uint32_t its_primitive) {
         for (std::size_t i = 0; i < kCorners; ++i)
             for (std::size_t axis = 0; axis < 3; ++axis) corner[i][axis][lane] = corners[i][axis];
         object[lane] = its_object;
@@ -101,7 +102,8 @@ struct alignas(32) BvhNode {
     std::array<BvhRef, kWidth> children;
 
     Box3 box(std::size_t child) const {
-        return {{planes[0][child], planes[1][child], planes[2][child]}, {planes[3][child], planes[4][child], planes[5][child]}};
+        return {{planes[0][child], planes[1][child], planes[2][child]},
+                {planes[3][child], planes[4][child], planes[5][child]}};
     }
 };
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxBins = 32;
 // The cost of a step down, in tests of a leaf's block.
 constexpr float kStepCost = 1;
 // Below this depth boxes are halved by count, so that no input makes the tree deeper than another log2(2³²) levels.
-constexpr int kSahDepth = Bvh::kMaxDepth - 32;
+constexpr int kSahDepth = Bvh::kMaxDepth - 40;
 // Ranges of more items are binned and divided by all threads, in chunks of this many.
 constexpr std::size_t kChunk = std::size_t{1} << 15;
 
@@ -94,14 +94,16 @@ public:
         bins = std::min(kMaxBins, 4 + count / 16);
         const Four width = extent.centers.high - extent.centers.low;
         const Four scale = Four(static_cast<float>(bins)) / width;
-        const auto usable = (width > Four(0.0f)) & (scale < Four(kInfinity));
+        const auto usable = (width > Four(0.0f)) & (width < Four(kInfinity)) & (scale < Four(kInfinity));
         scale_ = xsimd::select(usable, scale, Four(0.0f));
         usable_ = lane_bits(usable);
     }
     bool usable(std::size_t axis) const { return (usable_ >> axis & 1) != 0; }
     std::array<std::int32_t, 4> bin(const BuildItem& item) const {
         const Four place = (doubled_center(item) - low_) * scale_;
-        const auto index = xsimd::min(xsimd::to_int(place), xsimd::batch<std::int32_t, Four::arch_type>(static_cast<std::int32_t>(bins) - 1));
+        using Four32 = xsimd::batch<std::int32_t, Four::arch_type>;
+        const Four32 last(static_cast<std::int32_t>(bins) - 1);
+        const auto index = xsimd::max(xsimd::min(xsimd::to_int(place), last), Four32(0)); // a NaN has become negative
         alignas(16) std::array<std::int32_t, 4> result;
         index.store_aligned(result.data());
         return result;
@@ -255,6 +257,7 @@ struct Job {
     std::size_t first, count;
     Extent extent;
     int depth;
+    bool distinct;
 };
 
 class Builder {
@@ -265,21 +268,25 @@ public:
     std::vector<BinaryNode> nodes;
     std::vector<Job> jobs;
 
-    std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth) {
+    /// distinct: no twins are left among the items.
+    std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth, bool distinct) {
         const auto index = static_cast<std::uint32_t>(nodes.size());
         nodes.emplace_back();
         // Boxes cannot tell these apart: without this a ray at n twins would test all n.
-        if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_) count = drop_twins_(items_.subspan(first, count));
+        if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_ && !distinct) {
+            count = drop_twins_(items_.subspan(first, count));
+            distinct = true;
+        }
         if (count <= job_size_) {
-            jobs.push_back({index, first, count, extent, depth});
+            jobs.push_back({index, first, count, extent, depth, distinct});
             return index;
         }
         nodes[index].box = extent.bounds.box();
         const std::optional<Halves> halves = split(items_.subspan(first, count), extent, depth);
         if (halves) {
             const std::size_t left_count = halves->left_count;
-            const std::uint32_t left = build(first, left_count, halves->left, depth + 1);
-            const std::uint32_t right = build(first + left_count, count - left_count, halves->right, depth + 1);
+            const std::uint32_t left = build(first, left_count, halves->left, depth + 1, distinct);
+            const std::uint32_t right = build(first + left_count, count - left_count, halves->right, depth + 1, distinct);
             nodes[index].left = left;
             nodes[index].right = right;
         } else {
@@ -366,13 +373,13 @@ BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& dro
     // The division into jobs depends on the input alone, so that the tree does, too.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
     Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, drop_twins);
-    top.build(0, tree.items.size(), extent_of(tree.items), 0);
+    top.build(0, tree.items.size(), extent_of(tree.items), 0, false);
     std::vector<std::vector<BinaryNode>> subtrees(top.jobs.size());
     parallel_for(top.jobs.size(), threads, [&](std::size_t i) {
         const Job& job = top.jobs[i];
         Builder builder(tree.items, 0, 1, drop_twins);
         builder.nodes.reserve(job.count);
-        builder.build(job.first, job.count, job.extent, job.depth);
+        builder.build(job.first, job.count, job.extent, job.depth, job.distinct);
         subtrees[i] = std::move(builder.nodes);
     });
     tree.nodes = std::move(top.nodes);

@@ -78,12 +78,13 @@ private:
     };
 
     bool set_axes(std::span<const Ray, kSize> rays, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
-        const Batch largest_float(std::numeric_limits<float>::max()), zero(0.0f);
+        const Batch largest(kLargestNumber), zero(0.0f);
         constexpr unsigned kAll = (1u << kSize) - 1;
+        if (lane_bits((t_min_ == t_min_) & (t_max_ == t_max_)) != kAll) return false; // some are NaN
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto finite = (xsimd::abs(origin[axis]) <= largest_float) & (xsimd::abs(direction[axis]) <= largest_float);
+            const auto in_range = (xsimd::abs(origin[axis]) <= largest) & (xsimd::abs(direction[axis]) <= largest);
             const unsigned negative = lane_bits(direction[axis] < zero);
-            if (lane_bits(finite) != kAll || (negative != 0 && negative != kAll)) return false;
+            if (lane_bits(in_range) != kAll || (negative != 0 && negative != kAll)) return false;
             backwards_[axis] = negative != 0;
         }
         const Vec3T<Batch> size(xsimd::abs(direction.x), xsimd::abs(direction.y), xsimd::abs(direction.z));
@@ -91,7 +92,7 @@ private:
         const std::size_t z_axis = longest_axis(abs(rays[0].direction));
         if ((z_axis == 0 ? x : z_axis == 1 ? y : kAll & ~x & ~y) != kAll) return false;
         shear_.kz = z_axis;
-        return lane_bits(size[z_axis] > zero) == kAll;
+        return lane_bits(size[z_axis] >= Batch(1 / kLargestNumber)) == kAll;
     }
 
     // What ShearedRay computes for one.
@@ -118,7 +119,8 @@ private:
                                 Batch(std::numeric_limits<float>::min());
             const Batch sign(backwards_[axis] ? -1.0f : 1.0f);
             const Batch away = error * sign;
-            const Batch reciprocal = sign / xsimd::max(xsimd::abs(direction[axis]), smallest);
+            const Batch least = SlabRay::least_divisor(extent[axis] + xsimd::abs(origin[axis]));
+            const Batch reciprocal = sign / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
             const Batch near_origin = origin[axis] + away, far_origin = origin[axis] - away;
             scale_[axis] = reciprocal;
             near_offset_[axis] = -near_origin * reciprocal;
@@ -262,7 +264,7 @@ private:
             const unsigned candidates = test.candidates() & active;
             if (candidates == 0) continue;
             const unsigned nearer = lane_bits((test.t() > packet_.t_min()) & (test.t() < ends()));
-            const unsigned ties = lane_bits(test.t() == ends());
+            const unsigned ties = lane_bits((test.t() > packet_.t_min()) & (test.t() == ends()));
             const unsigned certain = test.certain() & candidates;
             if ((certain & nearer) != 0) take(certain & nearer, test, block.object[lane], block.primitive[lane]);
             if ((certain & ties) != 0) consider_each(certain & ties, block, lane, test);

@@ -23,6 +23,10 @@ public:
     /// ray leaves a slab that it is in (by more than the error that the slab is widened by) beyond all that lies in the
     /// box.
     static constexpr float kSmallest = 1e-12f;
+    /// And no product of a reciprocal with a coordinate is infinite: the fused form would take it for a plane.
+    template <typename B> static B least_divisor(B coordinates) {
+        return xsimd::max(coordinates * B(0x1p-120f), B(0x1p-125f));
+    }
 
     SlabRay(const Ray& ray, const Box3& bounds) {
         // Without a branch on signs or sizes, which incoherent rays would mispredict.
@@ -36,7 +40,8 @@ public:
         const Vec3 extents = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin));
         const Four largest(max_component(extents));
         const Four error = (extent + extent + largest + xsimd::abs(origin)) * Four(relative) + Four(std::numeric_limits<float>::min());
-        const Four divisor = xsimd::max(xsimd::abs(direction), Four(kSmallest * max_component(size)));
+        const Four divisor = xsimd::max(xsimd::max(xsimd::abs(direction), Four(kSmallest * max_component(size))),
+                                        least_divisor(extent + xsimd::abs(origin)));
         const Four reciprocal = xsimd::bitwise_or(Four(1.0f) / divisor, sign);
         const Four away = xsimd::bitwise_or(error, sign);
         const Four near = -(origin + away) * reciprocal, far = -(origin - away) * reciprocal;

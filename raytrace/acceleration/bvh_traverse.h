@@ -17,7 +17,8 @@ inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
 
 /// Asks for what a visit of this child reads, before it is needed.
 inline void prefetch(const Bvh& bvh, BvhRef child) {
-    const bool leaf = child.is_leaf(); // of triangles most likely; otherwise nothing is lost
+    const bool leaf = child.is_leaf();
+    if (leaf && child.kind() != PrimitiveKind::kTriangle) return; // few, and at hand
     const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
                              : reinterpret_cast<const char*>(&node_at(bvh, child));
     constexpr std::size_t kLine = 64;
@@ -25,9 +26,16 @@ inline void prefetch(const Bvh& bvh, BvhRef child) {
         __builtin_prefetch(place + i);
 }
 
-/// Whether a ray can be traced: finite, with a direction. Others hit nothing.
+/// Numbers of a ray that are larger, and directions all of whose components are smaller than its reciprocal, would
+/// overflow on the way. (Scenes are refused beyond 1e18 long before.)
+inline constexpr float kLargestNumber = 1e37f;
+/// Whether a ray can be traced: in range, with a direction. Others hit nothing.
 inline bool traceable(const Ray& ray) {
-    return is_finite(ray.origin) && is_finite(ray.direction) && max_component(abs(ray.direction)) > 0;
+    const auto in_range = [](Vec3 v) {
+        const Vec3 size = abs(v);
+        return size.x <= kLargestNumber && size.y <= kLargestNumber && size.z <= kLargestNumber; // and not NaN
+    };
+    return in_range(ray.origin) && in_range(ray.direction) && max_component(abs(ray.direction)) >= 1 / kLargestNumber;
 }
 
 /// A child that waits to be visited: where the ray enters its box, and which it is. In one number, so that a stack of

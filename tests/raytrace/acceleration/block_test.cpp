@@ -281,7 +281,12 @@ TEST_SUITE("unit") {
                 else if (i % 3 == 1)
                     builder.add(Sphere{p, random.uniform(0.01f, 0.3f)}, grey);
                 else
-                    builder.add(Mesh{.positions = {p, p + u, p + v}, .normals = {}, .uvs = {}, .triangles = {{0, 1, 2}}, .material_slots = {}}, grey);
+                    builder.add(Mesh{.positions = {p, p + u, p + v},
+                                     .normals = {},
+                                     .uvs = {},
+                                     .triangles = {{0, 1, 2}},
+                                     .material_slots = {}},
+                                grey);
             }
             const Scene scene = builder.finish();
             const Accelerator accelerator(scene, 1);

@@ -213,6 +213,10 @@ TEST_SUITE("unit") {
                 CHECK(!accelerator.closest(ray).valid());
             }
         CHECK(!accelerator.closest({{0, 0, 5}, {0, -0.0f, 0}}).valid());
+        for (const float huge : {1.2e38f, 2e38f}) // finite, but not what comes of them
+            CHECK(!accelerator.closest({{huge, huge, huge}, {0, 0, -1}}).valid());
+        CHECK(!accelerator.closest({{0, 0, 0}, {1e-39f, 1e-39f, 1e-39f}}).valid());
+        CHECK(!accelerator.occluded({{0, 0, 0}, {1e-39f, 1e-39f, 1e-39f}}, Hit{}));
         Ray ray{{0, 0, 5}, {0, 0, -1}};
         ray.t_max = nan;
         CHECK(!accelerator.closest(ray).valid());

@@ -70,7 +70,7 @@ TEST_SUITE("unit") {
             for (Ray& ray : rays) {
                 const Hit hit = accelerator.closest(ray);
                 if (!hit.valid()) continue;
-                switch (soup.random.below(4)) {
+                switch (soup.random.below(5)) {
                 case 0:
                     ray.t_max = hit.t; // still hit
                     break;
@@ -79,6 +79,9 @@ TEST_SUITE("unit") {
                     break;
                 case 2:
                     ray.t_min = hit.t;
+                    break;
+                case 3:
+                    ray.t_min = ray.t_max = hit.t; // nothing is left
                     break;
                 default:
                     break;
@@ -121,6 +124,11 @@ TEST_SUITE("unit") {
         const Scene scene = soup.scene(true);
         const Accelerator accelerator(scene, 1);
         const float infinity = kInfinity, nan = std::numeric_limits<float>::quiet_NaN();
+        for (float Ray::*const end : {&Ray::t_min, &Ray::t_max}) {
+            auto rays = bundle(soup.random, soup, {0, 0, 1}, 0.01f, 0, RayPacket::kSize);
+            rays[3].*end = nan;
+            check_same(accelerator, rays);
+        }
         for (const Vec3 bad : {Vec3(nan, 0, 1), Vec3(0, infinity, 1), Vec3(0, 0, 0)}) {
             auto rays = bundle(soup.random, soup, {0, 0, 1}, 0.01f, 0, 2 * RayPacket::kSize);
             rays[3].direction = bad;
