@@ -19,7 +19,7 @@ template <typename T> struct RgbT {
         : r(static_cast<T>(c.r)), g(static_cast<T>(c.g)), b(static_cast<T>(c.b)) {}
     constexpr T operator[](std::size_t channel) const { return channel == 0 ? r : channel == 1 ? g : b; }
     constexpr T& operator[](std::size_t channel) { return channel == 0 ? r : channel == 1 ? g : b; }
-    friend constexpr bool operator==(const RgbT&, const RgbT&) = default;
+    friend bool operator==(const RgbT&, const RgbT&) = default;
 };
 using Rgb = RgbT<float>;
 using Rgbd = RgbT<double>;

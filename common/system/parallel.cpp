@@ -11,6 +11,9 @@
 #include <mutex>
 #include <vector>
 #else
+#include <map>
+#include <mutex>
+#include <optional>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -50,16 +53,37 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 
 int available_threads() { return std::max(1, tbb::info::default_concurrency()); }
 
+namespace {
+
+/// A place for so many threads to work in, kept for the next loop: worker threads that were in it last find it at once.
+/// Into an arena made anew they come only after some milliseconds, where other programs run, too: frames end before.
+struct Arena {
+    // More threads than cores may be asked for (a test of determinism does): oneTBB's own limit must allow them.
+    std::optional<tbb::global_control> limit;
+    tbb::task_arena arena;
+
+    explicit Arena(int workers) : arena(workers) {
+        if (workers > available_threads())
+            limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    }
+};
+
+tbb::task_arena& arena_of(int workers) {
+    static std::mutex mutex;
+    static std::map<int, Arena> arenas; // as the threads themselves, which oneTBB keeps, too
+    const std::lock_guard lock(mutex);
+    return arenas.try_emplace(workers, workers).first->second.arena;
+}
+
+} // namespace
+
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
     const int workers = threads > 0 ? threads : available_threads();
     if (workers == 1 || count <= 1) {
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    // More threads than cores may be asked for (a test of determinism does): oneTBB's own limit must allow them.
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
-    tbb::task_arena arena(workers);
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+    arena_of(workers).execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
 }
 
 #endif
