@@ -3,14 +3,53 @@
 #include "common/system/error.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace duet::raytrace {
 
 namespace {
 
+class Forests {
+public:
+    static constexpr std::size_t kMost = BvhNode::kWidth - 1;
+    explicit Forests(const BinaryTree& tree) : tree_(tree), costs_(tree.nodes.size()) {
+        const float cn = getenv("CN") ? (float)atof(getenv("CN")) : 1.0f;
+        for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+            const BinaryNode& node = tree.nodes[i];
+            const float area = node.box.half_area();
+            auto& cost = costs_[i];
+            if (node.leaf()) { cost.fill(area); continue; }
+            const auto& l = costs_[node.left]; const auto& r = costs_[node.right];
+            cost[0] = cn * area + best(l, r, BvhNode::kWidth).first;
+            for (std::size_t n = 2; n <= kMost; ++n) cost[n - 1] = min(cost[n - 2], best(l, r, n).first);
+        }
+    }
+    void divide(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& trees, std::size_t& count) const {
+        const BinaryNode& node = tree_.nodes[index];
+        const std::size_t k = best(costs_[node.left], costs_[node.right], n).second;
+        add(node.left, k, trees, count);
+        add(node.right, n - k, trees, count);
+    }
+    double total() const { return costs_[0][0] / tree_.nodes[0].box.half_area(); }
+private:
+    using Costs = std::array<float, kMost>;
+    static std::pair<float, std::size_t> best(const Costs& l, const Costs& r, std::size_t n) {
+        float b = kInfinity; std::size_t at = 1;
+        for (std::size_t k = 1; k < n; ++k) { const float c = l[k - 1] + r[n - k - 1]; if (c < b) { b = c; at = k; } }
+        return {b, at};
+    }
+    void add(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& trees, std::size_t& count) const {
+        const Costs& c = costs_[index];
+        while (n > 1 && c[n - 2] == c[n - 1]) --n;
+        if (n == 1) trees[count++] = index; else divide(index, n, trees, count);
+    }
+    const BinaryTree& tree_;
+    std::vector<Costs> costs_;
+};
+
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
+    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), forest_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
@@ -32,11 +71,12 @@ private:
         if (index >= BvhRef::kMaxIndex) throw Error("too many primitives for a hierarchy");
     }
 
-    // A wide node takes the place of a binary one and of those below it: of its children so far the one of the largest
-    // area, which a ray hits first, is replaced by its two, until the node is full.
     std::uint32_t pack(std::uint32_t index) {
-        std::array<std::uint32_t, BvhNode::kWidth> children{tree_.nodes[index].left, tree_.nodes[index].right};
-        std::size_t count = 2;
+        std::array<std::uint32_t, BvhNode::kWidth> children;
+        std::size_t count = 0;
+        if (getenv("GREEDY")) {
+        children = {tree_.nodes[index].left, tree_.nodes[index].right};
+        count = 2;
         while (count < BvhNode::kWidth) {
             std::size_t widest = count;
             float widest_area = -1;
@@ -52,6 +92,7 @@ private:
             children[widest] = opened.left;
             children[count++] = opened.right;
         }
+        } else forest_.divide(index, BvhNode::kWidth, children, count);
 
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
             return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
@@ -74,6 +115,7 @@ private:
     }
 
     const BinaryTree& tree_;
+    Forests forest_;
     Bvh& bvh_;
     std::vector<LeafItems>& leaves_;
     std::array<std::size_t, 4>& elements_; // so far in the list of each kind
