@@ -14,13 +14,16 @@ public:
     static constexpr std::size_t kMost = BvhNode::kWidth - 1;
     explicit Forests(const BinaryTree& tree) : tree_(tree), costs_(tree.nodes.size()) {
         const float cn = getenv("CN") ? (float)atof(getenv("CN")) : 1.0f;
+        const float eps = getenv("EPS") ? (float)atof(getenv("EPS")) : 0.0f;
+        std::vector<float> hidden(tree.nodes.size());
         for (std::size_t i = tree.nodes.size(); i-- > 0;) {
             const BinaryNode& node = tree.nodes[i];
             const float area = node.box.half_area();
             auto& cost = costs_[i];
-            if (node.leaf()) { cost.fill(area); continue; }
+            if (node.leaf()) { cost.fill(area); hidden[i] = area; continue; }
+            hidden[i] = hidden[node.left] + hidden[node.right];
             const auto& l = costs_[node.left]; const auto& r = costs_[node.right];
-            cost[0] = cn * area + best(l, r, BvhNode::kWidth).first;
+            cost[0] = cn * area + eps * hidden[i] + best(l, r, BvhNode::kWidth).first;
             for (std::size_t n = 2; n <= kMost; ++n) cost[n - 1] = min(cost[n - 2], best(l, r, n).first);
         }
     }
