@@ -2,6 +2,7 @@
 
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_optimize.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
@@ -40,7 +41,8 @@ public:
     }
 
     Bvh build(int threads) {
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads);
+        BinaryTree tree = build_binary_tree(std::move(items_), threads);
+        if (getenv("PART")) reinsert(tree, (float)atof(getenv("PART")), getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 1, threads);
         Collapsed collapsed = collapse(tree);
         Bvh& bvh = collapsed.bvh;
         bvh.triangles.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kTriangle)]);
