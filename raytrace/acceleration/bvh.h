@@ -56,11 +56,11 @@ public:
     static BvhRef node(std::uint32_t index);
     /// `count` elements from `first` in the list of the kind, 1 to kMaxCount.
     static BvhRef leaf(PrimitiveKind kind, std::uint32_t first, std::uint32_t count) {
-        return BvhRef(kLeaf | static_cast<std::uint32_t>(kind) << 29 | (count - 1) << 26 | first);
+        return BvhRef(static_cast<std::uint32_t>(kind) << 29 | (count - 1) << 26 | first);
     }
     static BvhRef from_bits(std::uint32_t bits) { return BvhRef(bits); }
 
-    bool is_leaf() const { return (bits_ & kLeaf) != 0; }
+    bool is_leaf() const { return (bits_ & kLeaf) == 0; }
     std::uint32_t index() const { return bits_ & (kMaxIndex - 1); }
     std::uint32_t count() const { return (bits_ >> 26 & 7) + 1; }
     PrimitiveKind kind() const { return static_cast<PrimitiveKind>(bits_ >> 29 & 3); }
@@ -84,7 +84,7 @@ struct alignas(32) BvhNode {
 };
 
 inline BvhRef BvhRef::node(std::uint32_t index) {
-    return BvhRef(index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
+    return BvhRef(1u << 31 | index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
 }
 
 struct Bvh {
