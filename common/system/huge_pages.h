@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -12,7 +13,8 @@
 namespace duet {
 
 /// An allocator of cache-line-aligned memory; blocks of several large pages (2 MiB) are aligned to them, and the system
-/// is asked for such pages where it leaves the choice to programs (Linux: transparent huge pages, `madvise`).
+/// is asked for such pages where it leaves the choice to programs (Linux: transparent huge pages, `madvise`). A vector
+/// that is resized leaves new elements of plain types without a value: large ones are written once.
 template <typename T> struct HugePageAllocator {
     using value_type = T;
 
@@ -29,6 +31,10 @@ template <typename T> struct HugePageAllocator {
         if (alignment == kPage) madvise(memory, bytes, MADV_HUGEPAGE); // advice: a refusal changes nothing
 #endif
         return static_cast<T*>(memory);
+    }
+    template <typename U> void construct(U* place) { ::new (static_cast<void*>(place)) U; }
+    template <typename U, typename... Args> void construct(U* place, Args&&... args) {
+        ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
     }
     void deallocate(T* memory, std::size_t) { std::free(memory); }
 

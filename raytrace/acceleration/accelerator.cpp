@@ -1,5 +1,6 @@
 #include "raytrace/acceleration/accelerator.h"
 
+#include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_build.h"
 #include "raytrace/acceleration/bvh_optimize.h"
@@ -7,6 +8,7 @@
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 namespace duet::raytrace {
@@ -16,16 +18,20 @@ namespace {
 // Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
 class Gatherer {
 public:
+    explicit Gatherer(int threads) : threads_(threads) {}
+
     void add_shape(const Shape& shape, std::uint32_t object) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-            for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
-                const auto& [a, b, c] = mesh->triangles[i];
-                add_triangle({mesh->positions[a], mesh->positions[b], mesh->positions[c], object, i});
-            }
+            add_mesh(*mesh, object);
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            for (std::uint32_t i = 0; i < list->quads.size(); ++i) add_quad({list->quads[i], object, i});
+            for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
+                const Quad& quad = list->quads[i];
+                Box3 box;
+                for (const Vec3& p : corners(quad)) box.extend(p);
+                add(PrimitiveKind::kQuad, box, quads_, {quad, object, i});
+            }
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, BvhSphere{std::get<Sphere>(shape), object, 0});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object, 0});
         }
     }
 
@@ -37,69 +43,55 @@ public:
         const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
         box.extend(box.low - room);
         box.extend(box.high + room);
-        add(PrimitiveKind::kInstance, box, instances_, BvhInstance{index, object.shape});
+        add(PrimitiveKind::kInstance, box, instances_, {index, object.shape});
     }
 
-    Bvh build(int threads) {
-        BinaryTree tree = build_binary_tree(std::move(items_), threads);
-        if (getenv("PART")) reinsert(tree, (float)atof(getenv("PART")), getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 1, threads);
-        Collapsed collapsed = collapse(tree);
+    Bvh build() {
+        BinaryTree tree = build_binary_tree(std::move(items_), threads_);
+        if (getenv("COUNT")) reinsert(tree, (std::size_t)atoi(getenv("COUNT")), getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 1, threads_);
+        Collapsed collapsed = collapse(tree, threads_);
         Bvh& bvh = collapsed.bvh;
-        bvh.triangles.reserve(collapsed.elements[static_cast<std::size_t>(PrimitiveKind::kTriangle)]);
-        for (const LeafItems& leaf : collapsed.leaves) {
-            const std::span items(tree.items.data() + leaf.first, leaf.count);
-            switch (items[0].kind) {
-            case PrimitiveKind::kTriangle:
-                bvh.triangles.push_back(block(items));
-                break;
-            case PrimitiveKind::kQuad:
-                for (const BuildItem& item : items) bvh.quads.push_back(quads_[item.index]);
-                break;
-            case PrimitiveKind::kSphere:
-                for (const BuildItem& item : items) bvh.spheres.push_back(spheres_[item.index]);
-                break;
-            case PrimitiveKind::kInstance:
-                for (const BuildItem& item : items) bvh.instances.push_back(instances_[item.index]);
-                break;
-            }
-        }
+        const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
+        bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
+        bvh.quads.resize(elements(PrimitiveKind::kQuad));
+        bvh.spheres.resize(elements(PrimitiveKind::kSphere));
+        bvh.instances.resize(elements(PrimitiveKind::kInstance));
+        in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
+            const LeafItems& leaf = collapsed.leaves[i];
+            fill_leaf(bvh, leaf, std::span(tree.items).subspan(leaf.first, leaf.count));
+        });
         return std::move(bvh);
     }
 
 private:
-    struct Triangle {
-        Vec3 a, b, c;
-        std::uint32_t object, primitive;
+    struct MeshTriangle {
+        std::uint32_t mesh, primitive;
+    };
+    struct PlacedMesh {
+        const Mesh* mesh;
+        std::uint32_t object;
     };
 
-    TriangleBlock block(std::span<const BuildItem> items) const {
-        TriangleBlock result;
-        for (auto& corner : result.corner)
-            for (auto& axis : corner) axis.fill(std::numeric_limits<float>::quiet_NaN());
-        result.object.fill(kNoObject);
-        result.primitive.fill(0);
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const Triangle& t = triangles_[items[i].index];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                result.corner[0][axis][i] = t.a[axis];
-                result.corner[1][axis][i] = t.b[axis];
-                result.corner[2][axis][i] = t.c[axis];
-            }
-            result.object[i] = t.object;
-            result.primitive[i] = t.primitive;
-        }
-        return result;
+    template <typename Body> void in_chunks(std::size_t count, const Body& body) const {
+        constexpr std::size_t kChunk = std::size_t{1} << 14;
+        parallel_for((count + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
+            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
+            for (std::size_t i = chunk * kChunk; i < end; ++i) body(i);
+        });
     }
 
-    void add_triangle(const Triangle& triangle) {
-        Box3 box;
-        for (const Vec3& p : {triangle.a, triangle.b, triangle.c}) box.extend(p);
-        add(PrimitiveKind::kTriangle, box, triangles_, triangle);
-    }
-    void add_quad(const BvhQuad& quad) {
-        Box3 box;
-        for (const Vec3& p : corners(quad.quad)) box.extend(p);
-        add(PrimitiveKind::kQuad, box, quads_, quad);
+    void add_mesh(const Mesh& mesh, std::uint32_t object) {
+        const auto which = static_cast<std::uint32_t>(meshes_.size());
+        meshes_.push_back({&mesh, object});
+        const std::size_t first_item = items_.size(), first_triangle = triangles_.size();
+        items_.resize(first_item + mesh.triangles.size());
+        triangles_.resize(first_triangle + mesh.triangles.size());
+        in_chunks(mesh.triangles.size(), [&](std::size_t i) {
+            Box3 box;
+            for (const std::uint32_t vertex : mesh.triangles[i]) box.extend(mesh.positions[vertex]);
+            items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
+            triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
+        });
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
@@ -107,8 +99,42 @@ private:
         list.push_back(primitive);
     }
 
-    std::vector<BuildItem> items_;
-    std::vector<Triangle> triangles_;
+    void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
+        const auto copy = [&](const auto& from, auto& to) {
+            for (std::size_t i = 0; i < items.size(); ++i) to[leaf.element + i] = from[items[i].index];
+        };
+        switch (items[0].kind) {
+        case PrimitiveKind::kTriangle:
+            return fill_block(bvh.triangles[leaf.element], items);
+        case PrimitiveKind::kQuad:
+            return copy(quads_, bvh.quads);
+        case PrimitiveKind::kSphere:
+            return copy(spheres_, bvh.spheres);
+        case PrimitiveKind::kInstance:
+            return copy(instances_, bvh.instances);
+        }
+    }
+
+    static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
+
+    void fill_block(TriangleBlock& block, std::span<const BuildItem> items) const {
+        for (std::size_t i = 0; i < TriangleBlock::kSize; ++i) {
+            if (i >= items.size()) {
+                block.set(i, kAbsent, kAbsent, kAbsent, kNoObject, 0);
+                continue;
+            }
+            const MeshTriangle& triangle = triangles_[items[i].index];
+            const auto& [mesh, object] = meshes_[triangle.mesh];
+            const auto& [a, b, c] = mesh->triangles[triangle.primitive];
+            block.set(i, mesh->positions[a], mesh->positions[b], mesh->positions[c], object, triangle.primitive);
+        }
+    }
+
+    int threads_;
+    BuildItems items_;
+    std::vector<PlacedMesh> meshes_;
+    std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
     std::vector<BvhQuad> quads_;
     std::vector<BvhSphere> spheres_;
     std::vector<BvhInstance> instances_;
@@ -119,7 +145,7 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
-    Gatherer world;
+    Gatherer world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -130,11 +156,11 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own;
+        Gatherer own(threads);
         own.add_shape(shape, kNoObject);
-        shapes_[object.shape] = own.build(threads);
+        shapes_[object.shape] = own.build();
     }
-    world_ = world.build(threads);
+    world_ = world.build();
 }
 
 // What an instance's hits are in its shape's hierarchy.

@@ -21,12 +21,21 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance }
 
 /// Triangles that are tested at once. Absent ones are NaN, which nothing hits.
 struct alignas(32) TriangleBlock {
-    static constexpr std::size_t kSize = 8;
+    static constexpr std::size_t kSize = kSimdLanes;
     template <typename T> using Lanes = std::array<T, kSize>;
 
     std::array<std::array<Lanes<float>, 3>, 3> corner; ///< a, b, c; of each x, y, z
     Lanes<std::uint32_t> object, primitive;
 
+    void set(std::size_t lane, Vec3 a, Vec3 b, Vec3 c, std::uint32_t its_object, std::uint32_t its_primitive) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            corner[0][axis][lane] = a[axis];
+            corner[1][axis][lane] = b[axis];
+            corner[2][axis][lane] = c[axis];
+        }
+        object[lane] = its_object;
+        primitive[lane] = its_primitive;
+    }
     Vec3 vertex(std::size_t of, std::size_t lane) const {
         return {corner[of][0][lane], corner[of][1][lane], corner[of][2][lane]};
     }
@@ -90,7 +99,7 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 struct Bvh {
     /// The longest way from the root to a leaf: bounds a traversal's stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = 8; ///< primitives
+    static constexpr std::uint32_t kMaxLeaf = TriangleBlock::kSize; ///< primitives
 
     BvhRef root = BvhRef::node(0);
     Box3 bounds;

@@ -2,6 +2,7 @@
 
 #include "common/system/error.h"
 #include "common/system/parallel.h"
+#include "raytrace/acceleration/bvh_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,30 +21,13 @@ constexpr int kSahDepth = Bvh::kMaxDepth - 32;
 constexpr std::size_t kChunk = std::size_t{1} << 15;
 
 using Items = std::span<BuildItem>;
-using Four = FloatBatch<4>; // x, y, z and one that nobody looks at
-
+using Four = Bounds::Four;
 // An item's corners: the fourth number of each is its neighbour in memory.
 Four low_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item)); }
 Four high_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item) + 3); }
 static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float) && sizeof(BuildItem) >= 7 * sizeof(float));
 // Twice the centre: it saves a product.
 Four doubled_center(const BuildItem& item) { return low_corner(item) + high_corner(item); }
-
-struct Bounds {
-    Four low = Four(kInfinity), high = Four(-kInfinity);
-
-    void extend(Four l, Four h) {
-        low = xsimd::min(low, l);
-        high = xsimd::max(high, h);
-    }
-    void extend(const Bounds& other) { extend(other.low, other.high); }
-    Box3 box() const {
-        alignas(16) std::array<float, 4> l, h;
-        low.store_aligned(l.data());
-        high.store_aligned(h.data());
-        return {Vec3(l[0], l[1], l[2]), Vec3(h[0], h[1], h[2])};
-    }
-};
 
 // What the builder knows of a set of items.
 struct Extent {
@@ -126,28 +110,6 @@ void fill(Bins& bins, std::span<const BuildItem> items, const Binning& binning) 
     }
 }
 
-// Half the surface area of boxes inside a larger one, as a part of the larger one's: in range whatever the scale.
-class RelativeArea {
-public:
-    explicit RelativeArea(const Bounds& whole) {
-        const Vec3 size = whole.box().diagonal();
-        const float largest = max_component(size);
-        scale_ = Four(largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f);
-        const float area = half(whole);
-        per_area_ = area > 0 ? 1 / area : 0;
-    }
-    float operator()(const Bounds& bounds) const { return half(bounds) * per_area_; }
-
-private:
-    float half(const Bounds& bounds) const {
-        alignas(16) std::array<float, 4> d;
-        ((bounds.high - bounds.low) * scale_).store_aligned(d.data());
-        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-    }
-    Four scale_;
-    float per_area_;
-};
-
 struct Split {
     std::size_t axis = 0;
     std::int32_t bin = 0; // items in bins up to `bin` go left
@@ -201,7 +163,7 @@ template <typename GoesLeft> Halves divide(Items items, const GoesLeft& goes_lef
 
 // The same by all threads, through a second array: each chunk's items keep their order.
 template <typename GoesLeft>
-Halves divide_in_parallel(Items items, std::vector<BuildItem>& copy, int threads, const GoesLeft& goes_left) {
+Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const GoesLeft& goes_left) {
     const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
     std::vector<Halves> parts(chunks);
     const auto chunk = [&](std::size_t i) { return items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)); };
@@ -225,7 +187,7 @@ Halves divide_in_parallel(Items items, std::vector<BuildItem>& copy, int threads
         right_begin[i] = right;
         right += chunk(i).size() - parts[i].left_count;
     }
-    copy.resize(std::max(copy.size(), items.size()));
+    if (copy.size() < items.size()) copy = BuildItems(items.size());
     parallel_for(chunks, threads, [&](std::size_t i) {
         std::size_t l = left_begin[i], r = right_begin[i];
         for (const BuildItem& item : chunk(i)) copy[goes_left(item) ? l++ : r++] = item;
@@ -322,7 +284,7 @@ private:
     std::size_t job_size_;
     int threads_;
     Bins bins_;
-    std::vector<BuildItem> copy_;
+    BuildItems copy_;
 };
 
 // Moves a subtree's nodes behind those of the tree; its root takes the placeholder's seat.
@@ -341,7 +303,7 @@ void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<Bi
 
 } // namespace
 
-BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads) {
+BinaryTree build_binary_tree(BuildItems items, int threads) {
     BinaryTree tree{{}, std::move(items)};
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));

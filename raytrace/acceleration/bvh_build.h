@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raytrace/acceleration/bvh.h"
+#include "raytrace/acceleration/bvh_bounds.h"
 
 #include <span>
 
@@ -13,6 +14,7 @@ struct BuildItem {
     std::uint32_t index;
     PrimitiveKind kind;
 };
+using BuildItems = std::vector<BuildItem, HugePageAllocator<BuildItem>>;
 
 /// A node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most Bvh::kMaxLeaf; an
 /// inner node has two children.
@@ -22,34 +24,41 @@ struct BinaryNode {
     std::uint32_t left = 0, right = 0;
 
     bool leaf() const { return count > 0; }
+    Bounds bounds() const;
 };
+
+inline Bounds BinaryNode::bounds() const {
+    static_assert(offsetof(BinaryNode, box) == 0 && sizeof(Box3) == 6 * sizeof(float));
+    const auto* numbers = reinterpret_cast<const float*>(this);
+    return {Bounds::Four::load_unaligned(numbers), Bounds::Four::load_unaligned(numbers + 3)};
+}
 
 /// Node 0 is the root; no nodes where there are no items. No deeper than Bvh::kMaxDepth.
 struct BinaryTree {
     std::vector<BinaryNode> nodes;
-    std::vector<BuildItem> items; ///< in the order of the leaves
+    BuildItems items; ///< in the order of the leaves
 };
 
 /// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
 /// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
 /// threads (0: all).
-BinaryTree build_binary_tree(std::vector<BuildItem> items, int threads);
+BinaryTree build_binary_tree(BuildItems items, int threads);
 
-/// Items [first, first + count) of the tree: those of one leaf.
+/// Items [first, first + count) of the tree: those of one leaf; and where in their kind's list they go.
 struct LeafItems {
-    std::uint32_t first, count;
+    std::uint32_t first, count, element;
 };
 
-/// A hierarchy whose lists of primitives are still to be filled: leaf by leaf in the order given, triangles as one
-/// block a leaf.
+/// A hierarchy whose lists of primitives are still to be filled, triangles as one block a leaf.
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
     std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
 };
 
-/// Packs the tree into nodes of BvhNode::kWidth children (Wald, Benthin and Boulos 2008, «Getting Rid of Packets»,
-/// §2.2). Throws Error where there are more than BvhRef can name.
-Collapsed collapse(const BinaryTree& tree);
+/// Packs the tree into nodes of BvhNode::kWidth children, so that a ray meets as few nodes as possible (Ylitie, Karras
+/// and Laine 2017, «Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs», §3). The same for any
+/// number of threads (0: all). Throws Error where there are more than BvhRef can name.
+Collapsed collapse(const BinaryTree& tree, int threads);
 
 } // namespace duet::raytrace

@@ -1,58 +1,108 @@
 #include "raytrace/acceleration/bvh_build.h"
 
 #include "common/system/error.h"
+#include "common/system/parallel.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace duet::raytrace {
 
 namespace {
 
+// How best to cut each subtree into so many wide ones: by dynamic programming from the leaves up. The cost of a wide
+// node is its area, which is the odds that a ray meets it; the leaves are given, and cost what they cost.
 class Forests {
 public:
-    static constexpr std::size_t kMost = BvhNode::kWidth - 1;
-    explicit Forests(const BinaryTree& tree) : tree_(tree), costs_(tree.nodes.size()) {
-        const float cn = getenv("CN") ? (float)atof(getenv("CN")) : 1.0f;
-        const float eps = getenv("EPS") ? (float)atof(getenv("EPS")) : 0.0f;
-        std::vector<float> hidden(tree.nodes.size());
-        for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-            const BinaryNode& node = tree.nodes[i];
-            const float area = node.box.half_area();
-            auto& cost = costs_[i];
-            if (node.leaf()) { cost.fill(area); hidden[i] = area; continue; }
-            hidden[i] = hidden[node.left] + hidden[node.right];
-            const auto& l = costs_[node.left]; const auto& r = costs_[node.right];
-            cost[0] = cn * area + eps * hidden[i] + best(l, r, BvhNode::kWidth).first;
-            for (std::size_t n = 2; n <= kMost; ++n) cost[n - 1] = min(cost[n - 2], best(l, r, n).first);
-        }
+    Forests(const BinaryTree& tree, int threads) : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
+        // Subtrees by all threads at once, then what is above them.
+        constexpr int kTop = 8;
+        std::vector<std::uint32_t> subtrees;
+        gather(0, kTop, subtrees);
+        parallel_for(subtrees.size(), threads, [&](std::size_t i) { visit(subtrees[i], Bvh::kMaxDepth); });
+        visit(0, kTop);
     }
-    void divide(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& trees, std::size_t& count) const {
-        const BinaryNode& node = tree_.nodes[index];
-        const std::size_t k = best(costs_[node.left], costs_[node.right], n).second;
-        add(node.left, k, trees, count);
-        add(node.right, n - k, trees, count);
+
+    /// The roots of the wide subtrees that are a node's children, at most BvhNode::kWidth; returns how many.
+    std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
+        std::size_t count = 0;
+        cut(node, BvhNode::kWidth, roots, count);
+        return count;
     }
-    double total() const { return costs_[0][0] / tree_.nodes[0].box.half_area(); }
+
 private:
-    using Costs = std::array<float, kMost>;
-    static std::pair<float, std::size_t> best(const Costs& l, const Costs& r, std::size_t n) {
-        float b = kInfinity; std::size_t at = 1;
-        for (std::size_t k = 1; k < n; ++k) { const float c = l[k - 1] + r[n - k - 1]; if (c < b) { b = c; at = k; } }
-        return {b, at};
+    static constexpr std::size_t kMost = BvhNode::kWidth - 1;
+    // Of two ways to meet as few nodes the better is to have large leaves far up: rays that are stopped by them are
+    // stopped sooner, and that area does not see. So each leaf costs this part of its area at each level.
+    static constexpr float kHidden = 0.1f;
+
+    struct Forest {
+        std::array<float, kMost> cost; // as one tree, as at most two …
+        float leaves;                  // the sum of their areas
+    };
+
+    void gather(std::uint32_t node, int depth, std::vector<std::uint32_t>& subtrees) const {
+        if (depth == 0) return subtrees.push_back(node);
+        if (tree_.nodes[node].leaf()) return;
+        gather(tree_.nodes[node].left, depth - 1, subtrees);
+        gather(tree_.nodes[node].right, depth - 1, subtrees);
     }
-    void add(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& trees, std::size_t& count) const {
-        const Costs& c = costs_[index];
-        while (n > 1 && c[n - 2] == c[n - 1]) --n;
-        if (n == 1) trees[count++] = index; else divide(index, n, trees, count);
+
+    // Down to `depth` levels: below, the work is done.
+    void visit(std::uint32_t index, int depth) {
+        const BinaryNode& node = tree_.nodes[index];
+        if (node.leaf()) {
+            forests_[index].cost.fill(0);
+            forests_[index].leaves = area_(node.bounds());
+            return;
+        }
+        if (depth == 0) return;
+        visit(node.left, depth - 1);
+        visit(node.right, depth - 1);
+        const Forest &left = forests_[node.left], &right = forests_[node.right];
+        Forest& forest = forests_[index];
+        forest.leaves = left.leaves + right.leaves;
+        forest.cost[0] = area_(node.bounds()) + kHidden * forest.leaves + share(left, right, BvhNode::kWidth).cost;
+        for (std::size_t n = 2; n <= kMost; ++n)
+            forest.cost[n - 1] = min(forest.cost[n - 2], share(left, right, n).cost);
     }
+
+    // The best way to make n trees of two subtrees: so many of the left one.
+    struct Share {
+        float cost;
+        std::size_t left;
+    };
+    static Share share(const Forest& left, const Forest& right, std::size_t n) {
+        Share best{kInfinity, 1};
+        for (std::size_t k = 1; k < n; ++k) {
+            const float cost = left.cost[k - 1] + right.cost[n - k - 1];
+            if (cost < best.cost) best = {cost, k};
+        }
+        return best;
+    }
+
+    void cut(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+        const BinaryNode& node = tree_.nodes[index];
+        const std::size_t left = share(forests_[node.left], forests_[node.right], n).left;
+        take(node.left, left, roots, count);
+        take(node.right, n - left, roots, count);
+    }
+    void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+        const auto& cost = forests_[node].cost;
+        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // no better than fewer
+        if (n == 1)
+            roots[count++] = node;
+        else
+            cut(node, n, roots, count);
+    }
+
     const BinaryTree& tree_;
-    std::vector<Costs> costs_;
+    RelativeArea area_;
+    std::vector<Forest> forests_; // by node
 };
 
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), forest_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
+    Collapser(const BinaryTree& tree, int threads, Collapsed& result) : tree_(tree), forests_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
@@ -61,12 +111,12 @@ public:
 
 private:
     BvhRef leaf(const BinaryNode& node) {
-        leaves_.push_back({node.first, node.count});
         const PrimitiveKind kind = tree_.items[node.first].kind;
         const std::uint32_t elements = kind == PrimitiveKind::kTriangle ? 1 : node.count; // triangles: one block
         const std::size_t first = elements_[static_cast<std::size_t>(kind)];
         elements_[static_cast<std::size_t>(kind)] += elements;
         check_index(first + elements);
+        leaves_.push_back({node.first, node.count, static_cast<std::uint32_t>(first)});
         return BvhRef::leaf(kind, static_cast<std::uint32_t>(first), elements);
     }
 
@@ -76,27 +126,7 @@ private:
 
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
-        std::size_t count = 0;
-        if (getenv("GREEDY")) {
-        children = {tree_.nodes[index].left, tree_.nodes[index].right};
-        count = 2;
-        while (count < BvhNode::kWidth) {
-            std::size_t widest = count;
-            float widest_area = -1;
-            for (std::size_t i = 0; i < count; ++i) {
-                const BinaryNode& child = tree_.nodes[children[i]];
-                if (!child.leaf() && child.box.half_area() > widest_area) {
-                    widest = i;
-                    widest_area = child.box.half_area();
-                }
-            }
-            if (widest == count) break;
-            const BinaryNode& opened = tree_.nodes[children[widest]];
-            children[widest] = opened.left;
-            children[count++] = opened.right;
-        }
-        } else forest_.divide(index, BvhNode::kWidth, children, count);
-
+        const std::size_t count = forests_.children(index, children);
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
             return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
         });
@@ -118,7 +148,7 @@ private:
     }
 
     const BinaryTree& tree_;
-    Forests forest_;
+    Forests forests_;
     Bvh& bvh_;
     std::vector<LeafItems>& leaves_;
     std::array<std::size_t, 4>& elements_; // so far in the list of each kind
@@ -128,11 +158,11 @@ template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) 
 
 } // namespace
 
-Collapsed collapse(const BinaryTree& tree) {
+Collapsed collapse(const BinaryTree& tree, int threads) {
     Collapsed result;
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
-    result.bvh.root = Collapser(tree, result).ref(0);
+    result.bvh.root = Collapser(tree, threads, result).ref(0);
     result.bvh.nodes.shrink_to_fit();
     return result;
 }

@@ -8,46 +8,24 @@ namespace duet::raytrace {
 
 namespace {
 
-using Four = FloatBatch<4>; // x, y, z and a zero
-
-struct Bounds {
-    Four low, high;
-
-    Bounds operator|(const Bounds& other) const {
-        return {xsimd::min(low, other.low), xsimd::max(high, other.high)};
-    }
-    float half_area() const {
-        alignas(16) std::array<float, 4> d;
-        (high - low).store_aligned(d.data());
-        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-    }
-};
-
 constexpr std::uint32_t kNone = ~0u;
 
-// A tree with links both ways. Node 0 is the root and stays where it is.
+bool same(const Box3& a, const Box3& b) { return a.low == b.low && a.high == b.high; }
+Bounds merge(Bounds a, const Bounds& b) {
+    a.extend(b);
+    return a;
+}
+
+// A binary tree with links both ways. Areas are relative to the root's. The root stays node 0.
 class LinkedTree {
 public:
-    explicit LinkedTree(std::vector<BinaryNode> nodes)
-        : nodes_(std::move(nodes)), boxes_(nodes_.size()), areas_(nodes_.size()), parents_(nodes_.size(), kNone) {
-        // Sizes relative to the whole: areas stay in range.
-        const Box3 whole = nodes_[0].box;
-        const float largest = max_component(whole.diagonal());
-        const float scale = largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f;
-        const auto four = [&](Vec3 p) {
-            const Vec3 q = p * scale - whole.low * scale;
-            alignas(16) const std::array<float, 4> values{q.x, q.y, q.z, 0};
-            return Four::load_aligned(values.data());
-        };
-        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            boxes_[i] = {four(nodes_[i].box.low), four(nodes_[i].box.high)};
-            areas_[i] = boxes_[i].half_area();
-            if (!nodes_[i].leaf()) parents_[nodes_[i].left] = parents_[nodes_[i].right] = i;
-        }
+    explicit LinkedTree(std::vector<BinaryNode>& nodes)
+        : nodes_(nodes), area_of_(nodes[0].bounds()), parents_(nodes.size(), kNone) {
+        for (std::uint32_t i = 0; i < nodes.size(); ++i)
+            if (!nodes[i].leaf()) parents_[nodes[i].left] = parents_[nodes[i].right] = i;
     }
 
-    std::size_t size() const { return nodes_.size(); }
-    float area(std::uint32_t node) const { return areas_[node]; }
+    float area(std::uint32_t node) const { return area_of_(nodes_[node].bounds()); }
     bool movable(std::uint32_t node) const { return node != 0 && parents_[node] != 0; } // the root must stay
 
     struct Move {
@@ -63,54 +41,61 @@ public:
     Move best_move(std::uint32_t node, std::vector<Place>& stack) const {
         Move best{node, kNone, 0};
         if (!movable(node)) return best;
-        const Bounds box = boxes_[node];
+        const Bounds box = nodes_[node].bounds();
+        const float own = area_of_(box);
         const auto search = [&](std::uint32_t subtree, float gain) {
             stack.push_back({subtree, gain});
             while (!stack.empty()) {
                 const Place place = stack.back();
                 stack.pop_back();
                 // A new parent is at least as large as the node itself.
-                if (place.gain - areas_[node] <= best.gain) continue;
-                const float merged = (boxes_[place.node] | box).half_area();
+                if (place.gain - own <= best.gain) continue;
+                const BinaryNode& there = nodes_[place.node];
+                const float merged = area_of_(merge(there.bounds(), box));
                 if (place.gain - merged > best.gain) best = {node, place.node, place.gain - merged};
-                if (nodes_[place.node].leaf()) continue;
-                const float below = place.gain + areas_[place.node] - merged;
-                stack.push_back({nodes_[place.node].left, below});
-                stack.push_back({nodes_[place.node].right, below});
+                if (there.leaf()) continue;
+                const float below = place.gain + area_of_(there.bounds()) - merged;
+                stack.push_back({there.left, below});
+                stack.push_back({there.right, below});
             }
         };
         // Up from the node: the subtrees beside the way, and the places on it.
-        float gain = areas_[parents_[node]]; // the parent vanishes
-        Bounds rest = boxes_[sibling(node)]; // of what is below `child` without the node
+        float gain = area(parents_[node]); // the parent vanishes
+        Bounds rest = nodes_[sibling(node)].bounds(); // of what is below `child` without the node
         search(sibling(node), gain);
         for (std::uint32_t child = parents_[node]; child != 0; child = parents_[child]) {
             const std::uint32_t beside = sibling(child), parent = parents_[child];
             search(beside, gain);
-            rest = rest | boxes_[beside];
-            gain -= rest.half_area();
+            rest.extend(nodes_[beside].bounds());
+            gain -= area_of_(rest);
             if (parent != 0 && gain > best.gain) best = {node, parent, gain};
-            gain += areas_[parent];
+            gain += area(parent);
         }
         return best;
     }
 
-    /// Moves a subtree if that is still possible and a gain after what has been moved before; returns the gain.
+    /// Moves a subtree, if that is still possible and a gain after what has been moved before; returns the gain.
     float apply(const Move& move) {
         if (!movable(move.node) || move.target == parents_[move.node]) return 0;
         for (std::uint32_t i = move.target; i != kNone; i = parents_[i])
             if (i == move.node) return 0;
-        const std::uint32_t old_sibling = sibling(move.node);
+        const std::uint32_t from = sibling(move.node);
         const double gain = attach(move.node, move.target);
-        if (gain > 0) return static_cast<float>(gain);
-        attach(move.node, old_sibling);
+        if (gain > 0) {
+            log_.push_back({move.node, from});
+            return static_cast<float>(gain);
+        }
+        attach(move.node, from);
         return 0;
     }
 
-    /// The nodes, children behind their parents; false where the tree is deeper than Bvh::kMaxDepth.
-    bool ordered(std::vector<BinaryNode>& result) const {
-        result.clear();
-        result.reserve(nodes_.size());
-        return copy(0, 0, result);
+    /// Undoes all moves.
+    void restore() {
+        for (; !log_.empty(); log_.pop_back()) attach(log_.back().node, log_.back().sibling);
+    }
+
+    int depth(std::uint32_t node = 0) const {
+        return nodes_[node].leaf() ? 0 : 1 + std::max(depth(nodes_[node].left), depth(nodes_[node].right));
     }
 
 private:
@@ -128,12 +113,12 @@ private:
     double refit(std::uint32_t node) {
         double gain = 0;
         for (; node != kNone; node = parents_[node]) {
-            const Bounds box = boxes_[nodes_[node].left] | boxes_[nodes_[node].right];
-            if (xsimd::all(box.low == boxes_[node].low) && xsimd::all(box.high == boxes_[node].high)) break;
-            boxes_[node] = box;
-            gain += areas_[node];
-            areas_[node] = box.half_area();
-            gain -= areas_[node];
+            Box3 box = nodes_[nodes_[node].left].box;
+            box.extend(nodes_[nodes_[node].right].box);
+            if (same(box, nodes_[node].box)) break;
+            gain += area(node);
+            nodes_[node].box = box;
+            gain -= area(node);
         }
         return gain;
     }
@@ -141,66 +126,59 @@ private:
     // Takes a subtree out, with its parent, and makes both the target's sibling and parent. Returns the gain.
     double attach(std::uint32_t node, std::uint32_t target) {
         const std::uint32_t parent = parents_[node], rest = sibling(node);
-        double gain = areas_[parent];
+        double gain = area(parent);
         replace_child(parents_[parent], parent, rest);
         gain += refit(parents_[rest]);
         replace_child(parents_[target], target, parent);
         nodes_[parent].left = target;
         nodes_[parent].right = node;
         parents_[target] = parents_[node] = parent;
-        boxes_[parent] = boxes_[target] | boxes_[node];
-        areas_[parent] = boxes_[parent].half_area();
-        return gain - areas_[parent] + refit(parents_[parent]);
+        nodes_[parent].box = nodes_[target].box;
+        nodes_[parent].box.extend(nodes_[node].box);
+        return gain - area(parent) + refit(parents_[parent]);
     }
 
-    bool copy(std::uint32_t from, int depth, std::vector<BinaryNode>& result) const {
-        if (depth > Bvh::kMaxDepth) return false;
-        const std::size_t index = result.size();
-        result.push_back(nodes_[from]);
-        if (nodes_[from].leaf()) return true;
-        const auto child = [&](std::uint32_t BinaryNode::*side) {
-            const auto seat = static_cast<std::uint32_t>(result.size());
-            result[index].*side = seat;
-            return copy(nodes_[from].*side, depth + 1, result);
-        };
-        if (!child(&BinaryNode::left) || !child(&BinaryNode::right)) return false;
-        result[index].box = result[result[index].left].box;
-        result[index].box.extend(result[result[index].right].box);
-        return true;
-    }
+    struct Origin {
+        std::uint32_t node, sibling; // what was moved, and from where
+    };
 
-    std::vector<BinaryNode> nodes_; // their boxes are those of before
-    std::vector<Bounds> boxes_;
-    std::vector<float> areas_;
+    std::vector<BinaryNode>& nodes_;
+    RelativeArea area_of_;
     std::vector<std::uint32_t> parents_;
+    std::vector<Origin> log_;
 };
 
 bool by_gain(const LinkedTree::Move& a, const LinkedTree::Move& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
 }
 
-// The movable nodes of the largest areas.
-std::vector<LinkedTree::Move> candidates(const LinkedTree& tree, float part) {
-    std::vector<LinkedTree::Move> result;
-    result.reserve(tree.size());
-    for (std::uint32_t i = 1; i < tree.size(); ++i)
-        if (tree.movable(i)) result.push_back({i, kNone, tree.area(i)});
-    const auto count = static_cast<std::size_t>(static_cast<float>(tree.size()) * part);
-    if (count >= result.size()) return result;
-    std::nth_element(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(count), result.end(), by_gain);
-    result.resize(count);
+// The movable nodes of the largest areas: no node is larger than its parent, so they are found from the root down.
+std::vector<LinkedTree::Move> largest(const std::vector<BinaryNode>& nodes, const LinkedTree& tree, std::size_t count) {
+    std::vector<LinkedTree::Move> result, next{{0, kNone, tree.area(0)}};
+    const auto smaller = [](const LinkedTree::Move& a, const LinkedTree::Move& b) { return by_gain(b, a); };
+    while (result.size() < count && !next.empty()) {
+        std::pop_heap(next.begin(), next.end(), smaller);
+        const LinkedTree::Move node = next.back();
+        next.pop_back();
+        if (tree.movable(node.node)) result.push_back(node);
+        if (nodes[node.node].leaf()) continue;
+        for (const std::uint32_t child : {nodes[node.node].left, nodes[node.node].right}) {
+            next.push_back({child, kNone, tree.area(child)});
+            std::push_heap(next.begin(), next.end(), smaller);
+        }
+    }
     return result;
 }
 
 } // namespace
 
-void reinsert(BinaryTree& tree, float part, int rounds, int threads) {
-    if (tree.nodes.size() < 5) return; // too few for a subtree to move
-    constexpr float kEnough = 0.001f;  // of the root's area
-    constexpr std::size_t kChunk = 256;
+void reinsert(BinaryTree& tree, std::size_t candidates, int rounds, int threads) {
+    if (tree.nodes.size() < 5) return; // no subtree that could move
+    constexpr double kEnough = 0.001;  // of the root's area
+    constexpr std::size_t kChunk = 64;
     LinkedTree linked(tree.nodes);
     for (int round = 0; round < rounds; ++round) {
-        std::vector<LinkedTree::Move> moves = candidates(linked, part);
+        std::vector<LinkedTree::Move> moves = largest(tree.nodes, linked, candidates);
         parallel_for((moves.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
             std::vector<LinkedTree::Place> stack;
             const std::size_t end = std::min(moves.size(), (chunk + 1) * kChunk);
@@ -210,12 +188,9 @@ void reinsert(BinaryTree& tree, float part, int rounds, int threads) {
         std::sort(moves.begin(), moves.end(), by_gain);
         double gain = 0;
         for (const LinkedTree::Move& move : moves) gain += linked.apply(move);
-        if (getenv("VERBOSE")) fprintf(stderr, "round %d: %zu moves, gain %g\n", round, moves.size(), gain / linked.area(0));
-        std::vector<BinaryNode> ordered;
-        if (!linked.ordered(ordered)) break;
-        tree.nodes = std::move(ordered);
-        if (gain <= kEnough * linked.area(0)) break;
+        if (gain <= kEnough) break;
     }
+    if (linked.depth() > Bvh::kMaxDepth) linked.restore();
 }
 
 } // namespace duet::raytrace

@@ -6,11 +6,11 @@
 namespace duet::raytrace {
 
 /// Takes subtrees out and inserts them where the sum of the inner nodes' areas becomes smallest (Bittner, Hapala and
-/// Havran 2013, «Fast Insertion-Based Optimization of Bounding Volume Hierarchies»; the searches of one round run at
-/// once, as in Meister and Bittner 2018, «Parallel Reinsertion for Bounding Volume Hierarchy Optimization»). In each of
-/// at most `rounds` rounds, that part (0 to 1) of all nodes which has the largest area is tried; ends early where a
-/// round gains hardly anything. Leaves stay as they are. The tree does not become deeper than Bvh::kMaxDepth, and is
-/// the same for any number of threads (0: all).
-void reinsert(BinaryTree& tree, float part, int rounds, int threads);
+/// Havran 2013, «Fast Insertion-Based Optimization of Bounding Volume Hierarchies»; all searches of a round at once, as
+/// in Meister and Bittner 2018, «Parallel Reinsertion for Bounding Volume Hierarchy Optimization»). In each of at most
+/// `rounds` rounds the `candidates` nodes of the largest areas are tried; ends early where a round gains hardly anything.
+/// Leaves stay as they are. The tree does not become deeper than Bvh::kMaxDepth, and is the same for any number of
+/// threads (0: all).
+void reinsert(BinaryTree& tree, std::size_t candidates, int rounds, int threads);
 
 } // namespace duet::raytrace
