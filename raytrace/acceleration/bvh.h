@@ -69,7 +69,7 @@ public:
     }
     static BvhRef from_bits(std::uint32_t bits) { return BvhRef(bits); }
 
-    bool is_leaf() const { return (bits_ & kLeaf) == 0; }
+    bool is_leaf() const { return (bits_ & kNode) == 0; }
     std::uint32_t index() const { return bits_ & (kMaxIndex - 1); }
     std::uint32_t count() const { return (bits_ >> 26 & 7) + 1; }
     PrimitiveKind kind() const { return static_cast<PrimitiveKind>(bits_ >> 29 & 3); }
@@ -77,7 +77,9 @@ public:
 
 private:
     explicit BvhRef(std::uint32_t bits) : bits_(bits) {}
-    static constexpr std::uint32_t kLeaf = 1u << 31;
+    // Leaves have the smaller numbers: of children at equal distance, as those are whose boxes a ray begins in, they are
+    // tested first, and may spare it the others.
+    static constexpr std::uint32_t kNode = 1u << 31;
     std::uint32_t bits_;
 };
 
@@ -93,7 +95,7 @@ struct alignas(32) BvhNode {
 };
 
 inline BvhRef BvhRef::node(std::uint32_t index) {
-    return BvhRef(1u << 31 | index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
+    return BvhRef(kNode | index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
 }
 
 struct Bvh {

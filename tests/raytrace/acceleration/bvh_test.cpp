@@ -269,7 +269,7 @@ TEST_SUITE("unit") {
             std::size_t leaves = 0;
             for (const BinaryNode& node : tree.nodes) leaves += node.count;
             CHECK(leaves == sets[i].size());
-            CHECK(collapse(tree).bvh.nodes.size() <= tree.nodes.size());
+            CHECK(collapse(tree, 2).bvh.nodes.size() <= tree.nodes.size());
         }
     }
 
