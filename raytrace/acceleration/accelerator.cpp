@@ -5,6 +5,7 @@
 #include "raytrace/acceleration/bvh_build.h"
 #include "raytrace/acceleration/bvh_optimize.h"
 #include "raytrace/acceleration/bvh_packet.h"
+#include "raytrace/acceleration/bvh_spatial.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
@@ -47,10 +48,12 @@ public:
     }
 
     Bvh build() {
-        BinaryTree tree = build_binary_tree(std::move(items_), threads_);
+        const auto get = [](const char* n, float d) { return getenv(n) ? (float)atof(getenv(n)) : d; };
+        const bool high = get("HIGH", 0) > 0;
+        BinaryTree tree = high ? build_spatial_tree(std::move(items_), [this](const BuildItem& item) { return outline(item); }, get("BUDGET", 0.5f), threads_) : build_binary_tree(std::move(items_), threads_);
         // Some large subtrees in the wrong place (a room's walls among its furniture's, overlapping objects) cost every
         // ray: a few moves mend that.
-        reinsert(tree, tree.nodes.size() / 64, 3, threads_);
+        if (high) reinsert(tree, (std::size_t)(get("PART", 1) * (float)tree.nodes.size()), (int)get("ROUNDS", 10), threads_); else reinsert(tree, tree.nodes.size() / 64, 3, threads_);
         Collapsed collapsed = collapse(tree, threads_);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
@@ -94,6 +97,16 @@ private:
             items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
             triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
         });
+    }
+    // Of triangles and quads; nothing of others.
+    Outline outline(const BuildItem& item) const {
+        if (item.kind == PrimitiveKind::kTriangle) {
+            const MeshTriangle& triangle = triangles_[item.index];
+            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+            const auto& [a, b, c] = mesh.triangles[triangle.primitive];
+            return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
+        }
+        return {};
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
