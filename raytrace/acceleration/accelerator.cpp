@@ -2,10 +2,8 @@
 
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
-#include "raytrace/acceleration/bvh_build.h"
-#include "raytrace/acceleration/bvh_optimize.h"
+#include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_packet.h"
-#include "raytrace/acceleration/bvh_spatial.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
@@ -19,7 +17,7 @@ namespace {
 // Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
 class Gatherer {
 public:
-    explicit Gatherer(int threads) : threads_(threads) {}
+    Gatherer(BvhQuality quality, int threads) : quality_(quality), threads_(threads) {}
 
     void add_shape(const Shape& shape, std::uint32_t object) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
@@ -48,22 +46,17 @@ public:
     }
 
     Bvh build() {
-        const auto get = [](const char* n, float d) { return getenv(n) ? (float)atof(getenv(n)) : d; };
-        const bool high = get("HIGH", 0) > 0;
-        BinaryTree tree = high ? build_spatial_tree(std::move(items_), [this](const BuildItem& item) { return outline(item); }, get("BUDGET", 0.5f), threads_) : build_binary_tree(std::move(items_), threads_);
-        // Some large subtrees in the wrong place (a room's walls among its furniture's, overlapping objects) cost every
-        // ray: a few moves mend that.
-        if (high) reinsert(tree, (std::size_t)(get("PART", 1) * (float)tree.nodes.size()), (int)get("ROUNDS", 10), threads_); else reinsert(tree, tree.nodes.size() / 64, 3, threads_);
-        Collapsed collapsed = collapse(tree, threads_);
+        auto [items, collapsed] = build_hierarchy(
+            std::move(items_), [this](const BuildItem& item) { return outline(item); }, quality_, threads_);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
         bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
         bvh.quads.resize(elements(PrimitiveKind::kQuad));
         bvh.spheres.resize(elements(PrimitiveKind::kSphere));
         bvh.instances.resize(elements(PrimitiveKind::kInstance));
-        in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
-            const LeafItems& leaf = collapsed.leaves[i];
-            fill_leaf(bvh, leaf, std::span(tree.items).subspan(leaf.first, leaf.count));
+        in_chunks(collapsed.leaves.size(), [&, &items = items, &leaves = collapsed.leaves](std::size_t i) {
+            const LeafItems& leaf = leaves[i];
+            fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
         });
         return std::move(bvh);
     }
@@ -106,6 +99,7 @@ private:
             const auto& [a, b, c] = mesh.triangles[triangle.primitive];
             return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
         }
+        if (item.kind == PrimitiveKind::kQuad) return {corners(quads_[item.index].quad), 4};
         return {};
     }
     template <typename Primitive>
@@ -146,6 +140,7 @@ private:
         }
     }
 
+    BvhQuality quality_;
     int threads_;
     BuildItems items_;
     std::vector<PlacedMesh> meshes_;
@@ -159,8 +154,9 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 
 } // namespace
 
-Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
-    Gatherer world(threads);
+Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
+    : scene_(scene), shapes_(scene.shapes.size()) {
+    Gatherer world(quality, threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -171,7 +167,7 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own(threads);
+        Gatherer own(quality, threads);
         own.add_shape(shape, kNoObject);
         shapes_[object.shape] = own.build();
     }

@@ -3,6 +3,7 @@
 
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
+#include "raytrace/acceleration/bvh_quality.h"
 
 #include <span>
 
@@ -12,8 +13,8 @@ namespace duet::raytrace {
 /// and one of its own, in its own space, for each shape that instances show. Refers to the scene.
 class Accelerator {
 public:
-    /// threads: for building, 0 = all. The result does not depend on it.
-    Accelerator(const Scene& scene, int threads);
+    /// threads: for building, 0 = all. The result does not depend on it; no hit depends on the quality.
+    Accelerator(const Scene& scene, int threads, BvhQuality quality = BvhQuality::kDefault);
 
     /// The first hit with t in (t_min, t_max]; invalid where there is none, or where the ray is not finite or has no
     /// direction. At equal t the lower (object, primitive).

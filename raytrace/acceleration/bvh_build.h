@@ -53,6 +53,7 @@ struct LeafItems {
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
+    float cost = 0; ///< nodes and leaves that a ray through the root's box meets, by the surface area heuristic
     std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
 };
 

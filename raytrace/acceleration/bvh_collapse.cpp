@@ -22,6 +22,9 @@ public:
         visit(0, kTop);
     }
 
+    /// Of the whole tree, as Collapsed has it.
+    float cost() const { return forests_[0].cost[0] + forests_[0].leaves; }
+
     /// The roots of the wide subtrees that are a node's children, at most BvhNode::kWidth; returns how many.
     std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
         std::size_t count = 0;
@@ -108,6 +111,7 @@ public:
         const BinaryNode& node = tree_.nodes[index];
         return node.leaf() ? leaf(node) : BvhRef::node(pack(index));
     }
+    float cost() const { return forests_.cost(); }
 
 private:
     BvhRef leaf(const BinaryNode& node) {
@@ -162,7 +166,9 @@ Collapsed collapse(const BinaryTree& tree, int threads) {
     Collapsed result;
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
-    result.bvh.root = Collapser(tree, threads, result).ref(0);
+    Collapser collapser(tree, threads, result);
+    result.bvh.root = collapser.ref(0);
+    result.cost = collapser.cost();
     result.bvh.nodes.shrink_to_fit();
     return result;
 }

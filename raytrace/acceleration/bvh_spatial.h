@@ -8,7 +8,7 @@
 
 namespace duet::raytrace {
 
-/// The corners of a flat convex surface, in order: what may be cut. None: it may not.
+/// The corners of a surface which fills their hull: 3 of a triangle, 4 of a quad in order. None of what may not be cut.
 struct Outline {
     std::array<Vec3, 4> corners;
     std::size_t count = 0;
