@@ -58,6 +58,7 @@ public:
             const LeafItems& leaf = leaves[i];
             fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
         });
+        bvh.references = items.size();
         return std::move(bvh);
     }
 
@@ -155,7 +156,7 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
-    : scene_(scene), shapes_(scene.shapes.size()) {
+    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()) {
     Gatherer world(quality, threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
@@ -221,6 +222,18 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     return traceable(ray) && find_any(world_, ray, kNoObject, end, instance_test<true>(ray));
+}
+
+HierarchyStatistics Accelerator::statistics() const {
+    HierarchyStatistics result;
+    result.quality = quality_ == BvhQuality::kHigh ? "high" : "default";
+    const auto add = [&](const Bvh& bvh) {
+        result.nodes += static_cast<std::int64_t>(bvh.nodes.size());
+        result.references += static_cast<std::int64_t>(bvh.references);
+    };
+    add(world_);
+    for (const Bvh& shape : shapes_) add(shape);
+    return result;
 }
 
 std::int64_t Accelerator::memory_bytes() const {

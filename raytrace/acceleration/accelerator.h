@@ -1,6 +1,7 @@
 // The whole scene behind two questions: what does a ray hit first, and is anything in its way?
 #pragma once
 
+#include "common/film/rendering.h"
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
 #include "raytrace/acceleration/bvh_quality.h"
@@ -28,12 +29,14 @@ public:
 
     std::int64_t primitives() const { return primitives_; } ///< of the flattened scene
     std::int64_t memory_bytes() const;
+    HierarchyStatistics statistics() const;
     const Bvh& world() const { return world_; }
 
 private:
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
+    BvhQuality quality_;
     Bvh world_;
     std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
     std::int64_t primitives_ = 0;

@@ -105,6 +105,7 @@ struct Bvh {
 
     BvhRef root = BvhRef::node(0);
     Box3 bounds;
+    std::size_t references = 0; ///< primitives in leaves; one that is cut counts in each
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<BvhQuad> quads;

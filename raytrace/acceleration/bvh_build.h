@@ -53,7 +53,8 @@ struct LeafItems {
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
-    float cost = 0; ///< nodes and leaves that a ray through the root's box meets, by the surface area heuristic
+    /// How many a ray through the root's box meets, by the surface area heuristic; of nodes, what the collapse minimizes.
+    float node_cost = 0, leaf_cost = 0;
     std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
 };
 

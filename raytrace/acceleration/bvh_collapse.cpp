@@ -22,8 +22,9 @@ public:
         visit(0, kTop);
     }
 
-    /// Of the whole tree, as Collapsed has it.
-    float cost() const { return forests_[0].cost[0] + forests_[0].leaves; }
+    /// Of the whole tree, as Collapsed has them.
+    float node_cost() const { return forests_[0].cost[0]; }
+    float leaf_cost() const { return forests_[0].leaves; }
 
     /// The roots of the wide subtrees that are a node's children, at most BvhNode::kWidth; returns how many.
     std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
@@ -111,7 +112,7 @@ public:
         const BinaryNode& node = tree_.nodes[index];
         return node.leaf() ? leaf(node) : BvhRef::node(pack(index));
     }
-    float cost() const { return forests_.cost(); }
+    const Forests& forests() const { return forests_; }
 
 private:
     BvhRef leaf(const BinaryNode& node) {
@@ -168,7 +169,8 @@ Collapsed collapse(const BinaryTree& tree, int threads) {
     result.bvh.bounds = tree.nodes[0].box;
     Collapser collapser(tree, threads, result);
     result.bvh.root = collapser.ref(0);
-    result.cost = collapser.cost();
+    result.node_cost = collapser.forests().node_cost();
+    result.leaf_cost = collapser.forests().leaf_cost();
     result.bvh.nodes.shrink_to_fit();
     return result;
 }

@@ -21,6 +21,8 @@ Hierarchy packed(BinaryTree tree, Effort effort, int threads) {
     return {std::move(tree.items), std::move(collapsed)};
 }
 
+float cost(const Hierarchy& hierarchy) { return hierarchy.collapsed.node_cost + hierarchy.collapsed.leaf_cost; }
+
 } // namespace
 
 BvhQuality bvh_quality(std::string_view name) {
@@ -32,13 +34,18 @@ BvhQuality bvh_quality(std::string_view name) {
 Hierarchy build_hierarchy(BuildItems items, const OutlineOf& outline_of, BvhQuality quality, int threads) {
     if (quality == BvhQuality::kDefault) return packed(build_binary_tree(std::move(items), threads), kFew, threads);
 
+    BinaryTree tree = build_binary_tree(items, threads);
+    Hierarchy whole = packed(std::move(tree), kMany, threads);
+    // Where rays meet few leaves, as in finely tessellated meshes, cutting what is in them cannot gain much.
+    constexpr float kFewLeaves = 4;
+    if (whole.collapsed.leaf_cost < kFewLeaves) return whole;
+
     // Spatial splits buy smaller boxes with more leaves. The heuristic, which lets all rays begin and end outside, thinks
     // too well of that: walls cut into pieces are met by more rays than whole ones. So the gain must be plain.
     constexpr float kPlainly = 0.95f;
     constexpr float kBudget = 1; // no more additional items than there are items
-    Hierarchy whole = packed(build_binary_tree(items, threads), kMany, threads);
     Hierarchy cut = packed(build_spatial_tree(std::move(items), outline_of, kBudget, threads), kMany, threads);
-    return cut.collapsed.cost < kPlainly * whole.collapsed.cost ? std::move(cut) : std::move(whole);
+    return cost(cut) < kPlainly * cost(whole) ? std::move(cut) : std::move(whole);
 }
 
 } // namespace duet::raytrace

@@ -90,16 +90,17 @@ public:
 
     void fill(std::span<const BuildItem> items, int threads) {
         const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
-        std::vector<Bins> parts(chunks - 1);
+        std::vector<Bins> others(chunks - 1);
         parallel_for(chunks, threads, [&](std::size_t i) {
-            Bins& bins = i == 0 ? bins_ : parts[i - 1];
+            Bins& bins = i == 0 ? bins_ : others[i - 1];
             for (auto& axis : bins) std::fill_n(axis.begin(), count_, Bin());
+            Parts parts;
             for (const BuildItem& item : items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)))
-                add(bins, item);
+                add(bins, item, parts);
         });
-        for (const Bins& part : parts)
+        for (const Bins& other : others)
             for (std::size_t axis = 0; axis < 3; ++axis)
-                for (std::size_t k = 0; k < count_; ++k) bins_[axis][k].extend(part[axis][k]);
+                for (std::size_t k = 0; k < count_; ++k) bins_[axis][k].extend(other[axis][k]);
     }
 
     // The cheapest plane that makes at most `room` additional items and both sides fewer than all.
@@ -128,6 +129,7 @@ public:
 
 private:
     using Bins = std::array<std::array<Bin, kMaxBins>, 3>;
+    using Parts = std::array<Bounds, kMaxBins>; // of an item, by bin
 
     bool usable(std::size_t axis) const {
         return plane(axis, 1) > box_.low[axis] && plane(axis, count_ - 1) < box_.high[axis];
@@ -140,7 +142,7 @@ private:
         return static_cast<std::size_t>(clamp(at, 0.0f, static_cast<float>(count_ - 1)));
     }
 
-    void add(Bins& bins, const BuildItem& item) const {
+    void add(Bins& bins, const BuildItem& item, Parts& parts) const {
         const Bounds box{low_corner(item), high_corner(item)};
         std::optional<Outline> outline; // not asked for where the item lies in one bin on each axis
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -154,14 +156,14 @@ private:
             if (first == last)
                 bins[axis][first].bounds.extend(box);
             else
-                add_parts(bins[axis], box, *outline, axis, first, last);
+                add_parts(bins[axis], box, *outline, axis, first, last, parts);
         }
     }
 
     // Extends each bin by the part of an outline between its planes, in about: here the numbers only serve to choose.
     void add_parts(std::array<Bin, kMaxBins>& bins, const Bounds& box, const Outline& outline, std::size_t axis,
-                   std::size_t first, std::size_t last) const {
-        std::array<Bounds, kMaxBins> parts;
+                   std::size_t first, std::size_t last, Parts& parts) const {
+        std::fill(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.begin() + static_cast<std::ptrdiff_t>(last) + 1, Bounds());
         const auto four = [](Vec3 p) {
             alignas(16) const std::array<float, 4> values{p.x, p.y, p.z, 0};
             return Four::load_aligned(values.data());
@@ -272,7 +274,7 @@ private:
             whole = best_split(bins_, binning, area, items.size());
         }
         if (can_be_leaf && (!whole || whole->cost >= tests(items.size()))) return std::nullopt;
-        if (depth < kSahDepth && room > 0 && (!whole || overlap(*whole, binning) > kLeastOverlap)) {
+        if (depth < kSahDepth && room > 0 && (!whole || worth_cutting(*whole, binning))) {
             SpatialBinning spatial(extent.bounds, binning.bins, outline_of_);
             spatial.fill(items, threads_);
             const auto cut_split = spatial.best(area, items.size(), room);
@@ -285,13 +287,13 @@ private:
         return Parts{BuildItems(items.begin(), middle), BuildItems(middle, items.end()), halves.left, halves.right, room};
     }
 
-    // The area in which a split's two boxes overlap, as a part of the root's.
-    float overlap(const Split& split, const Binning& binning) const {
+    // Whether the boxes of a split overlap so much that a spatial one may gain something.
+    bool worth_cutting(const Split& split, const Binning& binning) const {
         Bounds left, right;
         for (std::size_t i = 0; i < binning.bins; ++i)
             (static_cast<std::int32_t>(i) <= split.bin ? left : right).extend(bins_[split.axis][i].bounds);
         const Bounds both{xsimd::max(left.low, right.low), xsimd::min(left.high, right.high)};
-        return both.box().empty() ? 0 : of_root_(both);
+        return !both.box().empty() && of_root_(both) > kLeastOverlap;
     }
 
     // Items by a plane; those that straddle it become two where that is cheaper than to leave them on one side (Stich et
