@@ -21,6 +21,38 @@ Hierarchy packed(BinaryTree tree, Effort effort, int threads) {
     return {std::move(tree.items), std::move(collapsed)};
 }
 
+// How many leaves a ray meets in the most crowded part of the tree that has a fair share of them, by the surface area
+// heuristic. Of any part, as the whole may be mostly void: a thicket on a wide ground.
+class Crowding {
+public:
+    explicit Crowding(const BinaryTree& tree) : tree_(tree), area_(tree.nodes[0].bounds()), all_((tree.nodes.size() + 1) / 2) {
+        visit(0);
+    }
+    float most() const { return most_; }
+
+private:
+    struct Leaves {
+        std::size_t count;
+        float area;
+    };
+
+    Leaves visit(std::uint32_t index) {
+        const BinaryNode& node = tree_.nodes[index];
+        const float area = area_(node.bounds());
+        if (node.leaf()) return {1, area};
+        const Leaves left = visit(node.left), right = visit(node.right);
+        const Leaves both{left.count + right.count, left.area + right.area};
+        constexpr std::size_t kFairShare = 16; // one in so many
+        if (both.count * kFairShare >= all_ && area > 0) most_ = max(most_, both.area / area);
+        return both;
+    }
+
+    const BinaryTree& tree_;
+    RelativeArea area_;
+    std::size_t all_;
+    float most_ = 0;
+};
+
 float cost(const Hierarchy& hierarchy) { return hierarchy.collapsed.node_cost + hierarchy.collapsed.leaf_cost; }
 
 } // namespace
@@ -34,18 +66,17 @@ BvhQuality bvh_quality(std::string_view name) {
 Hierarchy build_hierarchy(BuildItems items, const OutlineOf& outline_of, BvhQuality quality, int threads) {
     if (quality == BvhQuality::kDefault) return packed(build_binary_tree(std::move(items), threads), kFew, threads);
 
-    BinaryTree tree = build_binary_tree(items, threads);
-    Hierarchy whole = packed(std::move(tree), kMany, threads);
-    // Where rays meet few leaves, as in finely tessellated meshes, cutting what is in them cannot gain much.
-    constexpr float kFewLeaves = 4;
-    if (whole.collapsed.leaf_cost < kFewLeaves) return whole;
-
     // Spatial splits buy smaller boxes with more leaves. The heuristic, which lets all rays begin and end outside, thinks
-    // too well of that: walls cut into pieces are met by more rays than whole ones. So the gain must be plain.
-    constexpr float kPlainly = 0.95f;
+    // too well of that: walls cut into pieces are met by more rays than whole ones. They pay where rays meet many leaves
+    // (a hundred in halls of beams or in hair, two to five in finely tessellated meshes, which gain nothing).
+    constexpr float kCrowded = 8;
     constexpr float kBudget = 1; // no more additional items than there are items
+    BinaryTree tree = build_binary_tree(items, threads);
+    const float crowding = tree.nodes.empty() ? 0 : Crowding(tree).most();
+    Hierarchy whole = packed(std::move(tree), kMany, threads);
+    if (crowding < kCrowded) return whole;
     Hierarchy cut = packed(build_spatial_tree(std::move(items), outline_of, kBudget, threads), kMany, threads);
-    return cost(cut) < kPlainly * cost(whole) ? std::move(cut) : std::move(whole);
+    return cost(cut) < cost(whole) ? std::move(cut) : std::move(whole);
 }
 
 } // namespace duet::raytrace

@@ -174,7 +174,6 @@ std::vector<LinkedTree::Move> largest(const std::vector<BinaryNode>& nodes, cons
 
 void reinsert(BinaryTree& tree, std::size_t candidates, int rounds, int threads) {
     if (tree.nodes.size() < 5) return; // no subtree that could move
-    constexpr double kEnough = 0.001;  // of the root's area
     constexpr std::size_t kChunk = 64;
     LinkedTree linked(tree.nodes);
     for (int round = 0; round < rounds; ++round) {
@@ -188,7 +187,7 @@ void reinsert(BinaryTree& tree, std::size_t candidates, int rounds, int threads)
         std::sort(moves.begin(), moves.end(), by_gain);
         double gain = 0;
         for (const LinkedTree::Move& move : moves) gain += linked.apply(move);
-        if (gain <= kEnough) break;
+        if (!(gain > 0)) break;
     }
     if (linked.depth() > Bvh::kMaxDepth) linked.restore();
 }
