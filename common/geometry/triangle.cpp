@@ -23,14 +23,6 @@ TriangleHit needle_hit(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c, const Tria
     return {static_cast<float>(z / d[z_axis]), static_cast<float>(e1 / det), static_cast<float>(e2 / det)};
 }
 
-// The distance to the triangle's plane in double, from the unrounded differences: its sign is right even for an origin
-// that is one float away from the plane of a triangle a million times as wide.
-double plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
-    const Vec3d pa(a);
-    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
-    return dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction));
-}
-
 } // namespace
 
 std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
@@ -54,7 +46,7 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     // Within its error of the ray's origin (or out of range) t says nothing: is this the surface the ray has just left,
     // or one that touches it?
     const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det));
-    if (uncertain && !sabotaged(Guard::kPlaneDistance)) hit.t = static_cast<float>(plane_distance(ray, a, b, c));
+    if (uncertain && !sabotaged(Guard::kPlaneDistance)) hit.t = plane_distance(ray, a, b, c);
     if (!(hit.t > ray.t_min && hit.t <= ray.t_max)) return std::nullopt;
     return hit;
 }

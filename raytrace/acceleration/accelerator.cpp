@@ -7,6 +7,7 @@
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <span>
 
@@ -24,13 +25,12 @@ public:
             add_mesh(*mesh, object);
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
             for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
-                const Quad& quad = list->quads[i];
                 Box3 box;
-                for (const Vec3& p : corners(quad)) box.extend(p);
-                add(PrimitiveKind::kQuad, box, quads_, {quad, object, i});
+                for (const Vec3& p : corners(list->quads[i])) box.extend(p);
+                add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
             }
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object, 0});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
         }
     }
 
@@ -46,8 +46,9 @@ public:
     }
 
     Bvh build() {
-        auto [items, collapsed] = build_hierarchy(
-            std::move(items_), [this](const BuildItem& item) { return outline(item); }, quality_, threads_);
+        const Primitives primitives{[this](const BuildItem& item) { return outline(item); },
+                                    [this](std::span<BuildItem> items) { return first_of_twins(items); }};
+        auto [items, collapsed] = build_hierarchy(std::move(items_), primitives, quality_, threads_);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
         bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
@@ -58,7 +59,6 @@ public:
             const LeafItems& leaf = leaves[i];
             fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
         });
-        bvh.references = items.size();
         return std::move(bvh);
     }
 
@@ -68,6 +68,14 @@ private:
     };
     struct PlacedMesh {
         const Mesh* mesh;
+        std::uint32_t object;
+    };
+    struct PlacedQuad {
+        std::array<Vec3, 4> corners;
+        std::uint32_t object, primitive;
+    };
+    struct PlacedSphere {
+        Sphere sphere;
         std::uint32_t object;
     };
 
@@ -100,7 +108,7 @@ private:
             const auto& [a, b, c] = mesh.triangles[triangle.primitive];
             return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
         }
-        if (item.kind == PrimitiveKind::kQuad) return {corners(quads_[item.index].quad), 4};
+        if (item.kind == PrimitiveKind::kQuad) return {quads_[item.index].corners, 4};
         return {};
     }
     template <typename Primitive>
@@ -110,44 +118,81 @@ private:
     }
 
     void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
-        const auto copy = [&](const auto& from, auto& to) {
-            for (std::size_t i = 0; i < items.size(); ++i) to[leaf.element + i] = from[items[i].index];
-        };
         switch (items[0].kind) {
         case PrimitiveKind::kTriangle:
             return fill_block(bvh.triangles[leaf.element], items);
         case PrimitiveKind::kQuad:
-            return copy(quads_, bvh.quads);
+            return fill_block(bvh.quads[leaf.element], items);
         case PrimitiveKind::kSphere:
-            return copy(spheres_, bvh.spheres);
+            return fill_block(bvh.spheres[leaf.element], items);
         case PrimitiveKind::kInstance:
-            return copy(instances_, bvh.instances);
+            for (std::size_t i = 0; i < items.size(); ++i) bvh.instances[leaf.element + i] = instances_[items[i].index];
         }
+    }
+
+    // Triangles with the very same corners are hit at the very same distance, where the lowest (object, primitive) wins:
+    // that of the lowest index here.
+    std::size_t first_of_twins(std::span<BuildItem> items) const {
+        if (std::any_of(items.begin(), items.end(),
+                        [](const BuildItem& item) { return item.kind != PrimitiveKind::kTriangle; }))
+            return items.size();
+        using Corners = std::array<std::uint32_t, 9>;
+        const auto corners = [&](const BuildItem& item) {
+            const MeshTriangle& triangle = triangles_[item.index];
+            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+            std::array<Vec3, 3> p;
+            for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[triangle.primitive][k]];
+            return std::bit_cast<Corners>(p);
+        };
+        std::sort(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            const Corners ca = corners(a), cb = corners(b);
+            return ca != cb ? ca < cb : a.index < b.index;
+        });
+        const auto end = std::unique(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            return corners(a) == corners(b);
+        });
+        return static_cast<std::size_t>(end - items.begin());
+    }
+
+    template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
+        for (std::size_t i = 0; i < kBlockSize; ++i) {
+            if (i < items.size())
+                set(block, i, items[i].index);
+            else
+                set_absent(block, i);
+        }
+    }
+    void set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
+        const MeshTriangle& triangle = triangles_[index];
+        const auto& [mesh, object] = meshes_[triangle.mesh];
+        const auto& [a, b, c] = mesh->triangles[triangle.primitive];
+        block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
+    }
+    void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {
+        const PlacedQuad& quad = quads_[index];
+        block.set(lane, quad.corners, quad.object, quad.primitive);
+    }
+    void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const {
+        block.set(lane, spheres_[index].sphere, spheres_[index].object);
     }
 
     static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
 
-    void fill_block(TriangleBlock& block, std::span<const BuildItem> items) const {
-        for (std::size_t i = 0; i < TriangleBlock::kSize; ++i) {
-            if (i >= items.size()) {
-                block.set(i, kAbsent, kAbsent, kAbsent, kNoObject, 0);
-                continue;
-            }
-            const MeshTriangle& triangle = triangles_[items[i].index];
-            const auto& [mesh, object] = meshes_[triangle.mesh];
-            const auto& [a, b, c] = mesh->triangles[triangle.primitive];
-            block.set(i, mesh->positions[a], mesh->positions[b], mesh->positions[c], object, triangle.primitive);
-        }
+    template <std::size_t kCorners> static void set_absent(PolygonBlock<kCorners>& block, std::size_t lane) {
+        std::array<Vec3, kCorners> corners;
+        corners.fill(kAbsent);
+        block.set(lane, corners, kNoObject, 0);
     }
+    static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
 
     BvhQuality quality_;
     int threads_;
     BuildItems items_;
     std::vector<PlacedMesh> meshes_;
     std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
-    std::vector<BvhQuad> quads_;
-    std::vector<BvhSphere> spheres_;
+    std::vector<PlacedQuad> quads_;
+    std::vector<PlacedSphere> spheres_;
     std::vector<BvhInstance> instances_;
 };
 

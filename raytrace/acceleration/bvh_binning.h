@@ -5,6 +5,7 @@
 #include "raytrace/acceleration/bvh_build.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <span>
 
@@ -44,6 +45,7 @@ struct Extent {
         centers.extend(other.centers);
         kinds |= other.kinds;
     }
+    bool one_center() const { return (lane_bits(centers.low == centers.high) & 7u) == 7u; }
     bool one_kind() const { return (kinds & (kinds - 1)) == 0; }
 };
 
@@ -53,10 +55,19 @@ inline Extent extent_of(std::span<const BuildItem> items) {
     return extent;
 }
 
-// The cost of testing so many primitives: triangles are tested by the block.
-inline float tests(std::size_t count) {
-    return static_cast<float>((count + TriangleBlock::kSize - 1) / TriangleBlock::kSize);
-}
+// The cost of testing so many primitives: by the block; of instances each is a hierarchy of its own. (That a block of
+// quads takes longer than one of spheres changes no tree that was tried.)
+class Tests {
+public:
+    explicit Tests(unsigned kinds)
+        : shift_(kinds == 1u << static_cast<unsigned>(PrimitiveKind::kInstance) ? 0 : std::countr_zero(kBlockSize)) {}
+    float operator()(std::size_t count) const {
+        return static_cast<float>((count + (std::size_t{1} << shift_) - 1) >> shift_);
+    }
+
+private:
+    int shift_;
+};
 
 // Maps centres to bins of equal width on each axis; axes on which the centres have no extent have one bin.
 class Binning {
@@ -130,7 +141,8 @@ struct Split {
 };
 
 // The cheapest of the planes between bins; none where all centres are one point.
-inline std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area, std::size_t count) {
+inline std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area,
+                                       const Tests& tests, std::size_t count) {
     std::optional<Split> best;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!binning.usable(axis)) continue;

@@ -59,7 +59,8 @@ struct Job {
 
 class Builder {
 public:
-    Builder(Items items, std::size_t job_size, int threads) : items_(items), job_size_(job_size), threads_(threads) {}
+    Builder(Items items, std::size_t job_size, int threads, const DropTwins& drop_twins)
+        : items_(items), job_size_(job_size), threads_(threads), drop_twins_(drop_twins) {}
 
     std::vector<BinaryNode> nodes;
     std::vector<Job> jobs;
@@ -67,6 +68,8 @@ public:
     std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth) {
         const auto index = static_cast<std::uint32_t>(nodes.size());
         nodes.emplace_back();
+        // Boxes cannot tell these apart: without this a ray at n twins would test all n.
+        if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_) count = drop_twins_(items_.subspan(first, count));
         if (count <= job_size_) {
             jobs.push_back({index, first, count, extent, depth});
             return index;
@@ -92,10 +95,11 @@ private:
         if (items.size() == 1) return std::nullopt;
         const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
         const Binning binning(extent, items.size());
+        const Tests tests(extent.kinds);
         std::optional<Split> best;
         if (depth < kSahDepth) {
             fill(bins_, items, binning, threads_);
-            best = best_split(bins_, binning, RelativeArea(extent.bounds), items.size());
+            best = best_split(bins_, binning, RelativeArea(extent.bounds), tests, items.size());
         }
         if (can_be_leaf && (!best || best->cost >= tests(items.size()))) return std::nullopt;
         if (best) {
@@ -109,6 +113,7 @@ private:
     Items items_;
     std::size_t job_size_;
     int threads_;
+    const DropTwins& drop_twins_;
     Bins bins_;
     BuildItems copy_;
 };
@@ -129,19 +134,19 @@ void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<Bi
 
 } // namespace
 
-BinaryTree build_binary_tree(BuildItems items, int threads) {
+BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins) {
     BinaryTree tree{{}, std::move(items)};
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));
 
     // The division into jobs depends on the input alone, so that the tree does, too.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
-    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads);
+    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, drop_twins);
     top.build(0, tree.items.size(), extent_of(tree.items), 0);
     std::vector<std::vector<BinaryNode>> subtrees(top.jobs.size());
     parallel_for(top.jobs.size(), threads, [&](std::size_t i) {
         const Job& job = top.jobs[i];
-        Builder builder(tree.items, 0, 1);
+        Builder builder(tree.items, 0, 1, drop_twins);
         builder.nodes.reserve(job.count);
         builder.build(job.first, job.count, job.extent, job.depth);
         subtrees[i] = std::move(builder.nodes);

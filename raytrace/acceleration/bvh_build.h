@@ -4,6 +4,7 @@
 #include "raytrace/acceleration/bvh.h"
 #include "raytrace/acceleration/bvh_bounds.h"
 
+#include <functional>
 #include <span>
 
 namespace duet::raytrace {
@@ -39,17 +40,21 @@ struct BinaryTree {
     BuildItems items; ///< in the order of the leaves
 };
 
+/// Of items that all have one centre, moves those to the front that can be hit, and returns how many they are: of
+/// primitives that are the same but for their names all but the first in order are never a ray's answer.
+using DropTwins = std::function<std::size_t(std::span<BuildItem>)>;
+
 /// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
 /// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
-/// threads (0: all).
-BinaryTree build_binary_tree(BuildItems items, int threads);
+/// threads (0: all). Without `drop_twins` each item is in one leaf; what it drops is in none.
+BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins = {});
 
 /// Items [first, first + count) of the tree: those of one leaf; and where in their kind's list they go.
 struct LeafItems {
     std::uint32_t first, count, element;
 };
 
-/// A hierarchy whose lists of primitives are still to be filled, triangles as one block a leaf.
+/// A hierarchy whose blocks of primitives and instances are still to be filled, one a leaf.
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
@@ -62,5 +67,9 @@ struct Collapsed {
 /// and Laine 2017, «Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs», §3). The same for any
 /// number of threads (0: all). Throws Error where there are more than BvhRef can name.
 Collapsed collapse(const BinaryTree& tree, int threads);
+
+/// Gives the hierarchy of few primitives a list of all of them, in full blocks, where a ray is expected to be through
+/// with that sooner than with the tree. The list's items are appended to the tree's.
+void add_list_where_faster(BinaryTree& tree, Collapsed& collapsed);
 
 } // namespace duet::raytrace

@@ -110,19 +110,19 @@ public:
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
-        return node.leaf() ? leaf(node) : BvhRef::node(pack(index));
+        return node.leaf() ? leaf(node.first, node.count) : BvhRef::node(pack(index));
     }
     const Forests& forests() const { return forests_; }
 
 private:
-    BvhRef leaf(const BinaryNode& node) {
-        const PrimitiveKind kind = tree_.items[node.first].kind;
-        const std::uint32_t elements = kind == PrimitiveKind::kTriangle ? 1 : node.count; // triangles: one block
-        const std::size_t first = elements_[static_cast<std::size_t>(kind)];
-        elements_[static_cast<std::size_t>(kind)] += elements;
-        check_index(first + elements);
-        leaves_.push_back({node.first, node.count, static_cast<std::uint32_t>(first)});
-        return BvhRef::leaf(kind, static_cast<std::uint32_t>(first), elements);
+    // One element: a block of primitives, or an instance.
+    BvhRef leaf(std::uint32_t first, std::uint32_t count) {
+        const PrimitiveKind kind = tree_.items[first].kind;
+        const std::size_t element = elements_[static_cast<std::size_t>(kind)]++;
+        check_index(element);
+        leaves_.push_back({first, count, static_cast<std::uint32_t>(element)});
+        bvh_.references += count;
+        return BvhRef::leaf(kind, static_cast<std::uint32_t>(element));
     }
 
     static void check_index(std::size_t index) {
@@ -168,15 +168,16 @@ Collapsed collapse(const BinaryTree& tree, int threads) {
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
     Collapser collapser(tree, threads, result);
-    result.bvh.root = collapser.ref(0);
+    const BvhRef root = collapser.ref(0);
     result.node_cost = collapser.forests().node_cost();
     result.leaf_cost = collapser.forests().leaf_cost();
     result.bvh.nodes.shrink_to_fit();
+    if (root.is_leaf()) result.bvh.list.push_back(root);
     return result;
 }
 
 std::int64_t Bvh::memory_bytes() const {
-    return static_cast<std::int64_t>(bytes(nodes) + bytes(triangles) + bytes(quads) + bytes(spheres) +
+    return static_cast<std::int64_t>(bytes(nodes) + bytes(list) + bytes(triangles) + bytes(quads) + bytes(spheres) +
                                      bytes(instances));
 }
 

@@ -16,8 +16,10 @@ struct Effort {
 constexpr Effort kFew{64, 3}, kMany{1, 4};
 
 Hierarchy packed(BinaryTree tree, Effort effort, int threads) {
+    if (tree.nodes.empty()) return {};
     reinsert(tree, tree.nodes.size() / effort.one_in, effort.rounds, threads);
     Collapsed collapsed = collapse(tree, threads);
+    add_list_where_faster(tree, collapsed);
     return {std::move(tree.items), std::move(collapsed)};
 }
 
@@ -53,6 +55,15 @@ private:
     float most_ = 0;
 };
 
+// All but the twins that were dropped.
+BuildItems items_of_leaves(const BinaryTree& tree) {
+    BuildItems items;
+    items.reserve(tree.items.size());
+    for (const BinaryNode& node : tree.nodes)
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) items.push_back(tree.items[i]);
+    return items;
+}
+
 float cost(const Hierarchy& hierarchy) { return hierarchy.collapsed.node_cost + hierarchy.collapsed.leaf_cost; }
 
 } // namespace
@@ -63,19 +74,20 @@ BvhQuality bvh_quality(std::string_view name) {
     throw Error(message("hierarchy of quality \"", name, "\": expected default or high"));
 }
 
-Hierarchy build_hierarchy(BuildItems items, const OutlineOf& outline_of, BvhQuality quality, int threads) {
-    if (quality == BvhQuality::kDefault) return packed(build_binary_tree(std::move(items), threads), kFew, threads);
+Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQuality quality, int threads) {
+    BinaryTree tree = build_binary_tree(std::move(items), threads, primitives.drop_twins);
+    if (quality == BvhQuality::kDefault) return packed(std::move(tree), kFew, threads);
 
     // Spatial splits buy smaller boxes with more leaves. The heuristic, which lets all rays begin and end outside, thinks
     // too well of that: walls cut into pieces are met by more rays than whole ones. They pay where rays meet many leaves
     // (a hundred in halls of beams or in hair, two to five in finely tessellated meshes, which gain nothing).
     constexpr float kCrowded = 8;
     constexpr float kBudget = 1; // no more additional items than there are items
-    BinaryTree tree = build_binary_tree(items, threads);
     const float crowding = tree.nodes.empty() ? 0 : Crowding(tree).most();
+    if (crowding < kCrowded) return packed(std::move(tree), kMany, threads);
+    BuildItems kept = items_of_leaves(tree);
     Hierarchy whole = packed(std::move(tree), kMany, threads);
-    if (crowding < kCrowded) return whole;
-    Hierarchy cut = packed(build_spatial_tree(std::move(items), outline_of, kBudget, threads), kMany, threads);
+    Hierarchy cut = packed(build_spatial_tree(std::move(kept), primitives.outline_of, kBudget, threads), kMany, threads);
     return cost(cut) < cost(whole) ? std::move(cut) : std::move(whole);
 }
 

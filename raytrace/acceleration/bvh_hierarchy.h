@@ -12,7 +12,13 @@ struct Hierarchy {
     Collapsed collapsed;
 };
 
-/// outline_of: of triangles and quads, for spatial splits. The same for any number of threads (0: all).
-Hierarchy build_hierarchy(BuildItems items, const OutlineOf& outline_of, BvhQuality quality, int threads);
+/// What a builder has to ask of the primitives that items stand for.
+struct Primitives {
+    OutlineOf outline_of; ///< for spatial splits
+    DropTwins drop_twins;
+};
+
+/// The same for any number of threads (0: all).
+Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQuality quality, int threads);
 
 } // namespace duet::raytrace

@@ -17,12 +17,9 @@ public:
 
     RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) {
         alignas(64) std::array<Values, 8> lanes; // of the origin and the direction three each, t_min, t_max
-        for (std::size_t i = 0; i < kSize; ++i) {
-            const Ray& ray = rays[i];
-            const float values[] = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.direction.x,
-                                    ray.direction.y, ray.direction.z, ray.t_min,    ray.t_max};
-            for (std::size_t k = 0; k < 8; ++k) lanes[k][i] = values[k];
-        }
+        std::array<const float*, kSize> rows;
+        for (std::size_t i = 0; i < kSize; ++i) rows[i] = reinterpret_cast<const float*>(&rays[i]);
+        transpose_rows(rows, lanes);
         const auto load = [&](std::size_t k) { return Batch::load_aligned(lanes[k].data()); };
         const Vec3T<Batch> origin(load(0), load(1), load(2)), direction(load(3), load(4), load(5));
         t_min_ = load(6);
@@ -73,6 +70,8 @@ public:
     }
 
 private:
+    static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
+                  offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
     // A range of reciprocals of directions, and the end of the range of origins that makes the bound hold.
     struct Interval {
         float low, high, origin;
@@ -154,14 +153,17 @@ public:
     }
 
     void run(std::span<Hit, kSize> hits) {
-        if (!bvh_.empty()) traverse();
+        if (bvh_.nodes.empty())
+            for (const BvhRef leaf : bvh_.list) test_leaf(leaf, kAll);
+        else
+            traverse();
         for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray] = object_[ray] == kNoObject ? Hit{} : best(ray);
     }
 
 private:
     using Batch = RayPacket::Batch;
     static constexpr unsigned kAll = (1u << kSize) - 1;
-    // Up to so many rays are tested one by one against a whole block of triangles, more with each triangle at a time.
+    // Up to so many rays are tested one by one against a whole block of polygons, more with each polygon at a time.
     static constexpr int kFewRays = kSize / 2;
 
     // A child that waits, and where each ray enters its box.
@@ -172,7 +174,7 @@ private:
     };
 
     void traverse() {
-        BvhRef next = bvh_.root;
+        BvhRef next = BvhRef::node(0);
         unsigned active = kAll;
         for (;;) {
             while (active != 0 && !next.is_leaf()) active = step(next);
@@ -192,6 +194,8 @@ private:
         const BvhNode& node = node_at(bvh_, next);
         const auto [distance, entered] = packet_.enter_any(node, last_);
         if (entered == 0) return 0;
+        for (unsigned children = entered; children != 0; children &= children - 1)
+            prefetch(bvh_, node.children[static_cast<std::size_t>(std::countr_zero(children))]);
         const Lanes nearest(distance);
         const std::size_t bottom = size_;
         for (unsigned children = entered; children != 0; children &= children - 1) {
@@ -211,14 +215,10 @@ private:
     }
 
     void test_leaf(BvhRef leaf, unsigned active) {
-        const std::uint32_t end = leaf.index() + leaf.count();
         if (leaf.kind() == PrimitiveKind::kTriangle) {
-            for (std::uint32_t i = leaf.index(); i < end; ++i) {
-                if (std::popcount(active) <= kFewRays)
-                    ray_by_ray(bvh_.triangles[i], active);
-                else
-                    triangle_by_triangle(bvh_.triangles[i], active);
-            }
+            test(bvh_.triangles[leaf.index()], active);
+        } else if (leaf.kind() == PrimitiveKind::kQuad) {
+            test(bvh_.quads[leaf.index()], active);
         } else {
             for (; active != 0; active &= active - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(active));
@@ -231,10 +231,17 @@ private:
         last_ = highest(ends());
     }
 
-    void ray_by_ray(const TriangleBlock& block, unsigned active) {
+    template <std::size_t kCorners> void test(const PolygonBlock<kCorners>& block, unsigned active) {
+        if (std::popcount(active) <= kFewRays)
+            ray_by_ray(block, active);
+        else
+            one_by_one(block, active);
+    }
+
+    template <std::size_t kCorners> void ray_by_ray(const PolygonBlock<kCorners>& block, unsigned active) {
         for (; active != 0; active &= active - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(active));
-            const BlockTest test(packet_.shear(ray), block, t_[ray]);
+            const BlockTest<kCorners> test(packet_.shear(ray), block, t_[ray]);
             if (test.candidates() == 0) continue;
             const Lanes t(test.t()), u(test.u()), v(test.v());
             for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
@@ -247,11 +254,11 @@ private:
         }
     }
 
-    void triangle_by_triangle(const TriangleBlock& block, unsigned active) {
-        for (std::size_t lane = 0; lane < TriangleBlock::kSize; ++lane) {
-            const Vec3 a = block.vertex(0, lane);
-            if (a.x != a.x) return; // absent, and so are the rest
-            const CandidateTest<Batch> test(packet_.shear(), a, block.vertex(1, lane), block.vertex(2, lane), ends());
+    template <std::size_t kCorners> void one_by_one(const PolygonBlock<kCorners>& block, unsigned active) {
+        for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+            const std::array<Vec3, kCorners> corners = block.corners(lane);
+            if (corners[0].x != corners[0].x) return; // absent, and so are the rest
+            const CandidateTest<Batch> test(packet_.shear(), corners, ends());
             const unsigned candidates = test.candidates() & active;
             if (candidates == 0) continue;
             const unsigned nearer = lane_bits((test.t() > packet_.t_min()) & (test.t() < ends()));
@@ -272,21 +279,21 @@ private:
         store_lanes(object, rays, object_);
         store_lanes(primitive, rays, primitive_);
     }
-    void consider_each(unsigned rays, const TriangleBlock& block, std::size_t lane, const CandidateTest<Batch>& test) {
+    template <typename Block>
+    void consider_each(unsigned rays, const Block& block, std::size_t lane, const CandidateTest<Batch>& test) {
         const Lanes t(test.t()), u(test.u()), v(test.v());
         for (; rays != 0; rays &= rays - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
             consider(block, lane, ray, {t[ray], u[ray], v[ray]});
         }
     }
-    void consider_exactly(const TriangleBlock& block, std::size_t lane, std::size_t ray) {
+    template <typename Block> void consider_exactly(const Block& block, std::size_t lane, std::size_t ray) {
         Ray ended = rays_[ray];
         ended.t_max = t_[ray];
-        const auto hit = intersect_triangle(ShearedRay(ended), block.vertex(0, lane), block.vertex(1, lane),
-                                            block.vertex(2, lane));
-        if (hit) consider(block, lane, ray, *hit);
+        if (const auto hit = exact_hit(ShearedRay(ended), block, lane)) consider(block, lane, ray, *hit);
     }
-    void consider(const TriangleBlock& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
+    template <typename Block>
+    void consider(const Block& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
         const Hit found{block.object[lane], block.primitive[lane], hit.u, hit.v, hit.t};
         if (precedes(found, best(ray))) set_best(ray, found);
     }

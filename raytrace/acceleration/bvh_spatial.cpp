@@ -104,7 +104,7 @@ public:
     }
 
     // The cheapest plane that makes at most `room` additional items and both sides fewer than all.
-    std::optional<Split> best(const RelativeArea& area, std::size_t count, std::size_t room) const {
+    std::optional<Split> best(const RelativeArea& area, const Tests& tests, std::size_t count, std::size_t room) const {
         std::optional<Split> best;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
@@ -268,16 +268,17 @@ private:
         const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
         const Binning binning(extent, items.size());
         const RelativeArea area(extent.bounds);
+        const Tests tests(extent.kinds);
         std::optional<Split> whole;
         if (depth < kSahDepth) {
             fill(bins_, items, binning, threads_);
-            whole = best_split(bins_, binning, area, items.size());
+            whole = best_split(bins_, binning, area, tests, items.size());
         }
         if (can_be_leaf && (!whole || whole->cost >= tests(items.size()))) return std::nullopt;
         if (depth < kSahDepth && room > 0 && (!whole || worth_cutting(*whole, binning))) {
             SpatialBinning spatial(extent.bounds, binning.bins, outline_of_);
             spatial.fill(items, threads_);
-            const auto cut_split = spatial.best(area, items.size(), room);
+            const auto cut_split = spatial.best(area, tests, items.size(), room);
             if (cut_split && (!whole || cut_split->cost < whole->cost))
                 if (std::optional<Parts> parts = cut(items, *cut_split, room)) return parts;
         }

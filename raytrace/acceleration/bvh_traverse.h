@@ -15,6 +15,16 @@ inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
                                              std::size_t{ref.index()} * BvhRef::kNodeUnit);
 }
 
+/// Asks for what a visit of this child reads, before it is needed.
+inline void prefetch(const Bvh& bvh, BvhRef child) {
+    const bool leaf = child.is_leaf(); // of triangles most likely; otherwise nothing is lost
+    const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
+                             : reinterpret_cast<const char*>(&node_at(bvh, child));
+    constexpr std::size_t kLine = 64;
+    for (std::size_t i = 0; i < (leaf ? sizeof(TriangleBlock) : sizeof(BvhNode)); i += kLine)
+        __builtin_prefetch(place + i);
+}
+
 /// Whether a ray can be traced: finite, with a direction. Others hit nothing.
 inline bool traceable(const Ray& ray) {
     return is_finite(ray.origin) && is_finite(ray.direction) && max_component(abs(ray.direction)) > 0;
@@ -42,12 +52,21 @@ private:
     std::uint64_t bits_;
 };
 
+/// Where there is no tree to go through.
+template <bool kAny, typename Instance>
+[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
+    for (const BvhRef leaf : bvh.list)
+        if (test_leaf(leaf, best)) return true;
+    return test_leaf.found();
+}
+
 /// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
 /// of the ray. Returns whether there was one. `object` stands for the objects of the primitives where it is not
 /// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
 template <typename Instance>
 bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
-    if (bvh.empty()) return false;
+    if (!bvh.use_tree()) return find_in_list<false>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
     LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
@@ -55,7 +74,7 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
     std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min);
-    BvhRef next = bvh.root;
+    BvhRef next = BvhRef::node(0);
     for (;;) {
         while (!next.is_leaf()) {
             const BvhNode& node = node_at(bvh, next);
@@ -99,15 +118,15 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
 /// Stops at the first; the other arguments as above.
 template <typename Instance>
 bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
-    if (bvh.empty()) return false;
+    Hit best = end;
+    if (!bvh.use_tree()) return find_in_list<true>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
     LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
-    Hit best = end;
 
     std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
-    BvhRef next = bvh.root;
+    BvhRef next = BvhRef::node(0);
     for (;;) {
         while (!next.is_leaf()) {
             const BvhNode& node = node_at(bvh, next);

@@ -403,7 +403,7 @@ TEST_SUITE("unit") {
                 sum.nodes += area + 0.1 * sum.leaves;
                 return sum;
             };
-            const Cost cost = packed(packed, collapsed.bvh.root, tree.nodes[0].box), other = greedy(greedy, 0);
+            const Cost cost = packed(packed, BvhRef::node(0), tree.nodes[0].box), other = greedy(greedy, 0);
             CHECK(static_cast<double>(collapsed.node_cost) == doctest::Approx(cost.nodes).epsilon(1e-4));
             CHECK(static_cast<double>(collapsed.leaf_cost) == doctest::Approx(cost.leaves).epsilon(1e-4));
             CHECK(cost.nodes <= other.nodes * 1.0001);
