@@ -3,7 +3,7 @@
 . "$(dirname "$0")/support.sh"
 
 # A thicket: small triangles among long thin ones.
-awk 'BEGIN { srand(7); for (i = 0; i < 3000; ++i) { s = i % 8 ? 0.01 : 1
+awk 'BEGIN { srand(7); for (i = 0; i < 3000; ++i) { s = i % 3 ? 0.01 : 1
     x = rand(); y = rand(); z = rand(); a = s * (rand() - 0.5); b = s * (rand() - 0.5); c = s * (rand() - 0.5)
     print "v", x, y, z; print "v", x + a, y + b, z + c; print "v", x + a / 2 + 0.01, y + b / 2, z + c / 2 + 0.01
     print "f", 3 * i + 1, 3 * i + 2, 3 * i + 3 } }' >"$scratch/thicket.obj"
