@@ -23,8 +23,8 @@ float radius(const Box3& box) { return box.empty() ? 0.0f : static_cast<float>(l
 
 } // namespace
 
-PreparedData::PreparedData(const Scene& scene_, int threads)
-    : scene(scene_), accelerator(scene_, threads),
+PreparedData::PreparedData(const Scene& scene_, int threads, BvhQuality quality)
+    : scene(scene_), accelerator(scene_, threads, quality),
       lights(scene_.lights, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
       finite_lights(scene_.lights, 0, radius(scene_.bounds)),
       environment_light({}, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
@@ -39,7 +39,7 @@ PreparedData::PreparedData(const Scene& scene_, int threads)
 }
 
 Prepared prepare(const Scene& scene, const Settings& settings) {
-    return Prepared(std::make_shared<const PreparedData>(scene, settings.threads));
+    return Prepared(std::make_shared<const PreparedData>(scene, settings.threads, settings.bvh));
 }
 
 Hit trace(const Prepared& prepared, const Ray& ray) { return prepared.data().accelerator.closest(ray); }

@@ -11,8 +11,8 @@
 namespace duet::raytrace {
 
 struct PreparedData {
-    /// threads: for building, 0 = all.
-    PreparedData(const Scene& scene_, int threads);
+    /// threads: for building, 0 = all; quality: of the hierarchies.
+    PreparedData(const Scene& scene_, int threads, BvhQuality quality);
 
     const Scene& scene;
     Accelerator accelerator;

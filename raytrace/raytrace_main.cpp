@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
     using namespace duet;
-    std::string integrator_name = "path", sampler = "sobol";
+    std::string integrator_name = "path", sampler = "sobol", bvh = "default";
     raytrace::Settings settings;
     bool no_environment = false;
     RenderProgram program;
@@ -30,6 +30,9 @@ int main(int argc, char** argv) {
             ->check(CLI::PositiveNumber);
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(CLI::PositiveNumber);
+        app.add_option("--bvh", bvh,
+                       "Quality of the hierarchies that rays search: default, or high (long to build; faster to search "
+                       "where triangles are long or overlap; the same picture)");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
@@ -38,6 +41,7 @@ int main(int argc, char** argv) {
         settings.samples_per_pixel = spp.value_or(limited ? 1 << 24 : 64);
         settings.integrator = raytrace::integrator(integrator_name);
         settings.sampler = sampler_kind(sampler);
+        settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
         return [prepared = raytrace::prepare(scene, settings), settings](const View& view, Control& control) {
             return raytrace::render(prepared, view, settings, control);

@@ -64,6 +64,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     statistics.shadow_rays = rays.shadow;
     statistics.triangles = plan.prepared.accelerator.primitives();
     statistics.memory_bytes = plan.prepared.accelerator.memory_bytes() + film_bytes(film) + aovs.memory_bytes();
+    statistics.bvh = plan.prepared.accelerator.statistics();
     statistics.invalid_samples = film.invalid_samples();
     statistics.estimated_relmse = film.estimated_relmse();
     statistics.skipped = skipped(plan, settings);

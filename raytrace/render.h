@@ -6,6 +6,7 @@
 #include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
+#include "raytrace/acceleration/bvh_quality.h"
 
 #include <memory>
 #include <string_view>
@@ -38,6 +39,7 @@ struct Settings : RenderSettings {
     SamplerKind sampler = SamplerKind::kSobol;
     int max_depth = 64; ///< scattering events at most: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
+    BvhQuality bvh = BvhQuality::kDefault; ///< for prepare(): of the hierarchies; no bit of the picture depends on it
     bool environment = true; ///< as raster::Settings::environment
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
     double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none

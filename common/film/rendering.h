@@ -50,6 +50,13 @@ struct Skipped {
     std::int64_t count = -1; ///< −1: `why` says it; else how many were skipped
 };
 
+/// The path tracer's bounding volume hierarchies, all together.
+struct HierarchyStatistics {
+    std::string quality;         ///< "default" or "high"; empty: there are none
+    std::int64_t nodes = 0;      ///< wide ones
+    std::int64_t references = 0; ///< primitives and instances in leaves; one that is cut counts in each
+};
+
 /// What a rendering cost and what it did.
 struct RenderStatistics {
     std::vector<std::pair<std::string, double>> seconds; ///< by stage, in order ("transform", "cover", "shade" …)
@@ -60,6 +67,7 @@ struct RenderStatistics {
     std::int64_t memory_bytes = 0;    ///< of what `prepare` built and the render kept
     std::int64_t invalid_samples = 0; ///< NaN, infinite or negative: dropped from the film, and reported
     double estimated_relmse = -1;     ///< mean over pixels of variance / (mean² + 0.01); −1: not estimated
+    HierarchyStatistics bvh;
     std::vector<Skipped> skipped;
     std::vector<std::string> approximations; ///< what is not the path tracer's truth, each named in a sentence
     bool interrupted = false;

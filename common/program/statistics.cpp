@@ -22,6 +22,9 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
         context.load_seconds + context.prepare_seconds + context.render_seconds + context.write_seconds;
     nlohmann::json relmse; // null where unknown
     if (statistics.estimated_relmse >= 0) relmse = statistics.estimated_relmse;
+    nlohmann::json bvh; // null where there is none
+    if (const HierarchyStatistics& h = statistics.bvh; !h.quality.empty())
+        bvh = {{"quality", h.quality}, {"nodes", h.nodes}, {"references", h.references}};
     return {
         {"program", context.program},
         {"version", DUET_VERSION},
@@ -45,6 +48,7 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
           {"shadow", statistics.shadow_rays}}},
         {"triangles", statistics.triangles},
         {"memory_bytes", statistics.memory_bytes},
+        {"bvh", bvh},
         {"estimated_relmse", relmse},
         {"invalid_samples", statistics.invalid_samples},
         {"approximations", statistics.approximations},

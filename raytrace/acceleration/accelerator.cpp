@@ -2,7 +2,7 @@
 
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
-#include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
@@ -18,7 +18,7 @@ namespace {
 // Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
 class Gatherer {
 public:
-    explicit Gatherer(int threads) : threads_(threads) {}
+    Gatherer(BvhQuality quality, int threads) : quality_(quality), threads_(threads) {}
 
     void add_shape(const Shape& shape, std::uint32_t object) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
@@ -46,19 +46,18 @@ public:
     }
 
     Bvh build() {
-        const auto drop_twins = [this](std::span<BuildItem> items) { return first_of_twins(items); };
-        BinaryTree tree = build_binary_tree(std::move(items_), threads_, drop_twins);
-        Collapsed collapsed = collapse(tree);
-        add_list_where_faster(tree, collapsed);
+        const Primitives primitives{[this](const BuildItem& item) { return outline(item); },
+                                    [this](std::span<BuildItem> items) { return first_of_twins(items); }};
+        auto [items, collapsed] = build_hierarchy(std::move(items_), primitives, quality_, threads_);
         Bvh& bvh = collapsed.bvh;
         const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
         bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
         bvh.quads.resize(elements(PrimitiveKind::kQuad));
         bvh.spheres.resize(elements(PrimitiveKind::kSphere));
         bvh.instances.resize(elements(PrimitiveKind::kInstance));
-        in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
-            const LeafItems& leaf = collapsed.leaves[i];
-            fill_leaf(bvh, leaf, std::span(tree.items).subspan(leaf.first, leaf.count));
+        in_chunks(collapsed.leaves.size(), [&, &items = items, &leaves = collapsed.leaves](std::size_t i) {
+            const LeafItems& leaf = leaves[i];
+            fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
         });
         return std::move(bvh);
     }
@@ -100,6 +99,17 @@ private:
             items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
             triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
         });
+    }
+    // Of triangles and quads; nothing of others.
+    Outline outline(const BuildItem& item) const {
+        if (item.kind == PrimitiveKind::kTriangle) {
+            const MeshTriangle& triangle = triangles_[item.index];
+            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+            const auto& [a, b, c] = mesh.triangles[triangle.primitive];
+            return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
+        }
+        if (item.kind == PrimitiveKind::kQuad) return {quads_[item.index].corners, 4};
+        return {};
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
@@ -176,6 +186,7 @@ private:
     }
     static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
 
+    BvhQuality quality_;
     int threads_;
     BuildItems items_;
     std::vector<PlacedMesh> meshes_;
@@ -189,8 +200,9 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 
 } // namespace
 
-Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
-    Gatherer world(threads);
+Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
+    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()) {
+    Gatherer world(quality, threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -201,7 +213,7 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own(threads);
+        Gatherer own(quality, threads);
         own.add_shape(shape, kNoObject);
         shapes_[object.shape] = own.build();
     }
@@ -257,6 +269,18 @@ bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
     clamped.t = min(end.t, std::numeric_limits<float>::max()); // as above
     return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
+}
+
+HierarchyStatistics Accelerator::statistics() const {
+    HierarchyStatistics result;
+    result.quality = quality_ == BvhQuality::kHigh ? "high" : "default";
+    const auto add = [&](const Bvh& bvh) {
+        result.nodes += static_cast<std::int64_t>(bvh.nodes.size());
+        result.references += static_cast<std::int64_t>(bvh.references);
+    };
+    add(world_);
+    for (const Bvh& shape : shapes_) add(shape);
+    return result;
 }
 
 std::int64_t Accelerator::memory_bytes() const {

@@ -1,8 +1,10 @@
 // The whole scene behind two questions: what does a ray hit first, and is anything in its way?
 #pragma once
 
+#include "common/film/rendering.h"
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
+#include "raytrace/acceleration/bvh_quality.h"
 
 #include <span>
 
@@ -12,8 +14,8 @@ namespace duet::raytrace {
 /// and one of its own, in its own space, for each shape that instances show. Refers to the scene.
 class Accelerator {
 public:
-    /// threads: for building, 0 = all. The result does not depend on it.
-    Accelerator(const Scene& scene, int threads);
+    /// threads: for building, 0 = all. The result does not depend on it; no hit depends on the quality.
+    Accelerator(const Scene& scene, int threads, BvhQuality quality = BvhQuality::kDefault);
 
     /// The first hit with t in (t_min, t_max], t_min not negative; invalid where there is none, or where the ray's
     /// numbers are out of range (`traceable`) or it has no direction. At equal t the lower (object, primitive).
@@ -27,12 +29,14 @@ public:
 
     std::int64_t primitives() const { return primitives_; } ///< of the flattened scene
     std::int64_t memory_bytes() const;
+    HierarchyStatistics statistics() const;
     const Bvh& world() const { return world_; }
 
 private:
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
+    BvhQuality quality_;
     Bvh world_;
     std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
     std::int64_t primitives_ = 0;

@@ -76,18 +76,20 @@ public:
     static BvhRef node(std::uint32_t index);
     /// The element of the kind's list: a block of primitives, or an instance.
     static BvhRef leaf(PrimitiveKind kind, std::uint32_t index) {
-        return BvhRef(kLeaf | static_cast<std::uint32_t>(kind) << 29 | index);
+        return BvhRef(static_cast<std::uint32_t>(kind) << 29 | index);
     }
     static BvhRef from_bits(std::uint32_t bits) { return BvhRef(bits); }
 
-    bool is_leaf() const { return (bits_ & kLeaf) != 0; }
+    bool is_leaf() const { return (bits_ & kNode) == 0; }
     std::uint32_t index() const { return bits_ & (kMaxIndex - 1); }
     PrimitiveKind kind() const { return static_cast<PrimitiveKind>(bits_ >> 29 & 3); }
     std::uint32_t bits() const { return bits_; }
 
 private:
     explicit BvhRef(std::uint32_t bits) : bits_(bits) {}
-    static constexpr std::uint32_t kLeaf = 1u << 31;
+    // Leaves have the smaller numbers: of children at equal distance, as those are whose boxes a ray begins in, they are
+    // tested first, and may spare it the others.
+    static constexpr std::uint32_t kNode = 1u << 31;
     std::uint32_t bits_;
 };
 
@@ -108,7 +110,7 @@ struct alignas(32) BvhNode {
 };
 
 inline BvhRef BvhRef::node(std::uint32_t index) {
-    return BvhRef(index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
+    return BvhRef(kNode | index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
 }
 
 struct Bvh {
@@ -117,6 +119,7 @@ struct Bvh {
     static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< primitives
 
     Box3 bounds;
+    std::size_t references = 0; ///< primitives in leaves; one that is cut counts in each
     /// All primitives, where single rays are sooner through with them than with the tree.
     std::vector<BvhRef> list;
     /// The tree; the first is its root. None where there is but one leaf, which is the list.

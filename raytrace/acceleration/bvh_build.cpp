@@ -2,216 +2,14 @@
 
 #include "common/system/error.h"
 #include "common/system/parallel.h"
+#include "raytrace/acceleration/bvh_binning.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <optional>
 
 namespace duet::raytrace {
 
 namespace {
-
-constexpr std::size_t kMaxBins = 32;
-// The cost of a step down, in tests of a leaf's block.
-constexpr float kStepCost = 1;
-// Below this depth boxes are halved by count, so that no input makes the tree deeper than another log2(2³²) levels.
-constexpr int kSahDepth = Bvh::kMaxDepth - 40;
-// Ranges of more items are binned and divided by all threads, in chunks of this many.
-constexpr std::size_t kChunk = std::size_t{1} << 15;
-
-using Items = std::span<BuildItem>;
-using Four = FloatBatch<4>; // x, y, z and one that nobody looks at
-
-// An item's corners: the fourth number of each is its neighbour in memory.
-Four low_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item)); }
-Four high_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item) + 3); }
-static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float) && sizeof(BuildItem) >= 7 * sizeof(float));
-// Twice the centre: it saves a product.
-Four doubled_center(const BuildItem& item) { return low_corner(item) + high_corner(item); }
-
-struct Bounds {
-    Four low = Four(kInfinity), high = Four(-kInfinity);
-
-    void extend(Four l, Four h) {
-        low = xsimd::min(low, l);
-        high = xsimd::max(high, h);
-    }
-    void extend(const Bounds& other) { extend(other.low, other.high); }
-    Box3 box() const {
-        alignas(16) std::array<float, 4> l, h;
-        low.store_aligned(l.data());
-        high.store_aligned(h.data());
-        return {Vec3(l[0], l[1], l[2]), Vec3(h[0], h[1], h[2])};
-    }
-};
-
-// What the builder knows of a set of items.
-struct Extent {
-    Bounds bounds, centers; ///< of the boxes, and of their centres (doubled)
-    unsigned kinds = 0;     ///< a bit for each kind that occurs
-
-    void extend(const BuildItem& item) {
-        bounds.extend(low_corner(item), high_corner(item));
-        const Four center = doubled_center(item);
-        centers.extend(center, center);
-        kinds |= 1u << static_cast<unsigned>(item.kind);
-    }
-    void extend(const Extent& other) {
-        bounds.extend(other.bounds);
-        centers.extend(other.centers);
-        kinds |= other.kinds;
-    }
-    bool one_center() const { return (lane_bits(centers.low == centers.high) & 7u) == 7u; }
-    bool one_kind() const { return (kinds & (kinds - 1)) == 0; }
-};
-
-Extent extent_of(std::span<const BuildItem> items) {
-    Extent extent;
-    for (const BuildItem& item : items) extent.extend(item);
-    return extent;
-}
-
-// The cost of testing so many primitives: by the block; of instances each is a hierarchy of its own. (That a block of
-// quads takes longer than one of spheres changes no tree that was tried.)
-class Tests {
-public:
-    explicit Tests(unsigned kinds)
-        : shift_(kinds == 1u << static_cast<unsigned>(PrimitiveKind::kInstance) ? 0 : std::countr_zero(kBlockSize)) {}
-    float operator()(std::size_t count) const {
-        return static_cast<float>((count + (std::size_t{1} << shift_) - 1) >> shift_);
-    }
-
-private:
-    int shift_;
-};
-
-// Maps centres to bins of equal width on each axis; axes on which the centres have no extent have one bin.
-class Binning {
-public:
-    Binning(const Extent& extent, std::size_t count) : low_(extent.centers.low) {
-        // Few items: few bins, as their evaluation would cost more than it gains.
-        bins = std::min(kMaxBins, 4 + count / 16);
-        const Four width = extent.centers.high - extent.centers.low;
-        const Four scale = Four(static_cast<float>(bins)) / width;
-        const auto usable = (width > Four(0.0f)) & (width < Four(kInfinity)) & (scale < Four(kInfinity));
-        scale_ = xsimd::select(usable, scale, Four(0.0f));
-        usable_ = lane_bits(usable);
-    }
-    bool usable(std::size_t axis) const { return (usable_ >> axis & 1) != 0; }
-    std::array<std::int32_t, 4> bin(const BuildItem& item) const {
-        const Four place = (doubled_center(item) - low_) * scale_;
-        using Four32 = xsimd::batch<std::int32_t, Four::arch_type>;
-        const Four32 last(static_cast<std::int32_t>(bins) - 1);
-        const auto index = xsimd::max(xsimd::min(xsimd::to_int(place), last), Four32(0)); // a NaN has become negative
-        alignas(16) std::array<std::int32_t, 4> result;
-        index.store_aligned(result.data());
-        return result;
-    }
-
-    std::size_t bins;
-
-private:
-    Four low_, scale_;
-    unsigned usable_;
-};
-
-struct Bin {
-    Bounds bounds;
-    std::size_t count = 0;
-
-    void extend(const Bin& other) {
-        bounds.extend(other.bounds);
-        count += other.count;
-    }
-};
-using Bins = std::array<std::array<Bin, kMaxBins>, 3>;
-
-void fill(Bins& bins, std::span<const BuildItem> items, const Binning& binning) {
-    for (const BuildItem& item : items) {
-        const auto index = binning.bin(item);
-        const Four low = low_corner(item), high = high_corner(item);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[axis][static_cast<std::size_t>(index[axis])];
-            bin.bounds.extend(low, high);
-            ++bin.count;
-        }
-    }
-}
-
-// Half the surface area of boxes inside a larger one, as a part of the larger one's: in range whatever the scale.
-class RelativeArea {
-public:
-    explicit RelativeArea(const Bounds& whole) {
-        const Vec3 size = whole.box().diagonal();
-        const float largest = max_component(size);
-        scale_ = Four(largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f);
-        const float area = half(whole);
-        per_area_ = area > 0 ? 1 / area : 0;
-    }
-    float operator()(const Bounds& bounds) const { return half(bounds) * per_area_; }
-
-private:
-    float half(const Bounds& bounds) const {
-        alignas(16) std::array<float, 4> d;
-        ((bounds.high - bounds.low) * scale_).store_aligned(d.data());
-        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-    }
-    Four scale_;
-    float per_area_;
-};
-
-struct Split {
-    std::size_t axis = 0;
-    std::int32_t bin = 0; // items in bins up to `bin` go left
-    float cost = 0;
-};
-
-// The cheapest of the planes between bins; none where all centres are one point.
-std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area,
-                                const Tests& tests, std::size_t count) {
-    std::optional<Split> best;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!binning.usable(axis)) continue;
-        std::array<float, kMaxBins> right_cost;
-        Bin right;
-        for (std::size_t i = binning.bins; i-- > 1;) {
-            right.extend(bins[axis][i]);
-            right_cost[i] = right.count > 0 ? area(right.bounds) * tests(right.count) : 0;
-        }
-        Bin left;
-        for (std::size_t i = 0; i + 1 < binning.bins; ++i) {
-            left.extend(bins[axis][i]);
-            if (left.count == 0 || left.count == count) continue;
-            const float cost = area(left.bounds) * tests(left.count) + right_cost[i + 1];
-            if (!best || cost < best->cost) best = Split{axis, static_cast<std::int32_t>(i), cost};
-        }
-    }
-    if (best) best->cost += kStepCost;
-    return best;
-}
-
-// An instance is a hierarchy of its own: a box around each pays.
-std::size_t largest_leaf(PrimitiveKind kind) { return kind == PrimitiveKind::kInstance ? 1 : Bvh::kMaxLeaf; }
-
-// A set of items that has become two, the left one's in front.
-struct Halves {
-    std::size_t left_count = 0;
-    Extent left, right;
-};
-
-template <typename GoesLeft> Halves divide(Items items, const GoesLeft& goes_left) {
-    Halves halves;
-    std::size_t begin = 0, end = items.size();
-    for (;;) {
-        for (; begin < end && goes_left(items[begin]); ++begin) halves.left.extend(items[begin]);
-        for (; begin < end && !goes_left(items[end - 1]); --end) halves.right.extend(items[end - 1]);
-        if (begin == end) break;
-        std::swap(items[begin], items[end - 1]);
-    }
-    halves.left_count = begin;
-    return halves;
-}
 
 // The same by all threads, through a second array: each chunk's items keep their order.
 template <typename GoesLeft>
@@ -305,8 +103,8 @@ private:
         const Tests tests(extent.kinds);
         std::optional<Split> best;
         if (depth < kSahDepth) {
-            const Bins& bins = binned(items, binning);
-            best = best_split(bins, binning, RelativeArea(extent.bounds), tests, items.size());
+            fill(bins_, items, binning, threads_);
+            best = best_split(bins_, binning, RelativeArea(extent.bounds), tests, items.size());
         }
         if (can_be_leaf && (!best || best->cost >= tests(items.size()))) return std::nullopt;
         if (best) {
@@ -314,31 +112,7 @@ private:
             if (items.size() > 2 * kChunk) return divide_in_parallel(items, copy_, threads_, goes_left);
             return divide(items, goes_left);
         }
-        // All in one place (or too deep): by kind where only that keeps them from being a leaf, else by count.
-        if (items.size() <= Bvh::kMaxLeaf && !extent.one_kind())
-            return divide(items, [kind = items[0].kind](const BuildItem& item) { return item.kind == kind; });
-        const std::size_t half = items.size() / 2;
-        return Halves{half, extent_of(items.first(half)), extent_of(items.subspan(half))};
-    }
-
-    const Bins& binned(Items items, const Binning& binning) {
-        const auto clear = [&](Bins& bins) {
-            for (auto& axis : bins) std::fill_n(axis.begin(), binning.bins, Bin());
-        };
-        clear(bins_);
-        if (items.size() <= 2 * kChunk) {
-            fill(bins_, items, binning);
-            return bins_;
-        }
-        const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
-        std::vector<Bins> parts(chunks);
-        parallel_for(chunks, threads_, [&](std::size_t i) {
-            fill(parts[i], items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)), binning);
-        });
-        for (const Bins& part : parts)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                for (std::size_t i = 0; i < binning.bins; ++i) bins_[axis][i].extend(part[axis][i]);
-        return bins_;
+        return divide_anyhow(items, extent);
     }
 
     Items items_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raytrace/acceleration/bvh.h"
+#include "raytrace/acceleration/bvh_bounds.h"
 
 #include <functional>
 #include <span>
@@ -24,7 +25,14 @@ struct BinaryNode {
     std::uint32_t left = 0, right = 0;
 
     bool leaf() const { return count > 0; }
+    Bounds bounds() const;
 };
+
+inline Bounds BinaryNode::bounds() const {
+    static_assert(offsetof(BinaryNode, box) == 0 && sizeof(Box3) == 6 * sizeof(float));
+    const auto* numbers = reinterpret_cast<const float*>(this);
+    return {Bounds::Four::load_unaligned(numbers), Bounds::Four::load_unaligned(numbers + 3)};
+}
 
 /// Node 0 is the root; no nodes where there are no items. No deeper than Bvh::kMaxDepth.
 struct BinaryTree {
@@ -50,12 +58,15 @@ struct LeafItems {
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
+    /// How many a ray through the root's box meets, by the surface area heuristic; of nodes, what the collapse minimizes.
+    float node_cost = 0, leaf_cost = 0;
     std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
 };
 
-/// Packs the tree into nodes of BvhNode::kWidth children (Wald, Benthin and Boulos 2008, «Getting Rid of Packets»,
-/// §2.2). Throws Error where there are more than BvhRef can name.
-Collapsed collapse(const BinaryTree& tree);
+/// Packs the tree into nodes of BvhNode::kWidth children, so that a ray meets as few nodes as possible (Ylitie, Karras
+/// and Laine 2017, «Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs», §3). The same for any
+/// number of threads (0: all). Throws Error where there are more than BvhRef can name.
+Collapsed collapse(const BinaryTree& tree, int threads);
 
 /// Gives the hierarchy of few primitives a list of all of them, in full blocks, where a ray is expected to be through
 /// with that sooner than with the tree. The list's items are appended to the tree's.

@@ -1,6 +1,7 @@
 #include "raytrace/acceleration/bvh_build.h"
 
 #include "common/system/error.h"
+#include "common/system/parallel.h"
 
 #include <algorithm>
 
@@ -8,14 +9,110 @@ namespace duet::raytrace {
 
 namespace {
 
+// How best to cut each subtree into so many wide ones: by dynamic programming from the leaves up. The cost of a wide
+// node is its area, which is the odds that a ray meets it; the leaves are given, and cost what they cost.
+class Forests {
+public:
+    Forests(const BinaryTree& tree, int threads) : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
+        // Subtrees by all threads at once, then what is above them.
+        constexpr int kTop = 8;
+        std::vector<std::uint32_t> subtrees;
+        gather(0, kTop, subtrees);
+        parallel_for(subtrees.size(), threads, [&](std::size_t i) { visit(subtrees[i], Bvh::kMaxDepth); });
+        visit(0, kTop);
+    }
+
+    /// Of the whole tree, as Collapsed has them.
+    float node_cost() const { return forests_[0].cost[0]; }
+    float leaf_cost() const { return forests_[0].leaves; }
+
+    /// The roots of the wide subtrees that are a node's children, at most BvhNode::kWidth; returns how many.
+    std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
+        std::size_t count = 0;
+        cut(node, BvhNode::kWidth, roots, count);
+        return count;
+    }
+
+private:
+    static constexpr std::size_t kMost = BvhNode::kWidth - 1;
+    // Of two ways to meet as few nodes the better is to have large leaves far up: rays that are stopped by them are
+    // stopped sooner, and that area does not see. So each leaf costs this part of its area at each level.
+    static constexpr float kHidden = 0.1f;
+
+    struct Forest {
+        std::array<float, kMost> cost; // as one tree, as at most two …
+        float leaves;                  // the sum of their areas
+    };
+
+    void gather(std::uint32_t node, int depth, std::vector<std::uint32_t>& subtrees) const {
+        if (depth == 0) return subtrees.push_back(node);
+        if (tree_.nodes[node].leaf()) return;
+        gather(tree_.nodes[node].left, depth - 1, subtrees);
+        gather(tree_.nodes[node].right, depth - 1, subtrees);
+    }
+
+    // Down to `depth` levels: below, the work is done.
+    void visit(std::uint32_t index, int depth) {
+        const BinaryNode& node = tree_.nodes[index];
+        if (node.leaf()) {
+            forests_[index].cost.fill(0);
+            forests_[index].leaves = area_(node.bounds());
+            return;
+        }
+        if (depth == 0) return;
+        visit(node.left, depth - 1);
+        visit(node.right, depth - 1);
+        const Forest &left = forests_[node.left], &right = forests_[node.right];
+        Forest& forest = forests_[index];
+        forest.leaves = left.leaves + right.leaves;
+        forest.cost[0] = area_(node.bounds()) + kHidden * forest.leaves + share(left, right, BvhNode::kWidth).cost;
+        for (std::size_t n = 2; n <= kMost; ++n)
+            forest.cost[n - 1] = min(forest.cost[n - 2], share(left, right, n).cost);
+    }
+
+    // The best way to make n trees of two subtrees: so many of the left one.
+    struct Share {
+        float cost;
+        std::size_t left;
+    };
+    static Share share(const Forest& left, const Forest& right, std::size_t n) {
+        Share best{kInfinity, 1};
+        for (std::size_t k = 1; k < n; ++k) {
+            const float cost = left.cost[k - 1] + right.cost[n - k - 1];
+            if (cost < best.cost) best = {cost, k};
+        }
+        return best;
+    }
+
+    void cut(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+        const BinaryNode& node = tree_.nodes[index];
+        const std::size_t left = share(forests_[node.left], forests_[node.right], n).left;
+        take(node.left, left, roots, count);
+        take(node.right, n - left, roots, count);
+    }
+    void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+        const auto& cost = forests_[node].cost;
+        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // no better than fewer
+        if (n == 1)
+            roots[count++] = node;
+        else
+            cut(node, n, roots, count);
+    }
+
+    const BinaryTree& tree_;
+    RelativeArea area_;
+    std::vector<Forest> forests_; // by node
+};
+
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
+    Collapser(const BinaryTree& tree, int threads, Collapsed& result) : tree_(tree), forests_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
         return node.leaf() ? leaf(node.first, node.count) : BvhRef::node(pack(index));
     }
+    const Forests& forests() const { return forests_; }
 
 private:
     // One element: a block of primitives, or an instance.
@@ -24,6 +121,7 @@ private:
         const std::size_t element = elements_[static_cast<std::size_t>(kind)]++;
         check_index(element);
         leaves_.push_back({first, count, static_cast<std::uint32_t>(element)});
+        bvh_.references += count;
         return BvhRef::leaf(kind, static_cast<std::uint32_t>(element));
     }
 
@@ -31,27 +129,9 @@ private:
         if (index >= BvhRef::kMaxIndex) throw Error("too many primitives for a hierarchy");
     }
 
-    // A wide node takes the place of a binary one and of those below it: of its children so far the one of the largest
-    // area, which a ray hits first, is replaced by its two, until the node is full.
     std::uint32_t pack(std::uint32_t index) {
-        std::array<std::uint32_t, BvhNode::kWidth> children{tree_.nodes[index].left, tree_.nodes[index].right};
-        std::size_t count = 2;
-        while (count < BvhNode::kWidth) {
-            std::size_t widest = count;
-            float widest_area = -1;
-            for (std::size_t i = 0; i < count; ++i) {
-                const BinaryNode& child = tree_.nodes[children[i]];
-                if (!child.leaf() && child.box.half_area() > widest_area) {
-                    widest = i;
-                    widest_area = child.box.half_area();
-                }
-            }
-            if (widest == count) break;
-            const BinaryNode& opened = tree_.nodes[children[widest]];
-            children[widest] = opened.left;
-            children[count++] = opened.right;
-        }
-
+        std::array<std::uint32_t, BvhNode::kWidth> children;
+        const std::size_t count = forests_.children(index, children);
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
             return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
         });
@@ -73,6 +153,7 @@ private:
     }
 
     const BinaryTree& tree_;
+    Forests forests_;
     Bvh& bvh_;
     std::vector<LeafItems>& leaves_;
     std::array<std::size_t, 4>& elements_; // so far in the list of each kind
@@ -82,11 +163,14 @@ template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) 
 
 } // namespace
 
-Collapsed collapse(const BinaryTree& tree) {
+Collapsed collapse(const BinaryTree& tree, int threads) {
     Collapsed result;
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
-    const BvhRef root = Collapser(tree, result).ref(0);
+    Collapser collapser(tree, threads, result);
+    const BvhRef root = collapser.ref(0);
+    result.node_cost = collapser.forests().node_cost();
+    result.leaf_cost = collapser.forests().leaf_cost();
     result.bvh.nodes.shrink_to_fit();
     if (root.is_leaf()) result.bvh.list.push_back(root);
     return result;

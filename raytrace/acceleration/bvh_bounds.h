@@ -1,0 +1,52 @@
+// Boxes while hierarchies are made: as batches, for speed, with areas that stay in range.
+#pragma once
+
+#include "common/vec/box.h"
+#include "common/vec/simd.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace duet::raytrace {
+
+/// A box, empty as constructed: x, y, z and one number that nobody looks at.
+struct Bounds {
+    using Four = FloatBatch<4>;
+    Four low = Four(kInfinity), high = Four(-kInfinity);
+
+    void extend(Four l, Four h) {
+        low = xsimd::min(low, l);
+        high = xsimd::max(high, h);
+    }
+    void extend(const Bounds& other) { extend(other.low, other.high); }
+    Box3 box() const {
+        alignas(16) std::array<float, 4> l, h;
+        low.store_aligned(l.data());
+        high.store_aligned(h.data());
+        return {Vec3(l[0], l[1], l[2]), Vec3(h[0], h[1], h[2])};
+    }
+};
+
+/// Half the surface area of boxes inside a larger one, as a part of the larger one's: in range whatever the scale.
+class RelativeArea {
+public:
+    explicit RelativeArea(const Bounds& whole) {
+        const Vec3 size = whole.box().diagonal();
+        const float largest = max_component(size);
+        scale_ = Bounds::Four(largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f);
+        const float area = half(whole);
+        per_area_ = area > 0 ? 1 / area : 0;
+    }
+    float operator()(const Bounds& bounds) const { return half(bounds) * per_area_; }
+
+private:
+    float half(const Bounds& bounds) const {
+        alignas(16) std::array<float, 4> d;
+        ((bounds.high - bounds.low) * scale_).store_aligned(d.data());
+        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+    }
+    Bounds::Four scale_;
+    float per_area_;
+};
+
+} // namespace duet::raytrace

@@ -1,0 +1,412 @@
+// Spatial splits, reinsertion and the collapse: boxes that hold all they must, the same hits, never a worse tree.
+#include "raytrace/acceleration/accelerator.h"
+#include "raytrace/acceleration/bvh_hierarchy.h"
+#include "raytrace/acceleration/bvh_optimize.h"
+#include "tests/raytrace/acceleration/soup.h"
+#include "tests/raytrace/acceleration/tree_checks.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+// Long thin triangles in all directions: what spatial splits are for.
+Mesh needles(Random& random, int count, float length, float width) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+        const Vec3 p = random.vector(), way = random.direction() * length;
+        for (const Vec3& q : {p, p + way, p + way * 0.5f + random.vector() * width}) mesh.positions.push_back(q);
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
+// Small triangles among long thin ones that pass between them, none along an axis: here spatial splits pay.
+Mesh thicket(Random& random, int count) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+        const bool is_long = i % 8 == 0;
+        const Vec3 way = random.direction() * (is_long ? 2.0f : 0.02f), p = random.vector() - way * 0.5f;
+        for (const Vec3& q : {p, p + way, p + way * 0.5f + random.vector() * 0.02f}) mesh.positions.push_back(q);
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
+struct Outlines {
+    std::vector<Outline> outlines;
+    BuildItems items;
+
+    void add(const Outline& outline, PrimitiveKind kind = PrimitiveKind::kTriangle) {
+        Box3 box;
+        for (std::size_t i = 0; i < outline.count; ++i) box.extend(outline.corners[i]);
+        items.push_back({box, static_cast<std::uint32_t>(outlines.size()), kind});
+        outlines.push_back(outline);
+    }
+    explicit Outlines(const Mesh& mesh) {
+        for (const auto& [a, b, c] : mesh.triangles)
+            add({{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3});
+    }
+    Outlines() = default;
+    OutlineOf of() const {
+        return [this](const BuildItem& item) { return outlines[item.index]; };
+    }
+};
+
+// A point of the outline's hull, with weights that are sometimes 0: on edges and corners, too.
+Vec3d point_of(const Outline& outline, Random& random) {
+    Vec3d sum;
+    double weights = 0;
+    for (std::size_t i = 0; i < outline.count; ++i) {
+        const double weight = random.below(3) == 0 ? 0.0 : static_cast<double>(random.uniform(0, 1));
+        sum = sum + Vec3d(outline.corners[i]) * weight;
+        weights += weight;
+    }
+    return weights > 0 ? sum / weights : Vec3d(outline.corners[0]);
+}
+
+bool contains(const Box3& box, Vec3d p, double room) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(static_cast<double>(box.low[axis]) - room <= p[axis] && p[axis] <= static_cast<double>(box.high[axis]) + room)) return false;
+    return true;
+}
+
+// Of an inner node and those below it.
+double inner_areas(const BinaryTree& tree) {
+    double sum = 0;
+    for (const BinaryNode& node : tree.nodes) sum += node.leaf() ? 0.0 : static_cast<double>(node.box.half_area());
+    return sum;
+}
+
+bool same_trees(const BinaryTree& a, const BinaryTree& b) {
+    if (a.nodes.size() != b.nodes.size() || a.items.size() != b.items.size()) return false;
+    for (std::size_t i = 0; i < a.nodes.size(); ++i)
+        if (std::memcmp(&a.nodes[i], &b.nodes[i], sizeof(BinaryNode)) != 0) return false;
+    for (std::size_t i = 0; i < a.items.size(); ++i)
+        if (a.items[i].index != b.items[i].index) return false;
+    return true;
+}
+
+// Rays at the scene's vertices and points of its triangles, along the axes with zeros of both signs, and at random.
+Ray hard_ray(Random& random, const Mesh& mesh, float scale, Vec3 offset, int trial) {
+    const auto& t = mesh.triangles[static_cast<std::size_t>(random.below(static_cast<int>(mesh.triangles.size())))];
+    const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    const float u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+    const Vec3 target = trial % 3 == 0 ? a : trial % 3 == 1 ? lerp(a, b, u) : a + (b - a) * u + (c - a) * v;
+    Ray ray;
+    ray.origin = trial % 2 ? offset + random.vector() * scale : offset + random.direction() * (scale * 4);
+    ray.direction = normalize(target - ray.origin);
+    if (trial % 5 == 0) {
+        const auto axis = static_cast<std::size_t>(random.below(3));
+        const float zero = random.below(2) ? 0.0f : -0.0f;
+        ray.direction = {zero, -zero, zero};
+        ray.direction[axis] = random.below(2) ? 1.0f : -1.0f;
+        ray.origin = target - ray.direction * scale;
+    } else if (trial % 5 == 1) { // nearly in the triangle's plane
+        ray.origin = target + (b - a) * random.uniform(1, 3) + random.vector() * (1e-5f * scale);
+        ray.direction = normalize(target - ray.origin);
+    }
+    return ray;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a clipped box holds all points of its part of a triangle or quad, and little else") {
+        Random random(21);
+        int inside = 0, tight = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const float scale = std::exp2(random.uniform(-40, 40));
+            const Vec3 offset = random.vector() * (scale * (trial % 4 == 0 ? 1000.0f : 1.0f));
+            Outline outline;
+            outline.count = trial % 3 == 0 ? 4 : 3;
+            for (Vec3& corner : outline.corners) corner = offset + random.vector() * scale;
+            if (trial % 5 == 0) outline.corners[1] = outline.corners[0] + random.vector() * (1e-6f * scale); // sliver
+            if (outline.count == 4) outline.corners[3] = outline.corners[0] + (outline.corners[2] - outline.corners[1]);
+            if (trial % 7 == 0) outline.corners[2][0] = outline.corners[1][0] = outline.corners[0][0]; // flat
+            Box3 box;
+            for (std::size_t i = 0; i < outline.count; ++i) box.extend(outline.corners[i]);
+            const auto axis = static_cast<std::size_t>(random.below(3));
+            float low = lerp(box.low[axis], box.high[axis], random.uniform(-0.2f, 1)),
+                  high = lerp(box.low[axis], box.high[axis], random.uniform(0, 1.2f));
+            if (low > high) std::swap(low, high);
+            if (trial % 11 == 0) low = outline.corners[0][axis]; // through a corner
+            const Box3 part = clip(outline, box, axis, low, max(low, high));
+            for (int k = 0; k < 20; ++k) {
+                const Vec3d p = point_of(outline, random);
+                if (!(static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high)))) continue;
+                ++inside;
+                // The point itself is rounded, in double.
+                const double room = 1e-14 * (length(Vec3d(offset)) + static_cast<double>(scale));
+                REQUIRE(contains(part, p, room));
+            }
+            if (part.empty()) continue;
+            REQUIRE(box.contains(part.low));
+            REQUIRE(box.contains(part.high));
+            // No larger than points of it say, if there are many.
+            Box3 seen;
+            for (int k = 0; k < 300; ++k) {
+                const Vec3d p = point_of(outline, random);
+                if (static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high))) seen.extend(Vec3(p));
+            }
+            if (!seen.empty()) tight += seen.half_area() > 0.5f * part.half_area();
+        }
+        CHECK(inside > 50000);
+        CHECK(tight > 10000);
+    }
+
+    TEST_CASE("a spatial tree: every point of every item in a leaf of it, within the budget, for any number of threads") {
+        Random random(22);
+        Outlines outlines(thicket(random, 6000));
+        for (int i = 0; i < 200; ++i) { // what cannot be cut, and quads
+            const Vec3 p = random.vector();
+            outlines.add({{p, p + random.vector(), {}, {}}, 0}, PrimitiveKind::kSphere);
+            outlines.items.back().box = {p, p + Vec3(0.1f, 0.1f, 0.1f)};
+            const Vec3 u = random.vector(), v = random.vector() * 0.1f;
+            outlines.add({{p, p + u, (p + u) + v, p + v}, 4}, PrimitiveKind::kQuad);
+        }
+        for (const float budget : {0.0f, 0.5f, 1.0f}) {
+            CAPTURE(budget);
+            const BinaryTree tree = build_spatial_tree(outlines.items, outlines.of(), budget, 1);
+            check_tree(tree);
+            CHECK(same_trees(tree, build_spatial_tree(outlines.items, outlines.of(), budget, 5)));
+            const auto first = static_cast<double>(outlines.items.size());
+            CHECK(static_cast<double>(tree.items.size()) <= first * (1 + static_cast<double>(budget)));
+            if (budget > 0) CHECK(static_cast<double>(tree.items.size()) > first * 1.05);
+            std::vector<std::vector<Box3>> boxes(outlines.outlines.size()); // of an item's leaves
+            int twice = 0;
+            for (const BinaryNode& node : tree.nodes)
+                for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+                    const BuildItem& item = tree.items[i];
+                    boxes[item.index].push_back(item.box);
+                    for (std::uint32_t k = node.first; k < i; ++k) twice += tree.items[k].index == item.index;
+                }
+            CHECK(twice == 0);
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
+                REQUIRE(!boxes[i].empty());
+                for (int k = 0; k < 50 && outlines.outlines[i].count > 0; ++k) {
+                    const Vec3d p = point_of(outlines.outlines[i], random);
+                    REQUIRE(std::any_of(boxes[i].begin(), boxes[i].end(), [&](const Box3& b) { return contains(b, p, 1e-14); }));
+                }
+            }
+        }
+    }
+
+    TEST_CASE("degenerate outlines build spatial trees quickly and not too deep") {
+        Random random(23);
+        std::vector<Outlines> sets(6);
+        for (int i = 0; i < 100000; ++i) {
+            const Vec3 p = random.vector();
+            sets[0].add({{Vec3(-1, -1, 0), Vec3(1, -1, 0.5f), Vec3(0, 1, 1)}, 3}); // identical
+            if (i % 5 != 0) continue;
+            const float size = static_cast<float>(1 + i % 1000);
+            sets[1].add({{p * size, p * -size, Vec3(0, 0, 0)}, 3});              // all centroids equal
+            sets[2].add({{p, p, p}, 3});                                         // points
+            const float far = std::exp2(random.uniform(-120, 60));
+            sets[3].add({{p * far, random.vector() * far, random.vector() * far}, 3}); // over all magnitudes
+            sets[4].add({{p * 1e30f, random.vector() * 1e30f, p}, 3});           // areas overflow float
+            sets[5].add({{p * 1e-30f, random.vector() * 1e-30f, p * 1e-31f}, 3});
+        }
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            CAPTURE(i);
+            BinaryTree tree = build_spatial_tree(sets[i].items, sets[i].of(), 0.5f, 2);
+            check_tree(tree);
+            CHECK(2 * tree.items.size() <= 3 * sets[i].items.size());
+            reinsert(tree, 1000, 2, 2);
+            check_tree(tree);
+            CHECK(collapse(tree, 2).bvh.nodes.size() <= tree.nodes.size());
+        }
+    }
+
+    TEST_CASE("a hierarchy of high quality gives the hits of testing every primitive, to the bit") {
+        for (const float scale : {1e-6f, 1.0f, 1e6f})
+            for (const float shift : {0.0f, 30.0f}) {
+                CAPTURE(scale);
+                CAPTURE(shift);
+                Random random(24);
+                Mesh mesh = thicket(random, 3000);
+                const Vec3 offset = Vec3(1, -0.5f, 0.25f) * (shift * scale);
+                for (Vec3& p : mesh.positions) p = offset + p * scale;
+                for (std::size_t i = 0; i < 100; ++i) mesh.triangles.push_back(mesh.triangles[i]); // twins, for ties
+                SceneBuilder builder;
+                builder.add(mesh, builder.material(Diffuse{}));
+                const Scene scene = builder.finish();
+                const Accelerator accelerator(scene, 2, BvhQuality::kHigh);
+                // It is of cut triangles that the hits are right.
+                CHECK(accelerator.statistics().references > accelerator.primitives() * 5 / 4);
+                CHECK(accelerator.statistics().references <= accelerator.primitives() * 2);
+                int hits = 0, different = 0, wrong_shadows = 0;
+                std::string first;
+                for (int trial = 0; trial < 2000; ++trial) {
+                    const Ray ray = hard_ray(random, mesh, scale, offset, trial);
+                    const Hit expected = brute_force(scene, ray), found = accelerator.closest(ray);
+                    hits += expected.valid();
+                    if (!(expected == found) && different++ == 0)
+                        first = described(found) + ", expected " + described(expected);
+                    // (Of a triangle seen edge-on the distance that is computed may lie before the triangle: of a ray that
+                    // ends there the hit may be missed.)
+                    if (trial % 5 == 1) continue;
+                    Hit end;
+                    end.t = expected.valid() ? expected.t : std::numeric_limits<float>::max();
+                    wrong_shadows += accelerator.occluded(ray, end) != expected.valid();
+                    if (expected.valid()) wrong_shadows += accelerator.occluded(ray, expected);
+                }
+                CHECK(hits > 800);
+                CHECK_MESSAGE(different == 0, first);
+                CHECK(wrong_shadows == 0);
+            }
+    }
+
+    TEST_CASE("scenes of all kinds of primitives have the same hits at both qualities") {
+        for (const float scale : {1e-6f, 1.0f, 1e6f}) {
+            CAPTURE(scale);
+            Soup soup{Random(25), scale, Vec3(1, -0.5f, 0.25f) * scale};
+            const Scene scene = soup.scene(true);
+            const Accelerator fast(scene, 2), high(scene, 2, BvhQuality::kHigh);
+            int different = 0;
+            for (int trial = 0; trial < 8000; ++trial) {
+                const Ray ray = soup.ray(scene, trial);
+                different += !(fast.closest(ray) == high.closest(ray));
+            }
+            CHECK(different == 0);
+        }
+    }
+
+    TEST_CASE("cutting is left where it gains nothing: a finely tessellated mesh keeps its triangles whole") {
+        SceneBuilder builder;
+        builder.add(icosphere(5, 1, {}), builder.material(Diffuse{}));
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 2, BvhQuality::kHigh);
+        CHECK(accelerator.statistics().references == accelerator.primitives());
+    }
+
+    TEST_CASE("reinsertion makes a tree cheaper and no less a tree, the same for any number of threads") {
+        Random random(26);
+        for (const float scale : {1e-20f, 1.0f, 1e18f}) {
+            CAPTURE(scale);
+            Outlines outlines;
+            for (int i = 0; i < 20000; ++i) { // small ones among large ones
+                const float size = scale * (i % 100 == 0 ? 1.0f : 0.02f);
+                const Vec3 p = random.vector() * scale;
+                outlines.add({{p, p + random.vector() * size, p + random.vector() * size}, 3});
+            }
+            const BinaryTree before = build_binary_tree(outlines.items, 1);
+            BinaryTree after = before, same = before;
+            reinsert(after, after.nodes.size(), 3, 1);
+            reinsert(same, same.nodes.size(), 3, 5);
+            check_tree(after);
+            CHECK(same_trees(after, same));
+            CHECK(inner_areas(after) < 0.97 * inner_areas(before));
+            CHECK(after.items.size() == before.items.size());
+        }
+    }
+
+    TEST_CASE("reinsertion leaves a tree as it was where it would become too deep") {
+        // A chain of nested boxes, as deep as may be; and beside it a small box that belongs into the innermost, paired
+        // with one far away.
+        BuildItems items;
+        BinaryTree tree;
+        const auto cube = [](float size) { return Box3{Vec3(-size, -size, -size), Vec3(size, size, size)}; };
+        const auto leaf = [&](const Box3& box) {
+            BinaryNode node;
+            node.box = box;
+            node.first = static_cast<std::uint32_t>(tree.items.size());
+            node.count = 1;
+            tree.items.push_back({box, node.first, PrimitiveKind::kTriangle});
+            tree.nodes.push_back(node);
+            return static_cast<std::uint32_t>(tree.nodes.size() - 1);
+        };
+        const auto join = [&](std::uint32_t left, std::uint32_t right, std::uint32_t into) {
+            BinaryNode& node = tree.nodes[into];
+            node.left = left;
+            node.right = right;
+            node.box = tree.nodes[left].box;
+            node.box.extend(tree.nodes[right].box);
+        };
+        const auto inner = [&](std::uint32_t left, std::uint32_t right) {
+            tree.nodes.emplace_back();
+            join(left, right, static_cast<std::uint32_t>(tree.nodes.size() - 1));
+            return static_cast<std::uint32_t>(tree.nodes.size() - 1);
+        };
+        for (const int depth : {Bvh::kMaxDepth - 1, Bvh::kMaxDepth}) {
+            CAPTURE(depth);
+            tree = {};
+            tree.nodes.emplace_back(); // the root
+            float size = 0.1f;
+            std::uint32_t chain = leaf(cube(size));
+            for (int d = depth - 1; d > 0; --d) chain = inner(leaf(cube(size *= 1.03f)), chain);
+            Box3 far = cube(0.01f);
+            far.low.x += 100;
+            far.high.x += 100;
+            join(chain, inner(leaf(cube(0.001f)), leaf(far)), 0);
+            REQUIRE(depth_below(tree, 0) == depth);
+            const BinaryTree before = tree;
+            reinsert(tree, tree.nodes.size(), 1, 1);
+            check_tree(tree);
+            // With a level to spare it is moved.
+            CHECK(inner_areas(tree) <= inner_areas(before));
+            CHECK((inner_areas(before) - inner_areas(tree) > 1) == (depth < Bvh::kMaxDepth));
+        }
+    }
+
+    TEST_CASE("the collapse costs what it says, and no more than opening the largest child first") {
+        Random random(27);
+        for (int trial = 0; trial < 20; ++trial) {
+            Outlines outlines(needles(random, 300 + trial * 50, random.uniform(0.01f, 1), 0.05f));
+            const BinaryTree tree = build_binary_tree(outlines.items, 1);
+            const Collapsed collapsed = collapse(tree, 3);
+            const double root = static_cast<double>(tree.nodes[0].box.half_area());
+            // A node costs its area, and a tenth of the areas of all leaves below it.
+            struct Cost {
+                double nodes = 0, leaves = 0;
+            };
+            const auto packed = [&](const auto& self, BvhRef ref, const Box3& box) -> Cost {
+                const double area = static_cast<double>(box.half_area()) / root;
+                if (ref.is_leaf()) return {0, area};
+                Cost sum;
+                const BvhNode& node = collapsed.bvh.nodes[ref.index() / (sizeof(BvhNode) / BvhRef::kNodeUnit)];
+                for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
+                    const Box3 child{{node.planes[0][i], node.planes[1][i], node.planes[2][i]},
+                                     {node.planes[3][i], node.planes[4][i], node.planes[5][i]}};
+                    if (child.empty()) continue;
+                    const Cost cost = self(self, node.children[i], child);
+                    sum.nodes += cost.nodes;
+                    sum.leaves += cost.leaves;
+                }
+                sum.nodes += area + 0.1 * sum.leaves;
+                return sum;
+            };
+            const auto greedy = [&](const auto& self, std::uint32_t index) -> Cost {
+                const double area = static_cast<double>(tree.nodes[index].box.half_area()) / root;
+                if (tree.nodes[index].leaf()) return {0, area};
+                std::vector<std::uint32_t> children{tree.nodes[index].left, tree.nodes[index].right};
+                const auto size = [&](std::uint32_t i) { return tree.nodes[i].leaf() ? -1.0f : tree.nodes[i].box.half_area(); };
+                while (children.size() < BvhNode::kWidth) {
+                    const auto largest = std::max_element(children.begin(), children.end(), [&](auto a, auto b) { return size(a) < size(b); });
+                    if (size(*largest) < 0) break;
+                    const BinaryNode& opened = tree.nodes[*largest];
+                    *largest = opened.left;
+                    children.push_back(opened.right);
+                }
+                Cost sum;
+                for (const std::uint32_t child : children) {
+                    const Cost cost = self(self, child);
+                    sum.nodes += cost.nodes;
+                    sum.leaves += cost.leaves;
+                }
+                sum.nodes += area + 0.1 * sum.leaves;
+                return sum;
+            };
+            const Cost cost = packed(packed, BvhRef::node(0), tree.nodes[0].box), other = greedy(greedy, 0);
+            CHECK(static_cast<double>(collapsed.node_cost) == doctest::Approx(cost.nodes).epsilon(1e-4));
+            CHECK(static_cast<double>(collapsed.leaf_cost) == doctest::Approx(cost.leaves).epsilon(1e-4));
+            CHECK(cost.nodes <= other.nodes * 1.0001);
+        }
+    }
+}
