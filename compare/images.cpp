@@ -20,11 +20,13 @@ namespace duet::compare {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 /// A file's values as stored, and their variances where it has them.
 struct Picture {
     ImageRgb values, variance;
     Encoding encoding = Encoding::kLinear;
+    std::int64_t transparent = 0; ///< pixels whose alpha, which is not compared, is not 1
 };
 
 ImageRgb stored_values(const PixelFile& file) {
@@ -35,6 +37,14 @@ ImageRgb stored_values(const PixelFile& file) {
         image[i] = channels < 3 ? Rgb(v[0]) : Rgb(v[0], v[1], v[2]);
     }
     return image;
+}
+
+std::int64_t transparent_pixels(const PixelFile& file) {
+    if (file.channels % 2 != 0) return 0; // grey or RGB
+    const auto channels = static_cast<std::size_t>(file.channels);
+    std::int64_t count = 0;
+    for (std::size_t i = channels - 1; i < file.values.size(); i += channels) count += file.values[i] != 1;
+    return count;
 }
 
 /// variance.R, variance.G and variance.B as `--aov variance` writes them; empty without all three.
@@ -52,7 +62,7 @@ ImageRgb variance_channels(const ExrFile& file) {
 
 Picture read_picture(const fs::path& path, bool decode) {
     const PixelFile file = read_pixel_file(path);
-    Picture picture{stored_values(file), {}, file.encoding};
+    Picture picture{stored_values(file), {}, file.encoding, transparent_pixels(file)};
     if (decode && picture.encoding == Encoding::kEncoded) {
         picture.values = decoded(picture.values);
         picture.encoding = Encoding::kLinear;
@@ -135,6 +145,9 @@ void print_table(std::ostream& out, const ImageMetrics& metrics, const Picture& 
     if (m.non_finite_a + m.non_finite_b > 0)
         out << "  left out: " << m.nan_a << " pixels with NaN and " << m.infinite_a << " with infinity in A, "
             << m.nan_b << " and " << m.infinite_b << " in B\n";
+    if (a.transparent + b.transparent > 0)
+        out << "  alpha is not compared: " << a.transparent << " pixels of A and " << b.transparent
+            << " of B have one that is not 1\n";
     if (metrics.flip.exposures > 0)
         out << "  HDR-FLIP over " << metrics.flip.exposures << " exposures from "
             << text_of(metrics.flip.start_exposure) << " to " << text_of(metrics.flip.stop_exposure) << " stops\n";
@@ -150,6 +163,13 @@ std::pair<std::string, std::string> page_names(const ImagesOptions& options) {
     return {options.a.string(), options.reference.string()};
 }
 
+/// The metrics, and how many pixels of each have an alpha that they do not speak of.
+json figures_json(const ImageMetrics& metrics, const Picture& a, const Picture& b) {
+    json figures = metrics_json(metrics, "a", "b");
+    figures["transparent"] = {{"a", a.transparent}, {"b", b.transparent}};
+    return figures;
+}
+
 void write_page(const ImagesOptions& options, const Picture& a, const Picture& b, const ImageMetrics& metrics) {
     const bool encoded = a.encoding == Encoding::kEncoded;
     const ImageRgb linear_a = encoded ? decoded(a.values) : a.values, linear_b = encoded ? decoded(b.values) : b.values;
@@ -158,7 +178,7 @@ void write_page(const ImagesOptions& options, const Picture& a, const Picture& b
     write_image(options.folder / "difference.png", difference_picture(linear_a, linear_b, range));
     write_json(options.folder / "report.json", {{"a", options.a.string()},
                                                 {"b", options.reference.string()},
-                                                {"metrics", metrics_json(metrics, "a", "b")},
+                                                {"metrics", figures_json(metrics, a, b)},
                                                 {"difference_range", range}});
     write_file(
         options.folder / "index.html",
@@ -182,7 +202,7 @@ int compare_images(const ImagesOptions& options) {
     if (variances) metrics.z = z_test({a.values, a.variance}, {b.values, b.variance});
     if (!options.folder.empty()) write_page(options, a, b, metrics);
     if (!options.quiet && options.stats != "-") print_table(std::cout, metrics, a, b);
-    if (!options.stats.empty()) write_json(options.stats, metrics_json(metrics, "a", "b"));
+    if (!options.stats.empty()) write_json(options.stats, figures_json(metrics, a, b));
     const std::vector<std::string> failures = exceeded(limits, figures(metrics));
     for (const std::string& failure : failures) std::cerr << "compare: " << failure << '\n';
     return failures.empty() ? kExitOk : kExitFailed;

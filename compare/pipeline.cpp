@@ -53,4 +53,10 @@ Pipeline raytrace_pipeline(const Scene& scene, const PipelineSettings& common) {
     return {"raytrace", renderer(settings), renderer(hits), watch.seconds()};
 }
 
+std::string paragraph(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& sentence : sentences) text += (text.empty() ? "" : " ") + sentence;
+    return text;
+}
+
 } // namespace duet::compare

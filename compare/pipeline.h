@@ -6,6 +6,7 @@
 #include "common/scene/scene.h"
 
 #include <string>
+#include <vector>
 
 namespace duet::compare {
 
@@ -27,5 +28,8 @@ struct Pipeline {
 
 Pipeline raster_pipeline(const Scene& scene, const PipelineSettings& settings);
 Pipeline raytrace_pipeline(const Scene& scene, const PipelineSettings& settings);
+
+/// The sentences (a rendering's approximations), a space between them.
+std::string paragraph(const std::vector<std::string>& sentences);
 
 } // namespace duet::compare

@@ -34,6 +34,7 @@ void make(const Model& model, const std::filesystem::path& folder);
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);
 void write_octopus(const std::filesystem::path& folder);
+void write_octopus_hundred_thousand(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);

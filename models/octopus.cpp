@@ -1,5 +1,5 @@
 // octopus.obj: an octopus on the ground, one arm wound around a ball: an implicit surface, made a mesh of some 200,000
-// triangles (or a million). The scene's eyes and ball stand where the constants of octopus.h say.
+// triangles (or a hundred thousand, or a million). The scene's eyes and ball stand where the constants of octopus.h say.
 #include "models/octopus.h"
 
 #include "models/field.h"
@@ -214,6 +214,9 @@ void write_octopus_mesh(const std::filesystem::path& path, double cell) {
 } // namespace
 
 void write_octopus(const std::filesystem::path& folder) { write_octopus_mesh(folder / kOctopusFile, 0.029); }
+void write_octopus_hundred_thousand(const std::filesystem::path& folder) {
+    write_octopus_mesh(folder / kOctopusSmallFile, 0.0416);
+}
 void write_octopus_million(const std::filesystem::path& folder) {
     write_octopus_mesh(folder / kOctopusMillionFile, 0.013);
 }

@@ -6,6 +6,7 @@
 namespace duet::models {
 
 inline constexpr const char* kOctopusFile = "generated/octopus.obj";
+inline constexpr const char* kOctopusSmallFile = "generated/octopus-hundred-thousand.obj";
 inline constexpr const char* kOctopusMillionFile = "generated/octopus-million.obj";
 
 /// The eyes: spheres at (±x, y, z).

@@ -39,7 +39,6 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     return result;
 }
 
-/// Each way in which this scene's picture differs from the path tracer's, as a sentence; none that doesn't apply.
 std::vector<std::string> list_approximations(const PreparedData& data, const Settings& settings) {
     const Scene& scene = data.scene;
     const SceneNeeds& needs = scene.needs;
@@ -57,24 +56,30 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     name(moving && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
     if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
 
+    const PartSet& parts = settings.parts;
     const bool environment = settings.environment && needs.environment;
-    name(true, "Light that surfaces reflect onto each other is left out.");
-    name(!scene.lights.empty(), "Direct light is unshadowed.");
-    name(environment, "Light from the environment is unoccluded.");
-    name(environment && !data.irradiance.is_closed_form(),
+    name(parts.emission && parts.direct && parts.environment && parts.reflection,
+         "Light that surfaces reflect onto each other is left out.");
+    name(parts.direct && !scene.lights.empty(), "Direct light is unshadowed.");
+    name(parts.environment && environment, "Light from the environment is unoccluded.");
+    name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
-    name(needs.specular || needs.glossy,
+    name(parts.reflection && (needs.specular || needs.glossy),
          "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
-    name(needs.glossy && environment, "Rough metal mirrors the environment as smooth metal does.");
-    name(needs.glossy && needs.surface_lights,
+    name(parts.reflection && needs.glossy && environment, "Rough metal mirrors the environment as smooth metal does.");
+    name(parts.direct && needs.glossy && needs.surface_lights,
          "Rough metal sees each light surface as a distant light in its centre's direction.");
-    name(needs.transmission,
+    name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
-    name(data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
+    name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
     return result;
 }
 
 } // namespace
+
+std::vector<std::string> approximations(const Prepared& prepared, const Settings& settings) {
+    return list_approximations(prepared.data(), settings);
+}
 
 void Account::add(const Geometry& geometry) {
     transform += geometry.transform_seconds;

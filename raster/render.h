@@ -7,7 +7,9 @@
 #include "common/system/control.h"
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace duet::raster {
 
@@ -55,6 +57,9 @@ private:
 };
 
 Prepared prepare(const Scene& scene, const Settings& settings);
+/// Each way in which the pictures of these settings differ from the path tracer's, as a sentence; none that does not
+/// apply to the scene and the parts asked for.
+std::vector<std::string> approximations(const Prepared& prepared, const Settings& settings);
 /// One picture. Stopped by `control`, it returns what is finished, the rest black.
 Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
 /// The same into an earlier rendering: pictures of the right size are drawn over. So that who draws frame after frame

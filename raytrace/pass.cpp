@@ -3,8 +3,10 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <mutex>
+#include <span>
 
 namespace duet::raytrace {
 
@@ -70,21 +72,69 @@ private:
     int columns_;
 };
 
+// Camera rays are traced some at a time: those of neighbouring pixels, and of one pixel's samples, run close together.
+class CameraBatch {
+public:
+    CameraBatch(const PassTarget& target, const CameraModel& camera)
+        : target_(target), camera_(camera), radiance_(radiance_function(target.settings.integrator)),
+          sampler_(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel) {}
+
+    void add(int x, int y, std::uint32_t index) {
+        sampler_.start(x, y, index);
+        samples_[size_] = {x, y, index};
+        rays_[size_] = camera_ray(target_.plan, camera_, x, y, sampler_);
+        if (++size_ == kSize) finish();
+    }
+
+    // Renders what has been added and not been rendered yet.
+    void finish() {
+        target_.plan.prepared.accelerator.closest(std::span(rays_).first(size_), std::span(hits_).first(size_));
+        for (std::size_t i = 0; i < size_; ++i) {
+            const auto [x, y, index] = samples_[i];
+            sampler_.start(x, y, index);
+            target_.film.add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler_, counts_));
+            if (target_.aovs.any()) target_.aovs.add(x, y, index, rays_[i], hits_[i]);
+        }
+        counts_.camera += static_cast<std::int64_t>(size_);
+        size_ = 0;
+    }
+
+    const RayCounts& counts() const { return counts_; }
+
+private:
+    static constexpr std::size_t kSize = 64;
+    struct Sample {
+        int x, y;
+        std::uint32_t index;
+    };
+
+    const PassTarget& target_;
+    const CameraModel& camera_;
+    RadianceFunction radiance_;
+    Sampler sampler_;
+    RayCounts counts_;
+    std::size_t size_ = 0;
+    std::array<Sample, kSize> samples_;
+    std::array<Ray, kSize> rays_;
+    std::array<Hit, kSize> hits_;
+};
+
+// The bits at even places of a number below 2¹⁶, together: a Morton code's x, or y after a shift.
+int even_bits(unsigned code) {
+    int bits = 0;
+    for (int i = 0; i < 8; ++i) bits |= static_cast<int>(code >> (2 * i) & 1u) << i;
+    return bits;
+}
+
 RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile, SampleRange range) {
-    const RadianceFunction radiance = radiance_function(target.settings.integrator);
-    Sampler sampler(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel);
-    RayCounts counts;
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x)
-            for (std::uint32_t index = range.first; index < range.last; ++index) {
-                sampler.start(x, y, index);
-                const Ray ray = camera_ray(target.plan, camera, x, y, sampler);
-                const Hit hit = target.plan.prepared.accelerator.closest(ray);
-                ++counts.camera;
-                target.film.add(x, y, index & 1u, radiance(target.plan, ray, hit, sampler, counts));
-                if (target.aovs.any()) target.aovs.add(x, y, index, ray, hit);
-            }
-    return counts;
+    CameraBatch batch(target, camera);
+    for (unsigned code = 0; code < kTile * kTile; ++code) { // along a Z-curve: pixels near in order are near
+        const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
+        if (x >= tile.x1 || y >= tile.y1) continue;
+        for (std::uint32_t index = range.first; index < range.last; ++index) batch.add(x, y, index);
+    }
+    batch.finish();
+    return batch.counts();
 }
 
 } // namespace

@@ -8,8 +8,9 @@ preset=${1:-release}
 [ $# -gt 0 ] && shift
 # The browser tests need Python and a Chromium. Debian has one as a package; Ubuntu's is a stub for a snap, so there one
 # that is installed (Chromium or Chrome) is taken, and without one the tests are skipped.
-packages=''
-command -v python3 >/dev/null || packages='python3'
+# Embree is a peer of `compare kernels`, whose tests want it; the programs build without.
+packages='libembree-dev'
+command -v python3 >/dev/null || packages="$packages python3"
 if grep -q '^ID=debian' /etc/os-release && ! python3 -B tests/browser/chromium.py >/dev/null 2>&1; then
     packages="$packages chromium"
 fi

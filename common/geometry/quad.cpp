@@ -2,8 +2,7 @@
 
 namespace duet {
 
-std::optional<TriangleHit> intersect_quad(const ShearedRay& ray, const Quad& quad) {
-    const std::array<Vec3, 4> p = corners(quad);
+std::optional<TriangleHit> intersect_quad(const ShearedRay& ray, const std::array<Vec3, 4>& p) {
     if (const auto hit = intersect_triangle(ray, p[0], p[1], p[2])) // corner + β·u + γ·(u + v)
         return TriangleHit{hit->t, min(hit->u + hit->v, 1.0f), hit->v};
     if (const auto hit = intersect_triangle(ray, p[0], p[2], p[3])) // corner + β·(u + v) + γ·v

@@ -4,13 +4,43 @@
 #include "common/geometry/shape.h"
 #include "common/vec/ray.h"
 
+#include <cmath>
 #include <optional>
 
 namespace duet {
 
+/// What a line meets of spheres, T being double or a batch of doubles. With g = centre − origin, the roots of
+/// a·t² − 2b·t + c = 0 for a = d·d, b = g·d, c = g·g − r². The textbook's b² − a·c loses all digits where the sphere is
+/// far or small: the discriminant is taken from the distance of the centre to the line instead, and of the two roots the
+/// one without cancellation is computed first (Haines, Günther and Akenine-Möller 2019, «Precision Improvements for
+/// Ray/Sphere Intersection», Ray Tracing Gems §7, eqs. 5 to 8). In double, in which the differences of float inputs are
+/// exact to 1 part in 10^16: an origin 1e-7 above a sphere of radius 1000 is still outside. (No term is negated: the
+/// sign of a zero b decides which root comes first, and a batch's negation may be 0 − x.)
+template <typename T> struct SphereTest {
+    T a, b, c;
+    T discriminant; ///< over a: the line meets the sphere where it is at least 0; NaN misses, too
+
+    SphereTest(const Vec3T<T>& to_center, const Vec3T<T>& direction, T radius)
+        : a(dot(direction, direction)), b(dot(to_center, direction)), c(dot(to_center, to_center) - radius * radius) {
+        const Vec3T<T> closest = direction * (b / a) - to_center; // from the centre to the line's nearest point
+        discriminant = radius * radius - dot(closest, closest);
+    }
+
+    struct Roots {
+        T near, far;
+    };
+    /// Where the line enters and leaves the sphere; of a line that meets it.
+    Roots roots() const {
+        using std::copysign;
+        const T q = b + copysign(sqrt(a * discriminant), b);
+        const T t0 = c / q, t1 = q / a;
+        const auto swapped = t0 > t1;
+        return {select(swapped, t1, t0), select(swapped, t0, t1)};
+    }
+};
+
 /// The nearest t in (t_min, t_max] where the ray meets the sphere, from outside or inside; direction of any length.
-/// Without cancellation for far, huge and tiny spheres (Haines, Günther and Akenine-Möller 2019, «Precision
-/// Improvements for Ray/Sphere Intersection», Ray Tracing Gems §7).
+/// Without cancellation for far, huge and tiny spheres: see SphereTest.
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere);
 
 /// (u, v) on the unit sphere at direction n: u = ½ + atan2(x, −z)/2π, v = 1 at +y (design: lat-long, v = 0 at bottom).

@@ -1,9 +1,14 @@
 // Ray and triangle.
 #pragma once
 
+#include "common/system/sabotage.h"
+#include "common/vec/box.h"
 #include "common/vec/ray.h"
+#include "common/vec/robust.h"
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace duet {
@@ -13,16 +18,102 @@ struct TriangleHit {
     float t, u, v;
 };
 
-/// A ray prepared for watertight tests: its largest axis becomes z, and a shear takes its direction to (0, 0, 1)
-/// (Woop, Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
+/// The axes and the shear that take a ray, or each ray of a batch, to (0, 0, 1): its largest axis becomes z (Woop,
+/// Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
+template <typename T> struct Shear {
+    std::size_t kx, ky, kz; ///< axes of the world; x and y swapped where z runs backwards, to keep triangles' winding
+    Vec3T<T> origin;        ///< of the rays, its axes in that order
+    T sx, sy, sz;
+};
+
+/// A ray prepared for watertight tests.
 struct ShearedRay {
     Vec3 origin, direction;
-    std::size_t kx, ky, kz;
-    float sx, sy, sz;
     float t_min, t_max;
+    Shear<float> shear;
 
-    explicit ShearedRay(const Ray& ray);
+    explicit ShearedRay(const Ray& ray)
+        : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
+        // Without a branch: the axes of incoherent rays cannot be predicted.
+        constexpr std::uint8_t kNext[] = {1, 2, 0};
+        const float d[] = {direction.x, direction.y, direction.z}, o[] = {origin.x, origin.y, origin.z};
+        const std::size_t kz = longest_axis(abs(direction)), next = kNext[kz], after = kNext[next];
+        const bool swap = d[kz] < 0;
+        const std::size_t kx = swap ? after : next, ky = swap ? next : after;
+        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz]};
+    }
 };
+
+/// What a ray meets of triangles, T being a number or a batch of them, of one ray and many triangles or the other way
+/// round: the vertices sheared, the edge functions (twice the signed areas that the ray's foot spans with the edges) in
+/// T's precision. (All inlined by order: calls with batches in memory cost a ray tracer a tenth of its rays.)
+template <typename T> struct TriangleTest {
+    Vec3T<T> at, bt, ct; ///< vertices in the ray's frame: it runs along +z from the origin
+    T e0, e1, e2;        ///< of the edges opposite a, b and c
+
+    /// a, b, c: the vertices; their components at index 0, 1, 2.
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] TriangleTest(const Shear<S>& ray, const Vertex& a, const Vertex& b, const Vertex& c)
+        : TriangleTest(sheared(ray, a), sheared(ray, b), sheared(ray, c)) {}
+    /// Of sheared vertices.
+    [[gnu::always_inline]] TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c)
+        : TriangleTest(a, b, c, edge(c, b), edge(a, c), edge(b, a)) {}
+    /// Of these and their edge functions.
+    [[gnu::always_inline]] TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c, T ea, T eb, T ec)
+        : at(a), bt(b), ct(c), e0(ea), e1(eb), e2(ec) {}
+
+    /// A vertex relative to the ray's origin and sheared, which makes the test one of the origin in a 2D triangle.
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Vertex& p) {
+        const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
+                z = T(p[ray.kz]) - T(ray.origin.z);
+        return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
+    }
+    /// The same edge gives the same numbers in both of its triangles, but for the sign: no ray slips between.
+    [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
+        using std::fma;
+        if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
+        return p.x * q.y - p.y * q.x;
+    }
+
+    T det() const { return e0 + e1 + e2; }
+    /// The distance along the ray; inv_det = 1 / det().
+    [[gnu::always_inline]] T distance(T inv_det) const { return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z; }
+
+    /// The bound on the error of that distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products
+    /// ordered so that they stay in range wherever the edge functions do.
+    [[gnu::always_inline]] T distance_error(T inv_det) const {
+        const T gamma2(gamma_bound(2)), gamma3(gamma_bound(3)), gamma5(gamma_bound(5));
+        const T max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
+        const T delta_z = gamma3 * max_z;
+        const T max_x = max(max(abs(at.x), abs(bt.x)), abs(ct.x));
+        const T max_y = max(max(abs(at.y), abs(bt.y)), abs(ct.y));
+        const T delta_x = gamma5 * (max_x + max_z);
+        const T delta_y = gamma5 * (max_y + max_z);
+        const T delta_e = T(2) * (gamma2 * max_x * max_y + delta_y * max_x + delta_x * max_y) * abs(inv_det);
+        const T max_e = max(max(abs(e0), abs(e1)), abs(e2)) * abs(inv_det);
+        return T(3) * (gamma3 * max_e * max_z + delta_e * max_z + delta_z * max_e);
+    }
+
+    /// Whether the triangle is a needle as the ray sees it, so that the distance may be off by more than that. The
+    /// sheared coordinates are off by some u·max_z, an edge function by that times the triangle's width: the hit moves
+    /// along the triangle by as much over det, across depths of `spread`. That is no more than z's own rounding, but
+    /// where the triangle is much thinner than it is deep.
+    [[gnu::always_inline]] auto is_needle(T inv_det) const {
+        const T width = max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
+        const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
+        const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
+        return width * abs(inv_det) * spread > T(limit);
+    }
+};
+
+/// The distance along the ray to the plane of a, b and c in double, from the unrounded differences: its sign is right
+/// even for an origin that is one float away from the plane of a triangle a million times as wide.
+inline float plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3d pa(a);
+    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
+    return static_cast<float>(dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction)));
+}
 
 /// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides
 /// are hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.

@@ -103,7 +103,8 @@ private:
         Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
         Control silent{&interrupt_.flag(), {}};
         const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_picture(spp, seed, silent); };
-        return reference_by_seeds("cycles", kCyclesExportVersion, scene_, view_, reference_settings(), render, control);
+        return reference_by_seeds({"cycles", kCyclesExportVersion, peer_->program(silent)}, scene_, view_,
+                                  reference_settings(), render, control);
     }
 
     void measure_all() {

@@ -47,6 +47,7 @@ json row_json(const Measurement& m, bool with_rest) {
                 {"relmse", estimate_json(m.relmse)},
                 {"seconds", estimate_json(m.seconds)},
                 {"efficiency", estimate_json(m.efficiency)},
+                {"relmse_efficiency", estimate_json(m.relmse_efficiency)},
                 {"variance", number(m.variance)},
                 {"bias_share", number(m.bias_share())},
                 {"reference_share", number(m.reference_share)},
@@ -54,12 +55,16 @@ json row_json(const Measurement& m, bool with_rest) {
     if (with_rest)
         row["rest"] = {{"mse", estimate_json(m.rest_mse)},
                        {"relmse", estimate_json(m.rest_relmse)},
-                       {"efficiency", estimate_json(m.rest_efficiency)}};
+                       {"efficiency", estimate_json(m.rest_efficiency)},
+                       {"relmse_efficiency", estimate_json(m.rest_relmse_efficiency)}};
     return row;
 }
 
 json reference_json(const KeptReference& r) {
-    return {{"estimator", r.estimator}, {"file", r.file.string()}, {"rendered", r.rendered}, {"mse", number(r.mse)}};
+    return {{"estimator", r.estimator},
+            {"file", r.file.string()},
+            {"rendered", r.rendered},
+            {"mse", number(r.reference.mse())}};
 }
 
 json check_json(const IndependentCheck& c) {

@@ -69,10 +69,6 @@ void print_check(std::ostream& out, const std::string& estimator, const Independ
                      100 * check.relative_bias.b);
 }
 
-} // namespace
-
-namespace {
-
 void print_equal_times(std::ostream& out, const std::vector<EqualTimeRow>& table, bool with_rest) {
     const auto text = [](const std::optional<Estimate>& e) {
         return e ? with_band(*e) : std::string("        -        ");
@@ -91,7 +87,7 @@ void print_equal_times(std::ostream& out, const std::vector<EqualTimeRow>& table
 
 void print_scene(std::ostream& out, const SceneResult& result, bool with_rest) {
     out << result.scene << ", " << result.width << "x" << result.height << "; the reference's own MSE is "
-        << formatted("%.2g", result.reference.mse) << '\n';
+        << formatted("%.2g", result.reference.reference.mse()) << '\n';
     for (const IndependentCheck& c : result.checks) print_check(out, result.reference.estimator, c);
     if (!result.no_naive.empty()) out << "no bias check by naive: " << result.no_naive << '\n';
     if (result.processor_share < 0.9)

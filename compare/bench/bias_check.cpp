@@ -1,6 +1,7 @@
 #include "compare/bench/bias_check.h"
 
 #include "compare/bench/estimate.h"
+#include "compare/metrics/same_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,10 +50,8 @@ Difference difference(const BlockMean& a, const BlockMean& b) {
 } // namespace
 
 BiasCheck check_bias(const Reference& a, const Reference& b) {
+    check_same_size(a.mean, b.mean);
     const int width = a.mean.width(), height = a.mean.height();
-    if (b.mean.width() != width || b.mean.height() != height)
-        throw Error(
-            message("references differ in size: ", width, "x", height, " and ", b.mean.width(), "x", b.mean.height()));
     BiasCheck check;
     double smallest = 2;
     const auto compare_block = [&](int x0, int y0, int x1, int y1, int size) {

@@ -26,6 +26,8 @@ struct BiasCheck {
 /// the sum of its pixels' (pixels are independent); its degrees of freedom follow from them by Welch and Satterthwaite,
 /// each pixel counting for one: where a few fireflies make up the variance there are few, and the test is duly careful.
 /// Pictures of one size; throws Error otherwise.
+/// (z_test of compare/metrics/z_test.h takes blocks of 1024 pixels, whose sums are nearly normal; smaller ones, which show
+/// one wrong lamp in a picture of 64 × 64, are paid for here in degrees of freedom.)
 BiasCheck check_bias(const Reference& a, const Reference& b);
 
 } // namespace duet::compare

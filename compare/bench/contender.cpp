@@ -1,6 +1,7 @@
 #include "compare/bench/contender.h"
 
 #include "common/system/stopwatch.h"
+#include "compare/pipeline.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
@@ -28,11 +29,11 @@ std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
     const bool delta_lights = scene.needs.delta_lights;
     switch (integrator) {
     case Integrator::kDirect:
-        return "light after more than one scattering is missing";
+        return "Light after more than one scattering is missing.";
     case Integrator::kUnshadowed:
-        return "direct light only, without shadows";
+        return "Direct light only, without shadows.";
     case Integrator::kNaive:
-        return delta_lights ? "point, spot and sun lights are missing" : "";
+        return delta_lights ? "Point, spot and sun lights are missing." : "";
     default:
         return "";
     }
@@ -41,8 +42,9 @@ std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
 Contender raster_contender(const Scene& scene, const View& view, const ContenderChoice& choice) {
     raster::Settings settings;
     settings.threads = choice.threads;
+    settings.samples_per_pixel = *std::max_element(choice.spps.begin(), choice.spps.end());
     const raster::Prepared prepared = raster::prepare(scene, settings);
-    return {"raster", "", "shadows, indirect light and reflections of objects are missing", choice.spps,
+    return {"raster", "", paragraph(raster::approximations(prepared, settings)), choice.spps,
             [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
                 raster::Settings s = settings;
                 s.samples_per_pixel = spp;

@@ -27,7 +27,7 @@ struct Trial {
 struct Contender {
     std::string technique; ///< "raster", a path tracer's integrator, or a peer's name
     std::string sampler;   ///< empty where the technique has no choice of them
-    std::string note;      ///< what it leaves out, or else does otherwise; empty: it converges to the reference
+    std::string note;      ///< what it leaves out, in sentences; empty: it converges to the reference
     std::vector<int> spps;
     std::function<Trial(int spp, std::uint64_t seed, Control& control)> render;
 

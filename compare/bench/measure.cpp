@@ -57,13 +57,6 @@ template <typename Figure> Estimate mean_over(const std::vector<TrialFigures>& t
     return mean_of(values);
 }
 
-/// The reference's error as its own variance has it: what a perfect picture would be charged with.
-double reference_mse(const Reference& reference) {
-    double sum = 0;
-    for (const Rgb& variance : reference.variance) sum += average(Rgbd(variance));
-    return sum / static_cast<double>(reference.variance.size());
-}
-
 Measurement finish(Running& running, double reference_error) {
     Measurement m = std::move(running.measurement);
     std::vector<double> seconds;
@@ -76,7 +69,9 @@ Measurement finish(Running& running, double reference_error) {
     m.rest_relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.relmse; });
     m.seconds = median_of(std::move(seconds));
     m.efficiency = efficiency_of(m.mse, m.seconds);
+    m.relmse_efficiency = efficiency_of(m.relmse, m.seconds);
     m.rest_efficiency = efficiency_of(m.rest_mse, m.seconds);
+    m.rest_relmse_efficiency = efficiency_of(m.rest_relmse, m.seconds);
     m.reference_share = m.mse.value > 0 ? reference_error / m.mse.value : 0;
     return m;
 }
@@ -100,10 +95,10 @@ void widen_efficiency(std::vector<Measurement>& rows, double drift, double share
     const double lost = share > 0 && share < 1 ? -std::log(share) : 0;
     constexpr double kManyDegrees = 1e6; // assumed, not estimated
     const Estimate pace{1, std::hypot(std::log1p(drift), lost) / 2, kManyDegrees};
-    for (Measurement& m : rows) {
-        m.efficiency = ratio_of(m.efficiency, pace);
-        m.rest_efficiency = ratio_of(m.rest_efficiency, pace);
-    }
+    for (Measurement& m : rows)
+        for (Estimate* const efficiency :
+             {&m.efficiency, &m.relmse_efficiency, &m.rest_efficiency, &m.rest_relmse_efficiency})
+            *efficiency = ratio_of(*efficiency, pace);
 }
 
 double processor_share(const std::vector<Measurement>& rows, int threads) {
@@ -162,7 +157,7 @@ std::vector<Measurement> measure(const std::vector<Contender>& contenders, const
                 std::max(done / (round_work * settings.repeats), std::min(watch.seconds() / settings.time_limit, 1.0)));
         }
     }
-    const double reference_error = reference_mse(reference);
+    const double reference_error = reference.mse();
     std::vector<Measurement> results;
     for (Running& r : running) results.push_back(finish(r, reference_error));
     return results;

@@ -34,8 +34,8 @@ struct Measurement {
     std::vector<TrialFigures> trials;
     double variance = 0; ///< mean over pixels and channels, from the differences of successive seeds; NaN: one trial
     /// Of the whole picture: mean squared error, its relative version, and time; and what follows.
-    Estimate mse, relmse, seconds, efficiency;
-    Estimate rest_mse, rest_relmse, rest_efficiency;
+    Estimate mse, relmse, seconds, efficiency, relmse_efficiency;
+    Estimate rest_mse, rest_relmse, rest_efficiency, rest_relmse_efficiency;
     double reference_share = 0; ///< the reference's own estimated error as a part of `mse`
 
     bool counted = true; ///< false: of a peer's settings, not the most efficient at this number of samples

@@ -49,9 +49,15 @@ ImageRgb picture(const ExrFile& file, const std::string& prefix) {
 
 } // namespace
 
+double Reference::mse() const {
+    double sum = 0;
+    for (const Rgb& v : variance) sum += average(Rgbd(v));
+    return sum / static_cast<double>(variance.size());
+}
+
 std::string ReferenceKey::text() const {
     return message("scene ", scene_hash, ", estimator ", estimator, " ", version, ", ", width, "x", height, ", depth ",
-                   depth, ", ", spp, " samples a pixel");
+                   depth, ", ", spp, " samples a pixel", program.empty() ? "" : ", by ", program);
 }
 
 std::string hash_scene_files(const Scene& scene) {

@@ -14,6 +14,9 @@ namespace duet::compare {
 struct Reference {
     ImageRgb mean;
     ImageRgb variance; ///< of `mean`, estimated in each pixel by itself with one degree of freedom or more
+
+    /// Its own error, estimated: the mean of its variance. A perfect picture would be charged with it.
+    double mse() const;
 };
 
 /// Everything that decides what a reference shows and how well. Equal keys, equal pictures.
@@ -24,6 +27,7 @@ struct ReferenceKey {
     int width = 0, height = 0;
     int depth = 0; ///< scattering events at most
     int spp = 0;
+    std::string program = {}; ///< another's name and version, which decide, too: "Blender 3.4.1"; empty: ours
 
     /// All of it in one line, which the file keeps.
     std::string text() const;

@@ -17,12 +17,6 @@ std::uint64_t reference_seed(const std::string& estimator) {
     return seed;
 }
 
-double mean_variance(const Reference& reference) {
-    double sum = 0;
-    for (const Rgb& v : reference.variance) sum += average(Rgbd(v));
-    return sum / static_cast<double>(reference.variance.size());
-}
-
 /// Sums of pictures and of their squares, in double.
 class MeanOfPictures {
 public:
@@ -56,14 +50,14 @@ private:
     int count_ = 0;
 };
 
-KeptReference found_or_rendered(const std::string& estimator, int version, const Scene& scene, const View& view,
+KeptReference found_or_rendered(const EstimatorId& estimator, const Scene& scene, const View& view,
                                 const ReferenceSettings& settings, const std::function<Reference()>& render,
                                 const Control& control) {
-    const ReferenceKey key{hash_scene_files(scene), estimator,   version, view.width, view.height,
-                           settings.depth,          settings.spp};
+    const ReferenceKey key{hash_scene_files(scene), estimator.name, estimator.version, view.width, view.height,
+                           settings.depth,          settings.spp,   estimator.program};
     const std::string name = scene.path.stem().string();
     const ReferenceCache cache(settings.folder);
-    KeptReference kept{{}, estimator, cache.path(name, key), false, 0};
+    KeptReference kept{{}, estimator.name, cache.path(name, key), false};
     if (std::optional<Reference> found = cache.find(name, key)) {
         kept.reference = std::move(*found);
     } else {
@@ -73,7 +67,6 @@ KeptReference found_or_rendered(const std::string& estimator, int version, const
         kept.rendered = true;
         cache.store(name, key, kept.reference);
     }
-    kept.mse = mean_variance(kept.reference);
     return kept;
 }
 
@@ -96,23 +89,23 @@ KeptReference reference_by(const std::string& estimator, const Scene& scene, con
         Rendering rendering = raytrace::render(raytrace::prepare(scene, s), view, s, control);
         return Reference{std::move(rendering.radiance), std::move(rendering.variance)};
     };
-    return found_or_rendered(estimator, raytrace::kEstimatorVersion, scene, view, settings, render, control);
+    return found_or_rendered({estimator, raytrace::kEstimatorVersion, ""}, scene, view, settings, render, control);
 }
 
-KeptReference reference_by_seeds(const std::string& estimator, int version, const Scene& scene, const View& view,
+KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
                                  const ReferenceSettings& settings,
                                  const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control) {
     const auto render_all = [&] {
         MeanOfPictures mean(view.width, view.height);
         const int spp = std::max(2, settings.spp / kReferenceSeeds);
         for (int i = 0; i < kReferenceSeeds && !control.stopped(); ++i) {
-            const ImageRgb picture = render(spp, reference_seed(estimator) + static_cast<std::uint64_t>(i));
+            const ImageRgb picture = render(spp, reference_seed(estimator.name) + static_cast<std::uint64_t>(i));
             if (!control.stopped()) mean.add(picture);
             control.report(static_cast<double>(i + 1) / kReferenceSeeds);
         }
         return mean.reference();
     };
-    return found_or_rendered(estimator, version, scene, view, settings, render_all, control);
+    return found_or_rendered(estimator, scene, view, settings, render_all, control);
 }
 
 } // namespace duet::compare

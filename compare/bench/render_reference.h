@@ -25,7 +25,6 @@ struct KeptReference {
     std::string estimator;
     std::filesystem::path file;
     bool rendered = false; ///< now; else it was in the cache
-    double mse = 0;        ///< its own, estimated: the mean of its variance
 
     explicit operator bool() const { return !reference.mean.empty(); }
 };
@@ -36,9 +35,14 @@ KeptReference reference_by(const std::string& estimator, const Scene& scene, con
                            const ReferenceSettings& settings, Control& control);
 
 /// By something else: rendered with kReferenceSeeds seeds of equal shares of the samples, whose spread tells the
-/// variance (each pixel's with kReferenceSeeds − 1 degrees of freedom). `version` as in ReferenceKey.
+/// variance (each pixel's with kReferenceSeeds − 1 degrees of freedom).
 inline constexpr int kReferenceSeeds = 8;
-KeptReference reference_by_seeds(const std::string& estimator, int version, const Scene& scene, const View& view,
+struct EstimatorId {
+    std::string name;    ///< these three as in ReferenceKey
+    int version = 0;
+    std::string program;
+};
+KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
                                  const ReferenceSettings& settings,
                                  const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control);
 

@@ -61,7 +61,6 @@ RungPlan if_present(bool present, RungPlan rung, const char* absent) {
 }
 
 constexpr const char* kNoLights = "The scene has no light but, perhaps, its environment.";
-constexpr const char* kNoShadows = "The rasterizer has no shadows yet: its unshadowed light stands in.";
 
 } // namespace
 
@@ -94,10 +93,12 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
                           "Each light in closed form; on rough metal a surface light counts as a distant one.",
                           "One light sample a camera ray, its visibility left out.",
                           ""};
+    raster::Settings raster_lights = pair.raster_settings;
+    raster_lights.parts = kLights;
     const RungPlan shadows{{light("shadows", pair, kLights, Integrator::kLights, false)},
                            "The same light as on the rung below.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
-                           kNoShadows};
+                           paragraph(raster::approximations(pair.raster, raster_lights))};
     const RungPlan environment{
         {light("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
         "Irradiance as if nothing hid the environment, in closed form or by spherical harmonics.",

@@ -1,5 +1,7 @@
 #include "compare/metrics/error_metrics.h"
 
+#include "compare/metrics/same_size.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,9 +67,7 @@ bool count_unusable(ErrorMetrics& metrics, Rgb a, Rgb b) {
 } // namespace
 
 ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
-    if (a.width() != b.width() || a.height() != b.height())
-        throw Error(
-            message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
+    check_same_size(a, b);
     ErrorMetrics metrics;
     metrics.worst = -1;
     std::vector<double> relative;

@@ -3,6 +3,7 @@
 #include "common/image/srgb.h"
 #include "common/system/parallel.h"
 #include "compare/metrics/flip_filters.h"
+#include "compare/metrics/same_size.h"
 
 #include <algorithm>
 #include <limits>
@@ -182,9 +183,7 @@ struct FinitePair {
 };
 
 FinitePair finite_pair(const ImageRgb& test, const ImageRgb& reference) {
-    if (test.width() != reference.width() || test.height() != reference.height())
-        throw Error(message("the pictures differ in size: ", test.width(), "x", test.height(), " and ",
-                            reference.width(), "x", reference.height()));
+    check_same_size(test, reference);
     FinitePair pair{test, reference, {}};
     for (std::size_t i = 0; i < test.size(); ++i)
         if (!is_finite(test[i]) || !is_finite(reference[i])) {

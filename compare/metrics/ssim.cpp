@@ -1,6 +1,7 @@
 #include "compare/metrics/ssim.h"
 
 #include "common/system/parallel.h"
+#include "compare/metrics/same_size.h"
 
 #include <array>
 #include <cmath>
@@ -72,9 +73,7 @@ Sum row_of_windows(const ImageRgb& a, const ImageRgb& b, int y, std::size_t chan
 } // namespace
 
 double ssim(const ImageRgb& a, const ImageRgb& b, int threads) {
-    if (a.width() != b.width() || a.height() != b.height())
-        throw Error(
-            message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
+    check_same_size(a, b);
     const Window window = gaussian_window();
     std::vector<std::array<Sum, 3>> rows(static_cast<std::size_t>(std::max(a.height() - kWindow + 1, 0)));
     parallel_for(rows.size(), threads, [&](std::size_t y) {

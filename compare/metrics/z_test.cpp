@@ -1,6 +1,7 @@
 #include "compare/metrics/z_test.h"
 
 #include "compare/metrics/normal.h"
+#include "compare/metrics/same_size.h"
 
 #include <algorithm>
 #include <array>
@@ -53,11 +54,9 @@ struct Value {
 using Values = Image<std::array<Value, 3>>;
 
 void check_sizes(const NoisyImage& a, const NoisyImage& b) {
-    const auto same = [&](const ImageRgb& image) {
-        return image.width() == a.values.width() && image.height() == a.values.height();
-    };
-    if (!same(b.values) || (!a.variance.empty() && !same(a.variance)) || (!b.variance.empty() && !same(b.variance)))
-        throw Error("the pictures or their variances differ in size");
+    check_same_size(a.values, b.values);
+    for (const ImageRgb* const variance : {&a.variance, &b.variance})
+        if (!variance->empty()) check_same_size(a.values, *variance);
     if (a.variance.empty() && b.variance.empty()) throw Error("neither picture has variances");
 }
 

@@ -51,6 +51,7 @@ public:
         : notes_(export_scene(folder_.path, scene, view, settings)), blender_(command(folder_.path)) {}
 
     const ExportNotes& notes() const { return notes_; }
+    const std::string& program() const { return program_; } ///< known once the script is ready
     fs::path picture() const { return folder_.path / "picture.exr"; }
 
     void send(const std::string& line) {
@@ -68,6 +69,7 @@ public:
                 fail();
             }
             if (read.line == word) return seconds;
+            if (read.line.starts_with(kTellsVersion)) program_ = read.line.substr(kTellsVersion.size());
             if (const auto time = number_after(read.line, "Render time (without synchronization): ")) seconds = *time;
             last_.push_back(read.line);
             if (last_.size() > 8) last_.pop_front();
@@ -93,6 +95,8 @@ private:
     ExportNotes notes_;
     Subprocess blender_;
     std::deque<std::string> last_;
+    static constexpr std::string_view kTellsVersion = "duet: ";
+    std::string program_;
 };
 
 CyclesPeer::CyclesPeer(const Scene& scene, const View& view, const ExportSettings& settings)
@@ -102,15 +106,23 @@ CyclesPeer::~CyclesPeer() = default;
 
 const ExportNotes& CyclesPeer::notes() const { return process_->notes(); }
 
+bool CyclesPeer::wait_until_ready(const Control& control) {
+    ready_ = ready_ || process_->wait_for("duet: ready", control).has_value();
+    return ready_;
+}
+
+std::string CyclesPeer::program(const Control& control) {
+    return wait_until_ready(control) ? process_->program() : "";
+}
+
 Trial CyclesPeer::render(const Job& job, Control& control) {
-    if (!ready_ && !process_->wait_for("duet: ready", control)) return {};
-    ready_ = true;
+    if (!wait_until_ready(control)) return {};
     const fs::path picture = process_->picture();
     // Cycles' seeds are 31 bits.
     process_->send(message(job.spp, ' ', job.seed % 0x7fffffff, ' ', job.adaptive ? 1 : 0, ' ', picture.string()));
     const std::optional<double> seconds = process_->wait_for("duet: rendered", control);
     if (!seconds) return {};
-    if (!(*seconds > 0)) throw Error("Blender's log tells no render time: another version than 3.x?", 1);
+    if (!(*seconds > 0)) throw Error("Blender's log tells no render time: another version than 3.x and 4.x?", 1);
     return {read_image(picture), *seconds, 0};
 }
 

@@ -35,9 +35,13 @@ public:
 
     const ExportNotes& notes() const;
 
+    /// "Blender 3.4.1": waits until it has built the scene. Empty where `control` was stopped.
+    std::string program(const Control& control);
+
 private:
     class Process;
     std::unique_ptr<Process> process_;
+    bool wait_until_ready(const Control& control);
     bool ready_ = false; ///< Blender has built the scene
 };
 

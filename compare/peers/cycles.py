@@ -1,6 +1,7 @@
 # Builds in Blender the scene that compare/peers/export_scene.cpp wrote, then renders it with Cycles as often as it is asked to.
 # Run by compare/peers/cycles.cpp: blender -b --factory-startup --debug-cycles --python cycles.py -- FOLDER
 # Blender's world is used as it is: y stays up, nothing is turned.
+# For Blender 3.x and 4.x: where their names differ a tuple lists the alternatives, of which the first that is there is taken.
 import array
 import json
 import math
@@ -12,6 +13,27 @@ from mathutils import Matrix, Vector
 
 FOLDER = sys.argv[sys.argv.index("--") + 1]
 WHITE = (1.0, 1.0, 1.0, 1.0)
+GLOSSY = ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")  # 4.0 kept the latter's name for both
+SHARP = ("SHARP", "GGX")  # since 4.0 a roughness of 0 says it
+
+
+def first_known(owner, name, *values):
+    """Sets a property to the first of the values that this Blender knows."""
+    for value in values:
+        try:
+            setattr(owner, name, value)
+            return
+        except TypeError:
+            pass
+    raise RuntimeError(f"Blender {bpy.app.version_string}: {name} can be none of {', '.join(map(str, values))}")
+
+
+def set_where_known(value, name, *owners):
+    """Sets a property of the first owner that has it: some have moved, others have gone and need no setting."""
+    for owner in owners:
+        if hasattr(owner, name):
+            setattr(owner, name, value)
+            return
 
 
 def rgba(color):
@@ -36,9 +58,9 @@ class Nodes:
         self.tree.nodes.clear()
 
     def add(self, kind, output=0, settings=None, **inputs):
-        node = self.tree.nodes.new(kind)
+        node = self.new_node(kind)
         for name, value in (settings or {}).items():
-            setattr(node, name, value)
+            first_known(node, name, *(value if isinstance(value, tuple) else (value,)))
         for name, value in inputs.items():
             key = int(name[1:]) if name[0] == "_" and name[1:].isdigit() else name.replace("_", " ")
             if isinstance(value, bpy.types.NodeSocket):
@@ -46,6 +68,13 @@ class Nodes:
             else:
                 node.inputs[key].default_value = value
         return node.outputs[output]
+
+    def new_node(self, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        for kind in kinds:
+            if hasattr(bpy.types, kind):
+                return self.tree.nodes.new(kind)
+        raise RuntimeError(f"Blender {bpy.app.version_string} has no node {' or '.join(kinds)}")
 
     def math(self, operation, *values):
         return self.add("ShaderNodeMath", 0, {"operation": operation}, **{f"_{i}": v for i, v in enumerate(values)})
@@ -93,14 +122,14 @@ def metal(nodes, m):
     color = nodes.mix(grazing, slot(nodes, m["slot"]), WHITE)
     smooth = m["roughness"] ** 2 < 1e-4
     # Blender squares the roughness, too: alpha is its square.
-    return nodes.add("ShaderNodeBsdfGlossy", 0, {"distribution": "SHARP" if smooth else "GGX"}, Color=color,
+    return nodes.add(GLOSSY, 0, {"distribution": SHARP if smooth else "GGX"}, Color=color,
                      Roughness=0.0 if smooth else m["roughness"])
 
 
 def dielectric(nodes, m):
     # Blender's own glass tints reflections, too.
-    through = nodes.add("ShaderNodeBsdfRefraction", 0, {"distribution": "SHARP"}, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=0.0)
-    back = nodes.add("ShaderNodeBsdfGlossy", 0, {"distribution": "SHARP"}, Color=WHITE, Roughness=0.0)
+    through = nodes.add("ShaderNodeBsdfRefraction", 0, {"distribution": SHARP}, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=0.0)
+    back = nodes.add(GLOSSY, 0, {"distribution": SHARP}, Color=WHITE, Roughness=0.0)
     return nodes.add("ShaderNodeMixShader", 0, {}, Fac=nodes.add("ShaderNodeFresnel", 0, {}, IOR=m["ior"]), _1=through, _2=back)
 
 
@@ -138,7 +167,8 @@ def make_mesh(name, part):
     mesh.loops.foreach_set("vertex_index", triangles)
     mesh.polygons.add(count)
     mesh.polygons.foreach_set("loop_start", array.array("i", range(0, 3 * count, 3)))
-    mesh.polygons.foreach_set("loop_total", array.array("i", [3]) * count)
+    if bpy.app.version < (3, 6):  # later ones know it from loop_start
+        mesh.polygons.foreach_set("loop_total", array.array("i", [3]) * count)
     mesh.polygons.foreach_set("material_index", read_array("i", part["slots"]))
     mesh.polygons.foreach_set("use_smooth", array.array("b", [1 if part["normals"] else 0]) * count)
     if part["uvs"]:
@@ -148,7 +178,7 @@ def make_mesh(name, part):
     mesh.update(calc_edges=True)
     if part["normals"]:
         normals = read_array("f", part["normals"])
-        mesh.use_auto_smooth = True
+        set_where_known(True, "use_auto_smooth", mesh)  # 4.1 and later always use the corners' normals
         mesh.normals_split_custom_set([normals[i:i + 3] for i in range(0, len(normals), 3)])
     if len(mesh.polygons) != count:
         raise RuntimeError(f"{name}: Blender made {len(mesh.polygons)} of {count} triangles")
@@ -167,8 +197,9 @@ def make_objects(scene, materials):
             thing.material_slots[i].link = "OBJECT"
             thing.material_slots[i].material = materials[index]
         thing.matrix_world = Matrix(o["matrix"])
-        thing.cycles.shadow_terminator_offset = 0.0
-        thing.cycles.shadow_terminator_geometry_offset = 0.0
+        set_where_known(0.0, "shadow_terminator_offset", thing.cycles)
+        set_where_known(0.0, "shadow_terminator_normal_offset", thing)
+        set_where_known(0.0, "shadow_terminator_geometry_offset", thing.cycles, thing)
 
 
 def undo_spot_cosine(data, direction):
@@ -189,6 +220,7 @@ def make_light(light, number):
         data.angle = 0.0
     else:
         data.shadow_soft_size = 0.0
+        set_where_known(False, "use_soft_falloff", data)
     if light["type"] == "spot":
         data.spot_size = 2 * math.acos(light["cos_outer"])
         data.spot_blend = (light["cos_inner"] - light["cos_outer"]) / (1 - light["cos_outer"])
@@ -197,7 +229,7 @@ def make_light(light, number):
     bpy.context.collection.objects.link(thing)
     turn = Vector(light.get("direction", (0, 0, -1))).to_track_quat("-Z", "Y").to_matrix().to_4x4()
     thing.matrix_world = Matrix.Translation(light.get("position", (0, 0, 0))) @ turn
-    data.cycles.max_bounces = 1024
+    set_where_known(1024, "max_bounces", data.cycles)
 
 
 def make_environment(e):
@@ -251,8 +283,12 @@ def set_up_render(settings):
     render.dither_intensity = 0.0
     cycles.device = "CPU"
     cycles.pixel_filter_type = "BOX"
-    # As efficient as the default, but scrambled by pixel: pixels are independent, which the bias check builds on.
-    cycles.sampling_pattern = "SOBOL"
+    # As efficient as the default, but scrambled by pixel: pixels are independent, which the bias check builds on. (4.2 and
+    # later hide it among their developers' options, and would take blue noise.)
+    preferences = bpy.context.preferences
+    set_where_known(True, "show_developer_ui", preferences.view)
+    set_where_known(True, "use_cycles_debug", preferences.experimental)
+    first_known(cycles, "sampling_pattern", "SOBOL", "SOBOL_BURLEY")
     bounces = settings["depth"] - 1  # Cycles counts the scatterings after the first
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0.0
@@ -274,6 +310,7 @@ def serve():
 
 
 def main():
+    print(f"duet: Blender {bpy.app.version_string}", flush=True)
     with open(os.path.join(FOLDER, "scene.json")) as file:
         description = json.load(file)
     for thing in list(bpy.data.objects):

@@ -1,9 +1,9 @@
 #include "compare/skip/measure_skip.h"
 
+#include "common/image/same_bits.h"
 #include "common/system/stopwatch.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace duet::compare {
 
@@ -12,7 +12,7 @@ namespace {
 std::int64_t pixels_that_differ(const ImageRgb& a, const ImageRgb& b) {
     DUET_CHECK_EQ(a.size(), b.size());
     std::int64_t count = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(Rgb)) != 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += !same_bits(a[i], b[i]);
     return count;
 }
 

@@ -308,7 +308,7 @@ constexpr StressTest kTests[] = {
     {"departure/instance-self-hits", "the same of turned, stretched and mirrored instances", 0, "wrong", kOffset, kTMin,
      200'000, instance_self_hits},
     {"departure/into-spheres", "rays leaving a sphere inwards meet its other side, a chord away", 8, "of the offset",
-     "the chord's change with an offset start, to first order", kTMin, 200'000, into_spheres},
+     "the chord's change with an offset start, to first order", kTMin, 200'000, into_spheres, 0.7},
     {"departure/parallel-surfaces", "of two sheets 4e-5 apart each lets light out on its side and hides the other", 0,
      "wrong", kOffset, kTMin, 100'000, parallel_surfaces},
     {"departure/huge-ground", "from 1e-6 to 10 above a ground 20 km wide: hit downwards, never upwards", 0, "wrong",

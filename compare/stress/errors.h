@@ -28,4 +28,7 @@ inline double relative_error(double value, double exact) {
 /// An absolute error in units of u = 2^-24, the bound of one rounding of a float near 1.
 inline double in_roundoffs(double error) { return std::abs(error) / static_cast<double>(kRoundoff<float>); }
 
+/// The same for double: in units of 2^-53.
+inline double in_double_roundoffs(double error) { return std::abs(error) / kRoundoff<double>; }
+
 } // namespace duet::compare

@@ -43,18 +43,28 @@ long double exact_solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     return 2 * std::atan2(volume, nx * ny * nz + dot(x, y) * nz + dot(y, z) * nx + dot(z, x) * ny);
 }
 
+/// What one rounding of each term makes of Ω = 2 atan2(V, W), to first order: dΩ = 2 (W dV − V dW) / (V² + W²). The
+/// corners are rounded to unit vectors, which moves V = a·(b × c) by the sides |a × b| …; computed from two edges, V
+/// is rounded in their size; W = 1 + a·b + b·c + c·a in 4. V² + W² is (1 + a·b)(1 + b·c)(1 + c·a) times 2, which does
+/// not cancel as W does: with 2 + 2a·b = |a + b|².
+double rounded_terms(const SphericalTriangle& t) {
+    const double v = std::abs(dot(t.a, cross(t.b - t.a, t.c - t.a)));
+    const double w = 1 + dot(t.a, t.b) + dot(t.b, t.c) + dot(t.c, t.a);
+    const double squares = length_squared(t.a + t.b) * length_squared(t.b + t.c) * length_squared(t.c + t.a) / 4;
+    const double sides = length(cross(t.a, t.b)) + length(cross(t.b, t.c)) + length(cross(t.c, t.a));
+    const double edges = length(t.b - t.a) * length(t.c - t.a);
+    return 2 * (std::abs(w) * (sides + edges) + v * 4) / squares;
+}
+
 StressResult solid_angles(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         const auto corners = corners_of(random_flat(trial.random));
         const Vec3d p(viewpoint(trial.random));
         const SphericalTriangle t{normalize(corners[0] - p), normalize(corners[1] - p), normalize(corners[2] - p)};
         const long double truth = exact_solid_angle(p, corners[0], corners[1], corners[2]);
-        // A corner that is off by 2^-53 moves the area by that times the longest side; more, where two are nearly
-        // opposite and the great circle through them turns.
-        const double longest = std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)});
-        const double side = longest / std::min({1.0, length(t.a + t.b), length(t.b + t.c), length(t.c + t.a)});
+        const double terms = rounded_terms(t);
         const auto error = [&](double angle) {
-            return static_cast<double>(std::abs(static_cast<long double>(angle) - truth)) / (side * 0x1p-53);
+            return static_cast<double>(std::abs(static_cast<long double>(angle) - truth)) / (terms * 0x1p-53);
         };
         const auto angle_at = [](Vec3d a, Vec3d b, Vec3d c) {
             const Vec3d ab = cross(a, b), ac = cross(a, c);
@@ -69,14 +79,33 @@ StressResult solid_angles(const StressTest& test, const StressSetting& setting) 
 
 /// How far a point is from the shape, its plane and its edges, as seen from p.
 double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
+    using Wide = Vec3T<long double>; // the normal of a sliver is a difference that cancels
     const auto c = corners_of(flat);
-    const Vec3d n = normalize(cross(c[1] - c[0], c[2] - c[0]));
-    double off = std::abs(dot(n, q - c[0]));
+    const Wide n = normalize(cross(Wide(c[1]) - Wide(c[0]), Wide(c[2]) - Wide(c[0]))), at(q);
+    long double off = std::abs(dot(n, at - Wide(c[0])));
     for (std::size_t i = 0; i < 4; ++i) {
-        const Vec3d edge = c[(i + 1) % 4] - c[i];
-        if (length(edge) > 0) off = std::max(off, -dot(cross(n, edge), q - c[i]) / length(edge));
+        const Wide edge = Wide(c[(i + 1) % 4]) - Wide(c[i]);
+        if (length(edge) > 0) off = std::max(off, -dot(cross(n, edge), at - Wide(c[i])) / length(edge));
     }
-    return off / length(q - p);
+    return static_cast<double>(off) / length(q - p);
+}
+
+/// |cos| between the shape's normal and wi.
+double slant(const std::array<Vec3d, 4>& corners, Vec3d wi) {
+    return std::abs(dot(normalize(cross(corners[1] - corners[0], corners[2] - corners[0])), wi));
+}
+
+/// By what a rounding of Arvo's cosine is divided: twice about the solid angle Ω of a triangle, or what it lacks of a
+/// half space, Ω' = min(Ω, 2π − Ω). The cosine is a quotient of terms such as cos(uΩ − α) − cos α, a difference of size
+/// Ω α of numbers near 1, and α ≥ Ω/2. The least of the shape's two triangles (of a triangle: its own).
+double squared_room(const std::array<Vec3d, 4>& c, Vec3d p) {
+    double least = 2 * kPiDouble;
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+        if (length(c[i + 1] - c[i]) == 0) continue; // a triangle's second one
+        const auto angle = static_cast<double>(exact_solid_angle(p, c[0], c[i], c[i + 1]));
+        least = std::min({least, angle, 2 * kPiDouble - angle});
+    }
+    return sqr(least);
 }
 
 StressResult samples(const StressTest& test, const StressSetting& setting) {
@@ -87,15 +116,22 @@ StressResult samples(const StressTest& test, const StressSetting& setting) {
         const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
         if (!s) return; // seen edge-on
         const Vec3d q = p + s->wi * s->distance;
-        const double pdf = std::visit([&](const auto& shape) { return solid_angle_pdf(shape, p, q); }, flat);
+        const auto pdf_of = [&](Vec3d at) {
+            return std::visit([&](const auto& shape) { return solid_angle_pdf(shape, p, at); }, flat);
+        };
+        const double pdf = pdf_of(q);
         const auto corners = corners_of(flat);
         trial.note(flat.index() == 0 ? "triangle " : "quad ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])),
                    ", ", exact(Vec3(corners[2])), " seen from ", exact(Vec3(p)), ", u = (", u.x, ", ", u.y, "): pdf ",
                    s->pdf, " and ", pdf);
         if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.careful(std::numeric_limits<double>::infinity());
-        trial.careful(relative_error(s->pdf, pdf));
-        trial.careful(off_shape(flat, p, q));
-        trial.careful(std::abs(length(s->wi) - 1));
+        const bool by_solid_angle = pdf_of(corners[0]) == pdf && pdf_of(corners[1]) == pdf && pdf_of(corners[2]) == pdf;
+        const double place = 1 + length(q) / s->distance; // the test itself rounds q
+        const double turned = 1 + (by_solid_angle ? 1 / squared_room(corners, p) : 0);
+        const double terms = place + turned / slant(corners, s->wi); // what wi is off moves the point by so much
+        trial.careful(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
+        trial.careful(in_double_roundoffs(off_shape(flat, p, q)) / terms);
+        trial.careful(in_double_roundoffs(length(s->wi) - 1));
     });
 }
 
@@ -135,32 +171,35 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
         if (d2 <= r2 * 1.001L) return;
         const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
         const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
+        // A rounding of sin² is one of the density, and at the limb a larger one of √(1 − sin²).
+        const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
+        const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };
         const auto s = sample_solid_angle(sphere, Vec3d(p), Vec2d(random.uniform_2d()));
         trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), " from ", exact(p));
         if (!s) return trial.careful(std::numeric_limits<double>::infinity());
-        trial.careful(relative_error(s->pdf, truth));
-        trial.careful(relative_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center)), truth));
-        // The point lies on the sphere, as exactly as its distance allows.
-        const double off =
-            length(Vec3d(p) + s->wi * s->distance - Vec3d(sphere.center)) - std::sqrt(static_cast<double>(r2));
-        trial.careful(std::abs(off) / s->distance);
+        trial.careful(density_error(s->pdf));
+        trial.careful(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
+        // The point lies on the sphere, as exactly as the centre's distance allows.
+        const double off = length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) -
+                           static_cast<double>(sphere.radius);
+        trial.careful(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
         const Vec3 w = sphere.center - p;
         const float cosine = std::sqrt(1 - sphere.radius * sphere.radius / length_squared(w));
-        trial.naive(relative_error(static_cast<double>(1 / (2 * kPi * (1 - cosine))), truth));
+        trial.naive(density_error(static_cast<double>(1 / (2 * kPi * (1 - cosine)))));
     });
 }
 
 constexpr StressTest kTests[] = {
-    {"light/solid-angles", "solid angles of triangles, as thin as 1e-5, 0.01 to 1e4 away", 1000, "2^-53 of its side",
-     "10 roundings, times up to 100 where it is seen nearly edge-on; judged by long double", "the angles' sum - π",
-     500'000, solid_angles},
-    {"light/samples", "samples of such triangles and quads lie on them and have the density that is asked for", 1e-6,
-     "relative", "sampling by solid angle begins at 1e-4, where 2^-53 and a cosine of Arvo's leave 1e-8", "", 500'000,
-     samples},
+    {"light/solid-angles", "solid angles of triangles, as thin as 1e-5, 0.01 to 1e4 away", 4, "2^-53 of its terms",
+     "each term is rounded 16 times at most, which add up to about √16 (Higham and Mary 2019); judged by long double",
+     "the angles' sum - π", 500'000, solid_angles},
+    {"light/samples", "samples of such triangles and quads lie on them and have the density that is asked for", 17,
+     "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point; Arvo's cosine divides by Ω²", "",
+     500'000, samples},
     {"light/densities", "the mean of 1/pdf is the solid angle", 6, "-log10 odds",
      "odds of a false alarm 1e-6 for the row (Šidák 1967); judged by long double", "", 1'000, densities},
-    {"light/far-spheres", "density and samples of spheres 1.001 to 1e6 radii away", 1e-9, "relative",
-     "roundings of double, and at the limb the root of a difference; judged by long double",
+    {"light/far-spheres", "density and samples of spheres 1.001 to 1e6 radii away", 10, "2^-53 of its terms",
+     "10 roundings of r²/d², 1 - cos and what is made of it; at the limb √(1 - r²/d²) divides; judged by long double",
      "1 - sqrt(1 - r²/d²) in float", 500'000, far_spheres},
 };
 

@@ -1,4 +1,5 @@
 // The pipelines as a whole: the same Hits from both, and the same bits for any number of threads.
+#include "common/image/same_bits.h"
 #include "compare/hits/hit_agreement.h"
 #include "compare/pipeline.h"
 #include "compare/stress/book_trace.h"
@@ -128,10 +129,7 @@ StressResult hits_far_away(const StressTest& test, const StressSetting& setting)
 
 // Threads ------------------------------------------------------------------------------------------------------------
 
-template <typename Pixel> bool same_bits(const Image<Pixel>& a, const Image<Pixel>& b) {
-    return std::ranges::equal(std::as_bytes(std::span(a.pixels())), std::as_bytes(std::span(b.pixels())));
-}
-bool same_bits(const Rendering& a, const Rendering& b) {
+bool same_pictures(const Rendering& a, const Rendering& b) {
     return same_bits(a.radiance, b.radiance) && same_bits(a.depth, b.depth) && same_bits(a.normal, b.normal) &&
            same_bits(a.albedo, b.albedo) && same_bits(a.hit, b.hit) && same_bits(a.variance, b.variance) &&
            same_bits(a.samples, b.samples);
@@ -163,7 +161,7 @@ StressResult threads(const StressTest& test, const StressSetting& setting) {
         const TrialScene random = random_lit_scene(trial.random, 100, 75);
         const Rendering one = render(random, 1);
         int different = 0;
-        for (const int count : {2, 3, 7}) different += !same_bits(render(random, count), one);
+        for (const int count : {2, 3, 7}) different += !same_pictures(render(random, count), one);
         trial.careful(different);
     });
 }

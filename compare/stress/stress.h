@@ -34,13 +34,14 @@ struct StressOutcome {
 };
 
 struct StressResult {
-    std::int64_t trials = 0;            ///< those that judged something
+    std::int64_t trials = 0;            ///< those that judged something …
+    std::int64_t least_trials = 1;      ///< … and how many had to (StressTest::judged)
     StressOutcome careful;              ///< the library's way: any failure fails the suite
     std::optional<StressOutcome> naive; ///< the books' way on the same trials: shows what care buys
     std::string account;                ///< what the first failed trial of the careful way noted of itself
 
-    /// Whether the row is red: a trial failed, or none judged anything.
-    bool failed() const { return careful.failures > 0 || trials == 0; }
+    /// Whether the row is red: a trial failed, or too few judged anything.
+    bool failed() const { return careful.failures > 0 || trials < least_trials; }
 };
 
 /// One row of the suite.
@@ -54,6 +55,9 @@ struct StressTest {
     std::int64_t trials;     ///< by default
     /// Usually run_trials (compare/stress/trials.h) with a function that makes and judges one trial.
     StressResult (*run)(const StressTest& test, const StressSetting& setting);
+    /// The share of the trials that must judge something: others met a case that the row does not speak of. What always
+    /// refuses to answer must not pass.
+    double judged = 0.99;
 };
 
 // The groups, each in a file of its own (compare/stress/*_tests.cpp).

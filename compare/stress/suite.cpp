@@ -70,10 +70,10 @@ private:
 /// What is needed to see a failure again.
 void explain(const StressTest& test, const StressResult& result, const StressOptions& options) {
     std::cerr << "compare: " << test.name << ": ";
-    if (result.trials == 0) {
-        std::cerr << "no trial judged anything\n";
-        return;
-    }
+    if (result.trials < result.least_trials)
+        std::cerr << result.trials << " trials judged anything, expected " << result.least_trials << " at least"
+                  << (result.careful.failures > 0 ? "; " : "\n");
+    if (result.careful.failures == 0) return;
     std::cerr << result.careful.failures << " of " << result.trials << " trials failed, the first being number "
               << result.careful.first_failure << " of seed " << options.seed;
     if (!result.account.empty()) std::cerr << ": " << result.account;
@@ -87,6 +87,7 @@ json as_json(const StressTest& test, const StressResult& result) {
     json row = {{"name", test.name},
                 {"what", test.what},
                 {"trials", result.trials},
+                {"least_trials", result.least_trials},
                 {"failures", result.careful.failures},
                 {"worst", number(result.careful.worst)},
                 {"bound", test.bound},
@@ -146,12 +147,15 @@ int stress(const StressOptions& options) {
         }
         rows.push_back(as_json(tests[i], result));
     }
-    if (!options.stats.empty())
-        write_json(options.stats, {{"program", "compare stress"},
-                                   {"version", DUET_VERSION},
-                                   {"seed", options.seed},
-                                   {"factor", options.factor},
-                                   {"tests", rows}});
+    if (!options.stats.empty()) {
+        json statistics = {{"program", "compare stress"},
+                           {"version", DUET_VERSION},
+                           {"seed", options.seed},
+                           {"factor", options.factor},
+                           {"tests", rows}};
+        if (!options.sabotage.empty()) statistics["sabotage"] = options.sabotage; // no figures of the real numerics
+        write_json(options.stats, statistics);
+    }
     if (!options.quiet)
         std::cerr << tests.size() << " tests in " << readable_seconds(watch.seconds()) << ", " << failed << " failed\n";
     return failed > 0 ? kExitFailed : kExitOk;

@@ -59,6 +59,12 @@ private:
     std::mutex mutex_;
 };
 
+/// The share that must judge, less five standard deviations: of a few trials chance may take that many.
+std::int64_t least_trials(std::int64_t count, double judged) {
+    const double n = static_cast<double>(count), spread = std::sqrt(n * judged * (1 - judged));
+    return std::max<std::int64_t>(1, std::llround(std::floor(n * judged - 5 * spread)));
+}
+
 } // namespace
 
 StressResult run_trials(const StressTest& test, const StressSetting& setting, const std::function<void(Trial&)>& body) {
@@ -85,6 +91,7 @@ StressResult run_trials(const StressTest& test, const StressSetting& setting, co
     });
 
     StressResult all;
+    all.least_trials = least_trials(count, test.judged);
     if (!test.naive.empty()) all.naive.emplace();
     for (const StressResult& result : parts) {
         all.trials += result.trials;

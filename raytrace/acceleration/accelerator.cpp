@@ -1,10 +1,15 @@
 #include "raytrace/acceleration/accelerator.h"
 
+#include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
+#include <span>
 
 namespace duet::raytrace {
 
@@ -13,16 +18,19 @@ namespace {
 // Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
 class Gatherer {
 public:
+    explicit Gatherer(int threads) : threads_(threads) {}
+
     void add_shape(const Shape& shape, std::uint32_t object) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-            for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
-                const auto& [a, b, c] = mesh->triangles[i];
-                add_triangle({mesh->positions[a], mesh->positions[b], mesh->positions[c], object, i});
-            }
+            add_mesh(*mesh, object);
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            for (std::uint32_t i = 0; i < list->quads.size(); ++i) add_quad({list->quads[i], object, i});
+            for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
+                Box3 box;
+                for (const Vec3& p : corners(list->quads[i])) box.extend(p);
+                add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
+            }
         } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, BvhSphere{std::get<Sphere>(shape), object, 0});
+            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
         }
     }
 
@@ -34,39 +42,64 @@ public:
         const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
         box.extend(box.low - room);
         box.extend(box.high + room);
-        add(PrimitiveKind::kInstance, box, instances_, BvhInstance{index, object.shape});
+        add(PrimitiveKind::kInstance, box, instances_, {index, object.shape});
     }
 
-    Bvh build(int threads) {
-        const BinaryTree tree = build_binary_tree(std::move(items_), threads);
-        Bvh bvh = collapse(tree);
-        for (const BuildItem& item : tree.items) switch (item.kind) {
-            case PrimitiveKind::kTriangle:
-                bvh.triangles.push_back(triangles_[item.index]);
-                break;
-            case PrimitiveKind::kQuad:
-                bvh.quads.push_back(quads_[item.index]);
-                break;
-            case PrimitiveKind::kSphere:
-                bvh.spheres.push_back(spheres_[item.index]);
-                break;
-            case PrimitiveKind::kInstance:
-                bvh.instances.push_back(instances_[item.index]);
-                break;
-            }
-        return bvh;
+    Bvh build() {
+        const auto drop_twins = [this](std::span<BuildItem> items) { return first_of_twins(items); };
+        BinaryTree tree = build_binary_tree(std::move(items_), threads_, drop_twins);
+        Collapsed collapsed = collapse(tree);
+        add_list_where_faster(tree, collapsed);
+        Bvh& bvh = collapsed.bvh;
+        const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
+        bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
+        bvh.quads.resize(elements(PrimitiveKind::kQuad));
+        bvh.spheres.resize(elements(PrimitiveKind::kSphere));
+        bvh.instances.resize(elements(PrimitiveKind::kInstance));
+        in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
+            const LeafItems& leaf = collapsed.leaves[i];
+            fill_leaf(bvh, leaf, std::span(tree.items).subspan(leaf.first, leaf.count));
+        });
+        return std::move(bvh);
     }
 
 private:
-    void add_triangle(const BvhTriangle& triangle) {
-        Box3 box;
-        for (const Vec3& p : {triangle.a, triangle.b, triangle.c}) box.extend(p);
-        add(PrimitiveKind::kTriangle, box, triangles_, triangle);
+    struct MeshTriangle {
+        std::uint32_t mesh, primitive;
+    };
+    struct PlacedMesh {
+        const Mesh* mesh;
+        std::uint32_t object;
+    };
+    struct PlacedQuad {
+        std::array<Vec3, 4> corners;
+        std::uint32_t object, primitive;
+    };
+    struct PlacedSphere {
+        Sphere sphere;
+        std::uint32_t object;
+    };
+
+    template <typename Body> void in_chunks(std::size_t count, const Body& body) const {
+        constexpr std::size_t kChunk = std::size_t{1} << 14;
+        parallel_for((count + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
+            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
+            for (std::size_t i = chunk * kChunk; i < end; ++i) body(i);
+        });
     }
-    void add_quad(const BvhQuad& quad) {
-        Box3 box;
-        for (const Vec3& p : corners(quad.quad)) box.extend(p);
-        add(PrimitiveKind::kQuad, box, quads_, quad);
+
+    void add_mesh(const Mesh& mesh, std::uint32_t object) {
+        const auto which = static_cast<std::uint32_t>(meshes_.size());
+        meshes_.push_back({&mesh, object});
+        const std::size_t first_item = items_.size(), first_triangle = triangles_.size();
+        items_.resize(first_item + mesh.triangles.size());
+        triangles_.resize(first_triangle + mesh.triangles.size());
+        in_chunks(mesh.triangles.size(), [&](std::size_t i) {
+            Box3 box;
+            for (const std::uint32_t vertex : mesh.triangles[i]) box.extend(mesh.positions[vertex]);
+            items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
+            triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
+        });
     }
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
@@ -74,10 +107,81 @@ private:
         list.push_back(primitive);
     }
 
-    std::vector<BuildItem> items_;
-    std::vector<BvhTriangle> triangles_;
-    std::vector<BvhQuad> quads_;
-    std::vector<BvhSphere> spheres_;
+    void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
+        switch (items[0].kind) {
+        case PrimitiveKind::kTriangle:
+            return fill_block(bvh.triangles[leaf.element], items);
+        case PrimitiveKind::kQuad:
+            return fill_block(bvh.quads[leaf.element], items);
+        case PrimitiveKind::kSphere:
+            return fill_block(bvh.spheres[leaf.element], items);
+        case PrimitiveKind::kInstance:
+            for (std::size_t i = 0; i < items.size(); ++i) bvh.instances[leaf.element + i] = instances_[items[i].index];
+        }
+    }
+
+    // Triangles with the very same corners are hit at the very same distance, where the lowest (object, primitive) wins:
+    // that of the lowest index here.
+    std::size_t first_of_twins(std::span<BuildItem> items) const {
+        if (std::any_of(items.begin(), items.end(),
+                        [](const BuildItem& item) { return item.kind != PrimitiveKind::kTriangle; }))
+            return items.size();
+        using Corners = std::array<std::uint32_t, 9>;
+        const auto corners = [&](const BuildItem& item) {
+            const MeshTriangle& triangle = triangles_[item.index];
+            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+            std::array<Vec3, 3> p;
+            for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[triangle.primitive][k]];
+            return std::bit_cast<Corners>(p);
+        };
+        std::sort(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            const Corners ca = corners(a), cb = corners(b);
+            return ca != cb ? ca < cb : a.index < b.index;
+        });
+        const auto end = std::unique(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
+            return corners(a) == corners(b);
+        });
+        return static_cast<std::size_t>(end - items.begin());
+    }
+
+    template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
+        for (std::size_t i = 0; i < kBlockSize; ++i) {
+            if (i < items.size())
+                set(block, i, items[i].index);
+            else
+                set_absent(block, i);
+        }
+    }
+    void set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
+        const MeshTriangle& triangle = triangles_[index];
+        const auto& [mesh, object] = meshes_[triangle.mesh];
+        const auto& [a, b, c] = mesh->triangles[triangle.primitive];
+        block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
+    }
+    void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {
+        const PlacedQuad& quad = quads_[index];
+        block.set(lane, quad.corners, quad.object, quad.primitive);
+    }
+    void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const {
+        block.set(lane, spheres_[index].sphere, spheres_[index].object);
+    }
+
+    static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
+
+    template <std::size_t kCorners> static void set_absent(PolygonBlock<kCorners>& block, std::size_t lane) {
+        std::array<Vec3, kCorners> corners;
+        corners.fill(kAbsent);
+        block.set(lane, corners, kNoObject, 0);
+    }
+    static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
+
+    int threads_;
+    BuildItems items_;
+    std::vector<PlacedMesh> meshes_;
+    std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
+    std::vector<PlacedQuad> quads_;
+    std::vector<PlacedSphere> spheres_;
     std::vector<BvhInstance> instances_;
 };
 
@@ -86,7 +190,7 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shapes_(scene.shapes.size()) {
-    Gatherer world;
+    Gatherer world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -97,17 +201,17 @@ Accelerator::Accelerator(const Scene& scene, int threads) : scene_(scene), shape
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own;
+        Gatherer own(threads);
         own.add_shape(shape, kNoObject);
-        shapes_[object.shape] = own.build(threads);
+        shapes_[object.shape] = own.build();
     }
-    world_ = world.build(threads);
+    world_ = world.build();
 }
 
-template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best) const {
-    if (!traceable(ray)) return false;
-    const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
-    return traverse<kAny>(world_, ray, kNoObject, best, [&](const BvhInstance& instance, Hit& so_far) {
+// What an instance's hits are in its shape's hierarchy.
+template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
+    return [this, &ray](const BvhInstance& instance, Hit& so_far) {
+        const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
         const Object& object = scene_.objects[instance.object];
         Ray inside;
         if (object.moving) {
@@ -117,19 +221,40 @@ template <bool kAny> bool Accelerator::traverse_scene(const Ray& ray, Hit& best)
             inside = to_object_space(ray, object.to_world, object.to_object);
         }
         if (!traceable(inside)) return false;
-        return traverse<kAny>(shapes_[instance.shape], inside, instance.object, so_far, no_instance);
-    });
+        const Bvh& shape = shapes_[instance.shape];
+        if constexpr (kAny)
+            return find_any(shape, inside, instance.object, so_far, no_instance);
+        else
+            return find_closest(shape, inside, instance.object, so_far, no_instance);
+    };
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
-    return traverse_scene<false>(ray, best) ? best : Hit{};
+    if (!traceable(ray)) return {};
+    return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
+}
+
+void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+    constexpr std::size_t kSize = RayPacket::kSize;
+    const auto instance = [this](const Ray& ray) { return instance_test<false>(ray); };
+    std::size_t done = 0;
+    for (; rays.size() - done >= kSize; done += kSize) {
+        const auto some = rays.subspan(done).first<kSize>();
+        const auto their_hits = hits.subspan(done).first<kSize>();
+        const RayPacket packet(some, world_.bounds);
+        if (!packet.coherent()) {
+            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest(some[i]);
+            continue;
+        }
+        PacketTraversal(world_, packet, some, instance).run(their_hits);
+    }
+    for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
-    Hit best = end;
-    return traverse_scene<true>(ray, best);
+    return traceable(ray) && find_any(world_, ray, kNoObject, end, instance_test<true>(ray));
 }
 
 std::int64_t Accelerator::memory_bytes() const {

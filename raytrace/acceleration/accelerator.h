@@ -4,6 +4,8 @@
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
 
+#include <span>
+
 namespace duet::raytrace {
 
 /// Two levels: one hierarchy over everything that stands in the world as it is, and over the bounds of instances;
@@ -16,6 +18,9 @@ public:
     /// The first hit with t in (t_min, t_max]; invalid where there is none, or where the ray is not finite or has no
     /// direction. At equal t the lower (object, primitive).
     Hit closest(const Ray& ray) const;
+    /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
+    /// neighbouring pixels do. As many hits as rays.
+    void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
     /// Whether anything is hit before `end`, other than end's own primitive: where a light is the end of a shadow
     /// ray, it does not shade itself. An end without object is a mere distance.
     bool occluded(const Ray& ray, const Hit& end) const;
@@ -25,7 +30,7 @@ public:
     const Bvh& world() const { return world_; }
 
 private:
-    template <bool kAny> bool traverse_scene(const Ray& ray, Hit& best) const;
+    template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
     Bvh world_;

@@ -2,26 +2,35 @@
 
 #include "common/system/error.h"
 
+#include <algorithm>
+
 namespace duet::raytrace {
 
 namespace {
 
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, Bvh& bvh) : tree_(tree), bvh_(bvh), rank_(tree.items.size()) {
-        std::array<std::uint32_t, 4> count{};
-        for (std::size_t i = 0; i < tree.items.size(); ++i)
-            rank_[i] = count[static_cast<std::size_t>(tree.items[i].kind)]++;
-    }
+    Collapser(const BinaryTree& tree, Collapsed& result) : tree_(tree), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
-        if (node.leaf())
-            return {rank_[node.first], static_cast<std::uint16_t>(node.count), tree_.items[node.first].kind};
-        return {pack(index), 0, PrimitiveKind::kTriangle};
+        return node.leaf() ? leaf(node.first, node.count) : BvhRef::node(pack(index));
     }
 
 private:
+    // One element: a block of primitives, or an instance.
+    BvhRef leaf(std::uint32_t first, std::uint32_t count) {
+        const PrimitiveKind kind = tree_.items[first].kind;
+        const std::size_t element = elements_[static_cast<std::size_t>(kind)]++;
+        check_index(element);
+        leaves_.push_back({first, count, static_cast<std::uint32_t>(element)});
+        return BvhRef::leaf(kind, static_cast<std::uint32_t>(element));
+    }
+
+    static void check_index(std::size_t index) {
+        if (index >= BvhRef::kMaxIndex) throw Error("too many primitives for a hierarchy");
+    }
+
     // A wide node takes the place of a binary one and of those below it: of its children so far the one of the largest
     // area, which a ray hits first, is replaced by its two, until the node is full.
     std::uint32_t pack(std::uint32_t index) {
@@ -43,6 +52,10 @@ private:
             children[count++] = opened.right;
         }
 
+        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
+            return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
+        });
+        check_index(bvh_.nodes.size() * (sizeof(BvhNode) / BvhRef::kNodeUnit));
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.push_back(BvhNode{});
         for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
@@ -61,24 +74,26 @@ private:
 
     const BinaryTree& tree_;
     Bvh& bvh_;
-    std::vector<std::uint32_t> rank_; // of an item among those of its kind
+    std::vector<LeafItems>& leaves_;
+    std::array<std::size_t, 4>& elements_; // so far in the list of each kind
 };
 
-template <typename T> std::size_t bytes(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) { return v.capacity() * sizeof(T); }
 
 } // namespace
 
-Bvh collapse(const BinaryTree& tree) {
-    Bvh bvh;
-    if (tree.nodes.empty()) return bvh;
-    bvh.bounds = tree.nodes[0].box;
-    bvh.root = Collapser(tree, bvh).ref(0);
-    bvh.nodes.shrink_to_fit();
-    return bvh;
+Collapsed collapse(const BinaryTree& tree) {
+    Collapsed result;
+    if (tree.nodes.empty()) return result;
+    result.bvh.bounds = tree.nodes[0].box;
+    const BvhRef root = Collapser(tree, result).ref(0);
+    result.bvh.nodes.shrink_to_fit();
+    if (root.is_leaf()) result.bvh.list.push_back(root);
+    return result;
 }
 
 std::int64_t Bvh::memory_bytes() const {
-    return static_cast<std::int64_t>(bytes(nodes) + bytes(triangles) + bytes(quads) + bytes(spheres) +
+    return static_cast<std::int64_t>(bytes(nodes) + bytes(list) + bytes(triangles) + bytes(quads) + bytes(spheres) +
                                      bytes(instances));
 }
 

@@ -5,76 +5,25 @@
 // what is as near as the nearest hit is still looked at.
 #pragma once
 
-#include "common/geometry/hit.h"
-#include "common/geometry/quad.h"
-#include "common/geometry/sphere.h"
-#include "common/geometry/triangle.h"
-#include "common/system/sabotage.h"
-#include "raytrace/acceleration/bvh.h"
-
-#include <bit>
-#include <cmath>
+#include "raytrace/acceleration/bvh_leaf.h"
+#include "raytrace/acceleration/bvh_slabs.h"
 
 namespace duet::raytrace {
 
-/// The order of hits along a ray: by distance, and at equal distance by (object, primitive).
-inline bool precedes(const Hit& a, const Hit& b) {
-    if (a.t != b.t || sabotaged(Guard::kTieOrder)) return a.t < b.t;
-    return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
+inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
+    return *reinterpret_cast<const BvhNode*>(reinterpret_cast<const char*>(bvh.nodes.data()) +
+                                             std::size_t{ref.index()} * BvhRef::kNodeUnit);
 }
 
-/// A ray made ready for box tests. Its slab distances are lower and upper bounds of the distances which the primitives'
-/// tests compute: the origin is moved by the error of a triangle's sheared vertices, once a ray, by the size of the
-/// whole hierarchy as seen from there; and the reciprocals are scaled by more than the rounding of both tests.
-class SlabRay {
-public:
-    SlabRay(const Ray& ray, const Box3& bounds) {
-        const float relative = sabotaged(Guard::kEnlargedBoxes)
-                                   ? 0.0f
-                                   : 0x1p-20f; // 16 roundings: Woop et al. have 5, and the triangle's distance 6 more
-        const Vec3 extent = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin));
-        const float largest = extent[longest_axis(abs(ray.direction))];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float error =
-                (extent[axis] + largest + abs(ray.origin[axis])) * relative + std::numeric_limits<float>::min();
-            const float reciprocal = 1 / ray.direction[axis]; // ±infinity for ±0: the slab is entered at −∞, or never
-            const bool negative = std::signbit(ray.direction[axis]);
-            const float away = negative ? -error : error;
-            near_plane_[axis] = axis + (negative ? 3 : 0);
-            far_plane_[axis] = axis + (negative ? 0 : 3);
-            near_origin_[axis] = ray.origin[axis] + away;
-            far_origin_[axis] = ray.origin[axis] - away;
-            near_scale_[axis] = reciprocal * (1 - relative);
-            far_scale_[axis] = reciprocal * (1 + relative);
-        }
-    }
-
-    /// Where the ray enters each child's box, and whether it does so at a distance in [t_min, t_max].
-    void enter(const BvhNode& node, float t_min, float t_max, BvhNode::Lanes& entry,
-               std::array<std::uint32_t, BvhNode::kWidth>& entered) const {
-        const BvhNode::Lanes &near_x = node.planes[near_plane_[0]], &near_y = node.planes[near_plane_[1]],
-                             &near_z = node.planes[near_plane_[2]], &far_x = node.planes[far_plane_[0]],
-                             &far_y = node.planes[far_plane_[1]], &far_z = node.planes[far_plane_[2]];
-        for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
-            // 0 · ∞ = NaN, of a ray in the plane of a box's face, comes second in min and max, which return it only if
-            // the comparison with it holds: it never does, and that slab does not count.
-            const float nx = (near_x[i] - near_origin_.x) * near_scale_.x;
-            const float ny = (near_y[i] - near_origin_.y) * near_scale_.y;
-            const float nz = (near_z[i] - near_origin_.z) * near_scale_.z;
-            const float fx = (far_x[i] - far_origin_.x) * far_scale_.x;
-            const float fy = (far_y[i] - far_origin_.y) * far_scale_.y;
-            const float fz = (far_z[i] - far_origin_.z) * far_scale_.z;
-            const float near = max(max(max(t_min, nx), ny), nz);
-            const float far = min(min(min(t_max, fx), fy), fz);
-            entry[i] = near;
-            entered[i] = near <= far ? 1 : 0;
-        }
-    }
-
-private:
-    std::array<std::size_t, 3> near_plane_, far_plane_;
-    Vec3 near_origin_, far_origin_, near_scale_, far_scale_;
-};
+/// Asks for what a visit of this child reads, before it is needed.
+inline void prefetch(const Bvh& bvh, BvhRef child) {
+    const bool leaf = child.is_leaf(); // of triangles most likely; otherwise nothing is lost
+    const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
+                             : reinterpret_cast<const char*>(&node_at(bvh, child));
+    constexpr std::size_t kLine = 64;
+    for (std::size_t i = 0; i < (leaf ? sizeof(TriangleBlock) : sizeof(BvhNode)); i += kLine)
+        __builtin_prefetch(place + i);
+}
 
 /// Whether a ray can be traced: finite, with a direction. Others hit nothing.
 inline bool traceable(const Ray& ray) {
@@ -86,109 +35,111 @@ inline bool traceable(const Ray& ray) {
 class Waiting {
 public:
     Waiting() = default; // without a value: nobody should clear a stack of these for each ray
-    Waiting(float entry, std::uint32_t node, std::uint32_t child)
-        : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | (node * kWidth + child)) {}
+    Waiting(float entry, BvhRef child) : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | child.bits()) {}
 
     float entry() const { return std::bit_cast<float>(static_cast<std::uint32_t>(bits_ >> 32)); }
-    std::uint32_t node() const { return static_cast<std::uint32_t>(bits_) / kWidth; }
-    std::uint32_t child() const { return static_cast<std::uint32_t>(bits_) % kWidth; }
+    BvhRef child() const { return BvhRef::from_bits(static_cast<std::uint32_t>(bits_)); }
     bool nearer_than(Waiting other) const { return bits_ < other.bits_; }
 
+    /// The nearer of two; `farther` gets the other. Without a branch.
+    friend Waiting take_nearer(Waiting a, Waiting b, Waiting& farther) {
+        farther.bits_ = a.bits_ < b.bits_ ? b.bits_ : a.bits_;
+        a.bits_ = a.bits_ < b.bits_ ? a.bits_ : b.bits_;
+        return a;
+    }
+
 private:
-    static constexpr std::uint32_t kWidth = BvhNode::kWidth;
     std::uint64_t bits_;
 };
 
-/// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
-/// of the ray. With kAny it stops at the first that comes before `best` and is not best's own primitive: a shadow ray
-/// to a light passes the light itself as `best`. Returns whether there was one. `object` stands for the objects of the
-/// primitives where it is not kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same
-/// manner.
+/// Where there is no tree to go through.
 template <bool kAny, typename Instance>
-bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, Instance&& instance) {
-    if (bvh.empty()) return false;
+[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
+    for (const BvhRef leaf : bvh.list)
+        if (test_leaf(leaf, best)) return true;
+    return test_leaf.found();
+}
+
+/// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
+/// of the ray. Returns whether there was one. `object` stands for the objects of the primitives where it is not
+/// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
+template <typename Instance>
+bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+    if (!bvh.use_tree()) return find_in_list<false>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
-    ShearedRay sheared(ray);
-    Ray ended = ray;
-    bool found = false;
+    LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
-    // True where the search is over.
-    const auto consider = [&](const Hit& hit) {
-        if (!precedes(hit, best)) return false;
-        if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;
-        found = true;
-        if (!kAny) best = hit;
-        return kAny;
-    };
-    const auto name = [&](std::uint32_t own) { return object == kNoObject ? own : object; };
-    const auto test_leaf = [&](const BvhRef& leaf) {
-        const std::uint32_t end = leaf.first + leaf.count;
-        sheared.t_max = ended.t_max = best.t;
-        switch (leaf.kind) {
-        case PrimitiveKind::kTriangle:
-            for (std::uint32_t i = leaf.first; i < end; ++i) {
-                const BvhTriangle& p = bvh.triangles[i];
-                if (const auto hit = intersect_triangle(sheared, p.a, p.b, p.c))
-                    if (consider({name(p.object), p.primitive, hit->u, hit->v, hit->t})) return true;
-            }
-            break;
-        case PrimitiveKind::kQuad:
-            for (std::uint32_t i = leaf.first; i < end; ++i) {
-                const BvhQuad& p = bvh.quads[i];
-                if (const auto hit = intersect_quad(sheared, p.quad))
-                    if (consider({name(p.object), p.primitive, hit->u, hit->v, hit->t})) return true;
-            }
-            break;
-        case PrimitiveKind::kSphere:
-            for (std::uint32_t i = leaf.first; i < end; ++i) {
-                const BvhSphere& p = bvh.spheres[i];
-                if (const auto t = intersect_sphere(ended, p.sphere))
-                    if (consider({name(p.object), p.primitive, 0, 0, *t})) return true;
-            }
-            break;
-        case PrimitiveKind::kInstance:
-            for (std::uint32_t i = leaf.first; i < end; ++i)
-                if (instance(bvh.instances[i], best)) {
-                    found = true;
-                    if (kAny) return true;
-                }
-            break;
-        }
-        return false;
-    };
-
-    if (bvh.root.leaf()) return test_leaf(bvh.root) || found;
-    // Each step down leaves at most kWidth − 1 children waiting; the last kWidth are those of the node at hand.
-    std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + BvhNode::kWidth + 1> stack;
+    // Each step down leaves at most kWidth − 1 children waiting.
+    std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
-    const auto enter = [&](std::uint32_t index) {
-        BvhNode::Lanes entry;
-        std::array<std::uint32_t, BvhNode::kWidth> entered;
-        slabs.enter(bvh.nodes[index], ray.t_min, best.t, entry, entered);
-        const std::size_t bottom = size;
-        for (std::uint32_t i = 0; i < BvhNode::kWidth; ++i) { // without a branch: what is not entered is overwritten
-            stack[size] = Waiting(entry[i], index, i);
-            size += entered[i];
-        }
-        if (!kAny) // the nearest on top
-            for (std::size_t i = bottom + 1; i < size; ++i) {
-                const Waiting moving = stack[i];
-                std::size_t j = i;
-                for (; j > bottom && stack[j - 1].nearer_than(moving); --j) stack[j] = stack[j - 1];
-                stack[j] = moving;
+    const SlabRay::Batch t_min(ray.t_min);
+    BvhRef next = BvhRef::node(0);
+    for (;;) {
+        while (!next.is_leaf()) {
+            const BvhNode& node = node_at(bvh, next);
+            const auto [distance, entered] = slabs.enter(node, t_min, SlabRay::Batch(best.t));
+            unsigned children = entered;
+            if (children == 0) break;
+            const auto first = static_cast<std::size_t>(std::countr_zero(children));
+            children &= children - 1;
+            if (children == 0) {
+                next = node.children[first];
+                continue;
             }
-    };
-    enter(bvh.root.first);
-    while (size > 0) {
-        const Waiting next = stack[--size];
-        if (next.entry() > best.t) continue;
-        const BvhRef& child = bvh.nodes[next.node()].children[next.child()];
-        if (!child.leaf())
-            enter(child.first);
-        else if (test_leaf(child))
-            return true;
+            const Lanes entry(distance);
+            const auto take = [&] {
+                const auto child = static_cast<std::size_t>(std::countr_zero(children));
+                children &= children - 1;
+                return Waiting(entry[child], node.children[child]);
+            };
+            const std::size_t bottom = size;
+            Waiting nearest = take_nearer(Waiting(entry[first], node.children[first]), take(), stack[size++]);
+            while (children != 0) {
+                Waiting other;
+                nearest = take_nearer(nearest, take(), other);
+                // The farthest at the bottom.
+                std::size_t i = size++;
+                for (; i > bottom && stack[i - 1].nearer_than(other); --i) stack[i] = stack[i - 1];
+                stack[i] = other;
+            }
+            next = nearest.child();
+        }
+        if (next.is_leaf()) test_leaf(next, best);
+        do {
+            if (size == 0) return test_leaf.found();
+            --size;
+        } while (stack[size].entry() > best.t);
+        next = stack[size].child();
     }
-    return found;
+}
+
+/// Whether any primitive comes before `end` and is not end's own: a shadow ray to a light passes the light itself.
+/// Stops at the first; the other arguments as above.
+template <typename Instance>
+bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
+    Hit best = end;
+    if (!bvh.use_tree()) return find_in_list<true>(bvh, ray, object, best, instance);
+    const SlabRay slabs(ray, bvh.bounds);
+    LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
+
+    std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
+    std::size_t size = 0;
+    const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
+    BvhRef next = BvhRef::node(0);
+    for (;;) {
+        while (!next.is_leaf()) {
+            const BvhNode& node = node_at(bvh, next);
+            unsigned children = slabs.enter(node, t_min, t_max).children;
+            if (children == 0) break;
+            next = node.children[static_cast<std::size_t>(std::countr_zero(children))];
+            while ((children &= children - 1) != 0)
+                stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];
+        }
+        if (next.is_leaf() && test_leaf(next, best)) return true;
+        if (size == 0) return false;
+        next = stack[--size];
+    }
 }
 
 } // namespace duet::raytrace

@@ -245,6 +245,20 @@ class Views(support.PageTest):
         self.assertEqual(page.js("[...bins.children].reduce((n, b) => n + Number(b.dataset.count), 0)"), WIDTH * HEIGHT - 2)
         self.assertEqual(page.text("#metrics-table tr.bad td").split("A")[0], "2")
 
+    def test_values_that_the_page_cannot_keep_are_said_to_be_so(self):
+        def lamps(folder):
+            bright = {(2, 2): (1e6, 1, 1), (9, 9): (1, -70000, 1)}
+            write_pfm(folder / "a.pfm", rows(lambda x, y: bright.get((x, y), changed(x, y))))
+            write_pfm(folder / "b.pfm", rows(reference))
+        page = self.open(self.make("bright", "images", "@a.pfm", "@b.pfm", before=lamps), hash_state="mode=flicker&play=false&px=2&py=2")
+        self.assertTrue(page.text("#beyond").startswith("2 pixels hold values of 65"))
+        cells = page.js("[...document.querySelectorAll('#inspector td.number')].map(cell => cell.textContent)")
+        self.assertEqual(cells[:4], ["≥ 65504", "1.000", "1.000", "–"])  # the brightness of what is not known is not, either
+        self.assertEqual([cells[8], cells[11]], ["≥ 65504", "–"])
+        self.assertGreater(self.figures("bright")["metrics"]["worst"], 9e5)
+        plain = self.pair()
+        self.assertTrue(plain.js("document.getElementById('beyond').hidden"))
+
 
 if __name__ == "__main__":
     support.main()

@@ -35,13 +35,7 @@ one_line_error slower
 expect 2 "$bin/compare" bench models/cornell.json $small --depth 3 --baseline "$scratch/report/report.json"
 one_line_error depth
 
-"$bin/compare" bench models/cornell.json -o "$scratch/interrupted" --size 64x64 --reference-spp 1000000 --quiet &
-process=$!
-sleep 2
-kill -TERM $process
-code=0
-wait $process || code=$?
-[ "$code" -eq 130 ] || fail "SIGTERM: exit code $code, expected 130"
-[ -z "$(ls -A "$scratch/interrupted")" ] || fail "SIGTERM: $(ls -A "$scratch/interrupted") was left behind"
+terminated 2 "$bin/compare" bench models/cornell.json -o "$scratch/interrupted" --size 64x64 --reference-spp 1000000 --quiet
+nothing_in "$scratch/interrupted"
 [ "$(ls "$scratch/cache/duet/references" | wc -l)" -eq 4 ] || fail "SIGTERM left a reference that is not whole"
 finish

@@ -31,12 +31,6 @@ one_line_error --trials
 expect 2 "$bin/compare" stress --stats "$scratch/no/such/folder.json"
 one_line_error --stats
 
-"$bin/compare" stress --trials 1000 --quiet --stats "$scratch/interrupted.json" &
-process=$!
-sleep 1
-kill -TERM $process
-code=0
-wait $process || code=$?
-[ "$code" -eq 130 ] || fail "SIGTERM: exit code $code, expected 130"
+terminated 1 "$bin/compare" stress --trials 1000 --quiet --stats "$scratch/interrupted.json"
 [ ! -e "$scratch/interrupted.json" ] || fail "SIGTERM: figures of an unfinished run were written"
 finish

@@ -36,6 +36,24 @@ one_line_error() {
     }
 }
 
+# terminated SECONDS COMMAND…: runs it, sends SIGTERM after so long, and expects the exit code 130.
+terminated() {
+    seconds=$1
+    shift
+    "$@" &
+    process=$!
+    sleep "$seconds"
+    kill -TERM $process || fail "$* : ended by itself"
+    code=0
+    wait $process || code=$?
+    [ "$code" -eq 130 ] || fail "SIGTERM: exit code $code, expected 130"
+}
+
+# nothing_in FOLDER: an interrupted run has left no file, hidden or not.
+nothing_in() {
+    [ -z "$(ls -A "$1")" ] || fail "SIGTERM: $(ls -A "$1") was left behind"
+}
+
 finish() {
     [ "$failures" -eq 0 ] || exit 1
     echo "all checks passed"

@@ -4,34 +4,28 @@
 #include "common/system/file.h"
 #include "compare/metrics/limits.h"
 #include "tests/compare/test_pictures.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <limits>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes when the test does.
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-images-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
-
 /// Two files of the folder compared without a table; the figures go to m.json.
-ImagesOptions comparison(const Scratch& scratch, const char* a, const char* b) {
+ImagesOptions comparison(const ScratchFolder& scratch, const char* a, const char* b) {
     ImagesOptions options;
-    options.a = scratch.path / a;
-    options.reference = scratch.path / b;
-    options.stats = (scratch.path / "m.json").string();
+    options.a = scratch / a;
+    options.reference = scratch / b;
+    options.stats = (scratch / "m.json").string();
     options.quiet = true;
     return options;
 }
@@ -57,9 +51,9 @@ std::string refusal(const ImagesOptions& options) {
 TEST_SUITE("unit") {
 
     TEST_CASE("compare images: limits decide the exit code") {
-        const Scratch scratch;
-        write_image(scratch.path / "a.pfm", ImageRgb(4, 4, Rgb(0.5f)));
-        write_image(scratch.path / "b.pfm", ImageRgb(4, 4, Rgb(0.25f)));
+        const ScratchFolder scratch;
+        write_image(scratch / "a.pfm", ImageRgb(4, 4, Rgb(0.5f)));
+        write_image(scratch / "b.pfm", ImageRgb(4, 4, Rgb(0.25f)));
         ImagesOptions options = comparison(scratch, "a.pfm", "b.pfm");
         CHECK(figures_of(options)["mse"].get<double>() == doctest::Approx(0.0625));
         options.limits = {"rmse=0.26", "mae=0.25", "psnr=12", "mean_signed_error=0.25", "nan=0", "flip=1"};
@@ -73,7 +67,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("compare images: limits that cannot be used are refused before a file is read, with the list") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         ImagesOptions options = comparison(scratch, "none.pfm", "none.pfm");
         for (const char* const bad : {"rmse", "rmse=", "rmse=x", "rmse=1x", "=1", "other=1", "rmse=nan"}) {
             options.limits = {bad};
@@ -103,19 +97,19 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("compare images: sizes that differ are refused with both") {
-        const Scratch scratch;
-        write_image(scratch.path / "a.pfm", ImageRgb(4, 4));
-        write_image(scratch.path / "b.pfm", ImageRgb(4, 3));
+        const ScratchFolder scratch;
+        write_image(scratch / "a.pfm", ImageRgb(4, 4));
+        write_image(scratch / "b.pfm", ImageRgb(4, 3));
         const std::string text = refusal(comparison(scratch, "a.pfm", "b.pfm"));
         CHECK(text.find("4x4") != std::string::npos);
         CHECK(text.find("4x3") != std::string::npos);
     }
 
     TEST_CASE("compare images: an 8-bit file against a float one needs --decode, which makes all linear") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         const ImageRgb a = linear_pair(24, 20).test;
-        write_image(scratch.path / "a.png", a);
-        write_image(scratch.path / "a.exr", a);
+        write_image(scratch / "a.png", a);
+        write_image(scratch / "a.exr", a);
         ImagesOptions options = comparison(scratch, "a.png", "a.exr");
         CHECK(refusal(options).find("--decode") != std::string::npos);
         std::swap(options.a, options.reference);
@@ -128,20 +122,20 @@ TEST_SUITE("unit") {
         options.decode = true;
         const json found = figures_of(options);
         const json expected = [&] {
-            write_image(scratch.path / "decoded.pfm", read_image(scratch.path / "a.png"));
+            write_image(scratch / "decoded.pfm", read_image(scratch / "a.png"));
             return figures_of(comparison(scratch, "decoded.pfm", "a.exr"));
         }();
         CHECK(found == expected);
     }
 
     TEST_CASE("compare images: NaN and infinity are counted apart") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         ImageRgb a(12, 12, Rgb(0.5f)), b = a;
         a(1, 1).r = std::numeric_limits<float>::quiet_NaN();
         a(2, 1).r = std::numeric_limits<float>::infinity();
         b(2, 1) = {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(), 0};
-        write_image(scratch.path / "a.pfm", a);
-        write_image(scratch.path / "b.pfm", b);
+        write_image(scratch / "a.pfm", a);
+        write_image(scratch / "b.pfm", b);
         const json found = figures_of(comparison(scratch, "a.pfm", "b.pfm"));
         CHECK(found["nan"] == json{{"a", 1}, {"b", 1}});
         CHECK(found["infinite"] == json{{"a", 1}, {"b", 1}});
@@ -149,14 +143,29 @@ TEST_SUITE("unit") {
         CHECK(found["mse"] == 0);
     }
 
+    TEST_CASE("compare images: alpha is not compared, and where there is one other than 1 the figures say so") {
+        const ScratchFolder scratch;
+        const std::vector<float> value{0.5f, 0.25f, 1.0f};
+        const auto write = [&](const char* name, const std::vector<float>& alpha) {
+            write_exr(scratch / name, 3, 1,
+                      {{"A", alpha, {}}, {"B", value, {}}, {"G", value, {}}, {"R", value, {}}});
+        };
+        write("a.exr", {1, 0.5f, 0});
+        write("b.exr", {1, 1, 1});
+        const json figures = figures_of(comparison(scratch, "a.exr", "b.exr"));
+        CHECK(figures["mse"] == 0);
+        CHECK(figures["transparent"]["a"] == 2);
+        CHECK(figures["transparent"]["b"] == 0);
+    }
+
     TEST_CASE("compare images: variances of an EXR file lead to a z-test") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         const TestPair pair = linear_pair(24, 20);
         std::vector<ExrChannel> channels = rgb_channels("", pair.test);
         for (ExrChannel& channel : rgb_channels("variance.", ImageRgb(24, 20, Rgb(1e-4f))))
             channels.push_back(std::move(channel));
-        write_exr(scratch.path / "a.exr", 24, 20, channels);
-        write_image(scratch.path / "b.exr", pair.reference);
+        write_exr(scratch / "a.exr", 24, 20, channels);
+        write_image(scratch / "b.exr", pair.reference);
         ImagesOptions options = comparison(scratch, "a.exr", "b.exr");
         const json found = figures_of(options);
         CHECK(found["z_test"]["pixels"] == 24 * 20);
@@ -170,24 +179,24 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("compare images -o: the page, its figures and the difference; equal names are told apart by their paths") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         for (const char* const side : {"old", "new"}) {
-            fs::create_directories(scratch.path / side);
-            write_image(scratch.path / side / "x.png", ImageRgb(6, 4, Rgb(side[0] == 'o' ? 0.5f : 0.25f)));
+            fs::create_directories(scratch / side);
+            write_image(scratch / side / "x.png", ImageRgb(6, 4, Rgb(side[0] == 'o' ? 0.5f : 0.25f)));
         }
         ImagesOptions options = comparison(scratch, "old/x.png", "new/x.png");
-        options.folder = scratch.path / "deep" / "out";
+        options.folder = scratch / "deep" / "out";
         const json figures = figures_of(options);
         CHECK(json::parse(read_file(options.folder / "report.json"))["metrics"] == figures);
         CHECK(read_image(options.folder / "difference.png").width() == 6);
         const std::string page = read_file(options.folder / "index.html");
         CHECK(page.find("old/x.png against ") != std::string::npos);
         CHECK(page.find("\"eight_bit\":true") != std::string::npos);
-        write_file(scratch.path / "file", "x");
-        options.folder = scratch.path / "file";
+        write_file(scratch / "file", "x");
+        options.folder = scratch / "file";
         CHECK_FALSE(refusal(options).empty());
         options.folder.clear();
-        options.stats = (scratch.path / "none" / "m.json").string();
+        options.stats = (scratch / "none" / "m.json").string();
         CHECK_FALSE(refusal(options).empty());
     }
 }

@@ -7,16 +7,17 @@
 #include "compare/ladder/code_lines.h"
 #include "compare/ladder/shares.h"
 #include "tests/raytrace/scene_builder.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <map>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 using raytrace::quad;
 using raytrace::SceneBuilder;
@@ -72,12 +73,6 @@ double others(const Shares& shares, const char* id) {
         if (std::string(kRungNames[k].id) != id) sum += std::abs(shares.share[k]);
     return sum;
 }
-
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-ladder-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
 
 LadderOptions small_ladder(const fs::path& folder) {
     LadderOptions options;
@@ -225,9 +220,9 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the command writes its files; report.json has the promised keys, --stats the same figures") {
-        const Scratch scratch;
-        LadderOptions options = small_ladder(scratch.path / "deep" / "report");
-        options.stats = (scratch.path / "stats.json").string();
+        const ScratchFolder scratch;
+        LadderOptions options = small_ladder(scratch / "deep" / "report");
+        options.stats = (scratch / "stats.json").string();
         REQUIRE(ladder(options) == 0);
         const json report = json::parse(read_file(options.folder / "report.json"));
         CHECK(report == json::parse(read_file(options.stats)));
@@ -255,7 +250,7 @@ TEST_SUITE("unit") {
             CHECK(report["rungs"][k]["quantities"].empty());
             CHECK(report["rungs"][k]["note"].get<std::string>().find("The scene has no") == 0);
         }
-        CHECK(report["rungs"][3]["note"].get<std::string>().find("no shadows yet") != std::string::npos);
+        CHECK(report["rungs"][3]["note"].get<std::string>().find("Direct light is unshadowed.") != std::string::npos);
         for (const std::string& name : pictures) CHECK_MESSAGE(read_image(options.folder / name).width() == 24, name);
         std::size_t files = 0;
         for (const fs::directory_entry& entry : fs::directory_iterator(options.folder))
@@ -268,19 +263,19 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the same figures for any number of threads; a folder that cannot be made is refused") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         std::vector<json> reports;
         for (const int threads : {1, 7}) {
-            LadderOptions options = small_ladder(scratch.path);
+            LadderOptions options = small_ladder(scratch.path());
             options.settings.threads = threads;
             REQUIRE(ladder(options) == 0);
-            reports.push_back(without_times(json::parse(read_file(scratch.path / "report.json"))));
+            reports.push_back(without_times(json::parse(read_file(scratch / "report.json"))));
         }
         CHECK(reports[0] == reports[1]);
-        write_file(scratch.path / "file", "x");
-        CHECK_THROWS_AS(ladder(small_ladder(scratch.path / "file")), Error);
-        LadderOptions options = small_ladder(scratch.path);
-        options.stats = (scratch.path / "missing" / "stats.json").string();
+        write_file(scratch / "file", "x");
+        CHECK_THROWS_AS(ladder(small_ladder(scratch / "file")), Error);
+        LadderOptions options = small_ladder(scratch.path());
+        options.stats = (scratch / "missing" / "stats.json").string();
         CHECK_THROWS_AS(ladder(options), Error);
     }
 

@@ -2,26 +2,20 @@
 
 #include "common/image/image_file.h"
 #include "common/system/file.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes when the test does.
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-run-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
 
 RunOptions small_run(const fs::path& folder) {
     RunOptions options;
@@ -49,9 +43,9 @@ json without_times(json report) {
 TEST_SUITE("unit") {
 
     TEST_CASE("a run writes its five files, report.json has the promised keys, --stats the same figures") {
-        const Scratch scratch;
-        RunOptions options = small_run(scratch.path / "deep" / "report");
-        options.stats = (scratch.path / "stats.json").string();
+        const ScratchFolder scratch;
+        RunOptions options = small_run(scratch / "deep" / "report");
+        options.stats = (scratch / "stats.json").string();
         REQUIRE(run(options) == 0);
         std::size_t files = 0;
         for (const fs::directory_entry& entry : fs::directory_iterator(options.folder))
@@ -82,22 +76,22 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the same figures for any number of threads") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         std::vector<json> reports;
         for (const int threads : {1, 2, 7}) {
-            RunOptions options = small_run(scratch.path);
+            RunOptions options = small_run(scratch.path());
             options.settings.threads = threads;
             REQUIRE(run(options) == 0);
-            reports.push_back(without_times(json::parse(read_file(scratch.path / "report.json"))));
+            reports.push_back(without_times(json::parse(read_file(scratch / "report.json"))));
         }
         CHECK(reports[0] == reports[1]);
         CHECK(reports[0] == reports[2]);
     }
 
     TEST_CASE("a folder that cannot be made is refused before anything is rendered") {
-        const Scratch scratch;
-        write_file(scratch.path / "file", "x");
-        CHECK_THROWS_AS(run(small_run(scratch.path / "file")), Error);
-        CHECK_THROWS_AS(run(small_run(scratch.path / "file" / "below")), Error);
+        const ScratchFolder scratch;
+        write_file(scratch / "file", "x");
+        CHECK_THROWS_AS(run(small_run(scratch / "file")), Error);
+        CHECK_THROWS_AS(run(small_run(scratch / "file" / "below")), Error);
     }
 }

@@ -3,6 +3,7 @@
 #include "common/system/file.h"
 #include "raytrace/render.h"
 #include "tests/raster/scenes.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +11,6 @@
 #include <bit>
 #include <random>
 #include <set>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
@@ -206,7 +206,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("compare skip: figures as JSON, the exit code, names") {
-        const fs::path stats = fs::temp_directory_path() / message("duet-skip-test-", ::getpid(), ".json");
+        const test::ScratchFolder scratch;
+        const fs::path stats = scratch / "stats.json";
         SkipOptions options;
         options.scene = kModels / "cornell.json";
         options.size = {16, 16};
@@ -233,7 +234,6 @@ TEST_SUITE("unit") {
         CHECK(skip(options) == 1);
         options.only = {"nothing"};
         CHECK_THROWS_AS(skip(options), Error);
-        fs::remove(stats);
     }
 }
 

@@ -80,6 +80,24 @@ TEST_SUITE("unit") {
         CHECK_FALSE(run_trials(test_of(1, ""), {}, [](Trial& trial) { trial.careful(1); }).naive.has_value());
     }
 
+    TEST_CASE("a row whose trials judge less often than it says fails; one of few trials may be unlucky") {
+        const auto run = [](double judged, double share, double factor) {
+            StressTest test = test_of(1);
+            test.judged = judged;
+            StressSetting setting;
+            setting.factor = factor;
+            return run_trials(test, setting, [&](Trial& trial) {
+                if (static_cast<double>(trial.random.uniform()) < share) trial.careful(0);
+            });
+        };
+        CHECK(run(0.99, 0.9, 1).failed());
+        CHECK(run(0.99, 0.9, 1).least_trials > 970);
+        CHECK_FALSE(run(0.99, 1, 1).failed());
+        CHECK_FALSE(run(0.5, 0.5, 1).failed()); // 500 of 1000 expected, 420 demanded
+        CHECK(run(0.5, 0.3, 1).failed());
+        CHECK_FALSE(run(0.5, 0.5, 0.03).failed());
+    }
+
     TEST_CASE("failures of the naive way alone fail nothing") {
         const StressResult result = uniform_errors(1, {});
         CHECK_FALSE(result.failed());

@@ -1,9 +1,8 @@
 // Threads, samples, lens and motion.
+#include "common/image/same_bits.h"
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
-
-#include <cstring>
 
 using namespace duet;
 using namespace duet::test;
@@ -22,10 +21,6 @@ Scene varied() {
     scene.environment = SkyEnvironment{};
     finish_scene(scene);
     return scene;
-}
-
-template <typename Pixel> bool same_bits(const Image<Pixel>& a, const Image<Pixel>& b) {
-    return a.size() == b.size() && std::memcmp(a.pixels().data(), b.pixels().data(), a.size() * sizeof(Pixel)) == 0;
 }
 
 /// The mean of a row's red channel between two columns.

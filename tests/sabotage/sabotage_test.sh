@@ -9,7 +9,8 @@
 only=$(sed 's/.* /--only /' "$scratch/guards" | sort -u | tr '\n' ' ')
 expect 0 "$bin/compare" stress $only
 while read -r guard row; do
-    expect 1 "$bin/compare" stress --only "$row" --sabotage "$guard"
+    expect 1 "$bin/compare" stress --only "$row" --sabotage "$guard" --stats "$scratch/stats.json"
+    grep -q "\"sabotage\": \"$guard\"" "$scratch/stats.json" || fail "the figures without $guard do not say so"
     grep -q "^compare: $row: .* trials failed" "$scratch/stderr" || fail "without $guard: $row did not fail by its trials"
 done <"$scratch/guards"
 

@@ -5,19 +5,12 @@ const contenderName = row => row.sampler ? `${row.technique}, ${row.sampler}` : 
 const excluded = report.excluded.length > 0;
 const measures = [
   { key: "mse", name: "MSE", error: row => row.mse, efficiency: row => row.efficiency },
-  { key: "relmse", name: "relMSE", error: row => row.relmse, efficiency: row => productEfficiency(row.relmse, row.seconds) },
+  { key: "relmse", name: "relMSE", error: row => row.relmse, efficiency: row => row.relmse_efficiency },
   ...(excluded ? [
     { key: "rest", name: "MSE of the rest", error: row => row.rest.mse, efficiency: row => row.rest.efficiency },
-    { key: "rest_relmse", name: "relMSE of the rest", error: row => row.rest.relmse, efficiency: row => productEfficiency(row.rest.relmse, row.seconds) }] : []),
+    { key: "rest_relmse", name: "relMSE of the rest", error: row => row.rest.relmse, efficiency: row => row.rest.relmse_efficiency }] : []),
 ];
 let measure = measures[0];
-
-// As efficiency_of in compare/bench/estimate.cpp, but for the critical t, which is taken from the wider of the two.
-function productEfficiency(error, seconds) {
-  const value = 1 / (error.value * seconds.value);
-  const width = Math.hypot(Math.log(error.high / error.value), Math.log(seconds.high / seconds.value));
-  return { value, low: value * Math.exp(-width), high: value * Math.exp(width) };
-}
 
 function sceneCurves(scene, x) {
   const curves = new Map();
@@ -65,7 +58,7 @@ function sceneSection(scene) {
     ...(scene.processor_share < 0.9 ? [put("p", { class: "verdict" }, [put("span", { class: "bad" }, "✗ A busy machine. "), `The threads got ${percent(scene.processor_share)} of the processor time they could use: mistrust the times.`])] : []),
     plots, ...scene.checks.map(check => put("p", { class: "verdict" }, checkText(scene, check))),
     ...(scene.no_naive ? [put("p", { class: "verdict" }, `No check by naive: ${scene.no_naive}.`)] : []),
-    ...[...notes].map(([name, note]) => put("p", {}, `${name}: ${note}. Its error levels off there.`)),
+    ...[...notes].map(([name, note]) => put("p", {}, `${name}: ${note} Its error levels off there.`)),
     efficiencyTable(scene.rows, measure, row => names.indexOf(contenderName(row))));
   if (scene.equal_times.length) section.append(equalTimeTable(scene.equal_times, measure.key.startsWith("rest")));
   return section;

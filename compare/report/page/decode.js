@@ -35,10 +35,17 @@ const halfValue = (() => {
   return table;
 })();
 
+// The largest half-precision number: it stands for all that are larger.
+const largestHalf = 65504;
+const isBeyond = v => Math.abs(v) >= largestHalf && Number.isFinite(v);
+const pixelText = v => isBeyond(v) ? (v > 0 ? `≥ ${largestHalf}` : `≤ −${largestHalf}`) : radianceText(v);
+const signedPixelText = v => isBeyond(v) ? pixelText(v) : signedText(v);
+
 // A picture: three planes of half-precision bits.
 class Picture {
   constructor(planes) { this.planes = planes; }
   value(i, channel) { return halfValue[this.planes[channel][i]]; }
+  isBeyond(i) { return this.planes.some(plane => (plane[i] & 0x7fff) === 0x7bff); } // a channel is ±largestHalf
   rgb(i) { return [0, 1, 2].map(channel => this.value(i, channel)); }
 }
 

@@ -3,7 +3,8 @@
 const seen = hit => hit.object === 0 ? "nothing" : `${data.hits.objects[hit.object - 1]} (object ${hit.object - 1}), primitive ${countText(hit.primitive)}`;
 
 function inspectorLine(name, color, values, format, sees, stored) {
-  const cells = [...values, luminance(values)].map((v, c) => make("td", { class: "number" }, format(v), ...(stored && c < 3 ? [make("small", {}, stored(v))] : [])));
+  const brightness = values.some(isBeyond) ? "–" : format(luminance(values));
+  const cells = [...values.map(format), brightness].map((text, c) => make("td", { class: "number" }, text, ...(stored && c < 3 ? [make("small", {}, stored(values[c]))] : [])));
   return [make("tr", {}, make("th", { scope: "row" }, make("span", { class: "swatch", style: `background:${color}` }), name), ...cells, make("td", { class: "sees" }, sees)),
     make("tr", { class: "sees-below" }, make("td", { colspan: 5 }, make("small", {}, sees)))];
 }
@@ -23,8 +24,8 @@ function showInspector(announce = false) {
   const heads = [...["R", "G", "B", "Y"].map(t => make("th", { class: "number", scope: "col" }, t)), make("td", { class: "sees" }, "")];
   fill("inspector", make("table", {},
     make("thead", {}, make("tr", {}, make("th", { scope: "col" }, `Pixel ${state.px}, ${state.py}`), ...heads)),
-    make("tbody", {}, ...sides.flatMap((side, k) => inspectorLine(tag(side), shade(values[k]), values[k], radianceText, sees[k], stored)),
-      ...inspectorLine("Difference", css(signedColor(luminance(d) / state.range)), d, signedText, judged))));
+    make("tbody", {}, ...sides.flatMap((side, k) => inspectorLine(tag(side), shade(values[k]), values[k], pixelText, sees[k], stored)),
+      ...inspectorLine("Difference", css(signedColor(luminance(d) / state.range)), d, signedPixelText, judged))));
   if (announce) element("announce").textContent = `Pixel ${state.px}, ${state.py}. `
-    + sides.map((side, k) => `${side.name} ${values[k].map(radianceText).join(", ")}${sees[k] ? `, sees ${sees[k]}` : ""}. `).join("") + judged;
+    + sides.map((side, k) => `${side.name} ${values[k].map(pixelText).join(", ")}${sees[k] ? `, sees ${sees[k]}` : ""}. `).join("") + judged;
 }

@@ -203,6 +203,14 @@ function refresh() {
   setMode(state.mode);
 }
 
+// Says where the page could not keep a value: the figures come from the values themselves.
+function showBeyond() {
+  let count = 0;
+  for (let i = 0; i < pixelCount; ++i) count += decoded.pictures.some(picture => picture.isBeyond(i));
+  element("beyond").hidden = count === 0;
+  element("beyond").textContent = `${countText(count)} ${count === 1 ? "pixel holds" : "pixels hold"} values of ${countText(largestHalf)} or more, the largest number that this page keeps (half precision): they stand on it as that. The figures are of the values themselves.`;
+}
+
 async function start() {
   startTheme();
   readAddress();
@@ -221,6 +229,7 @@ async function start() {
     paintGround(layers.ground, decoded.pictures[0]);
   }
   element("loading").hidden = true;
+  showBeyond();
   wire();
   refresh();
   document.documentElement.dataset.ready = "yes";

@@ -23,7 +23,7 @@ function draw() {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, stageWidth, stageHeight);
   const [first, second] = panes(), shownSide = state.show === "a" ? 0 : 1;
-  const picture = (k, pane, window) => drawLayer(context, layers.pictures[k], pane, window, i => decoded.pictures[k].rgb(i).map(radianceText));
+  const picture = (k, pane, window) => drawLayer(context, layers.pictures[k], pane, window, i => decoded.pictures[k].rgb(i).map(pixelText));
   if (state.mode === "split") {
     const at = state.split * stageWidth;
     picture(1, first, { x: at, y: 0, w: stageWidth - at, h: stageHeight });

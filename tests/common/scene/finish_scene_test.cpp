@@ -4,10 +4,11 @@
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
 
 using namespace duet;

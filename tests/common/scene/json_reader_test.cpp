@@ -1,6 +1,6 @@
 #include "common/scene/json/json_reader.h"
 
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
 
 #include <doctest/doctest.h>
 

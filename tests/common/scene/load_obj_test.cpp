@@ -2,7 +2,8 @@
 #include "common/scene/obj/load_obj.h"
 #include "common/scene/scene.h"
 
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,8 @@
 // Scene files: what is read, and what is refused with which message.
 #include "common/scene/scene.h"
 
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 

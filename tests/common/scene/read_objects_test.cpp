@@ -1,7 +1,8 @@
 // Groups, instances and transforms: what becomes of them when the scene is flattened.
 #include "common/scene/scene.h"
 
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,8 @@
 #include "common/scene/scene.h"
 #include "common/scene/json/scene_keys.h"
 
-#include "tests/common/scene/scene_files.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 

@@ -7,33 +7,28 @@
 #include "compare/bench/render_reference.h"
 #include "compare/metrics/error_metrics.h"
 #include "raytrace/render.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-bench-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
-
-BenchOptions small_bench(const Scratch& scratch) {
+BenchOptions small_bench(const ScratchFolder& scratch) {
     BenchOptions options;
     options.scenes = {fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json"};
-    options.folder = scratch.path / "report";
-    options.references = scratch.path / "references";
+    options.folder = scratch / "report";
+    options.references = scratch / "references";
     options.size = {16, 16};
     options.choice.techniques = {"raster", "path"};
     options.choice.samplers = {"sobol"};
@@ -155,9 +150,12 @@ TEST_SUITE("unit") {
     TEST_CASE("bands of efficiency hold what a machine does between runs") {
         std::vector<Measurement> rows = measured({synthetic("us", 0, 0.1)});
         const double own = rows[0].efficiency.relative_error, value = rows[0].efficiency.value;
+        const double pace = std::hypot(std::log(1.15), std::log(2.0)) / 2;
         widen_efficiency(rows, 0.15, 0.5); // half of the processors' time was someone else's
         CHECK(rows[0].efficiency.value == value);
-        const double pace = std::hypot(std::log(1.15), std::log(2.0)) / 2;
+        CHECK(rows[0].relmse_efficiency.value == doctest::Approx(1 / (rows[0].relmse.value * rows[0].seconds.value)));
+        CHECK(rows[0].relmse_efficiency.relative_error ==
+              doctest::Approx(std::hypot(rows[0].relmse.relative_error, rows[0].seconds.relative_error, pace)));
         CHECK(rows[0].efficiency.relative_error == doctest::Approx(std::hypot(own, pace)));
         CHECK(rows[0].seconds.relative_error < 0.01);
         CHECK(rows[0].efficiency.high() / value > 1.9);
@@ -259,7 +257,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a bench writes its three files, with the promised keys; the reference is rendered once") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         options.excluded = {parse_excluded_rectangle("0.3,0,0.7,0.3")};
         REQUIRE(bench(options) == 0);
@@ -271,13 +269,13 @@ TEST_SUITE("unit") {
         REQUIRE(scene["rows"].size() == 4);
         for (const json& row : scene["rows"]) {
             CHECK(row["trials"].size() == 3);
-            for (const char* const key : {"mse", "relmse", "seconds", "efficiency"})
+            for (const char* const key : {"mse", "relmse", "seconds", "efficiency", "relmse_efficiency"})
                 CHECK(row[key]["low"] <= row[key]["high"]);
             CHECK(row["rest"]["mse"]["value"] < row["mse"]["value"]); // the lamp's edge is left out
         }
         // The figures do not depend on threads: seeds and pictures are the same.
         options.choice.threads = 1;
-        options.folder = scratch.path / "again";
+        options.folder = scratch / "again";
         REQUIRE(bench(options) == 0);
         const json again = json::parse(read_file(options.folder / "report.json"));
         CHECK(again["scenes"][0]["reference"]["rendered"] == false);
@@ -285,7 +283,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a wrong picture of the independent estimator fails the bench") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         REQUIRE(bench(options) == 0);
         const Scene scene = load_scene(options.scenes[0]);
@@ -298,7 +296,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("unknown techniques and samplers are refused before anything is rendered") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         options.choice.techniques = {"path", "radiosity"};
         CHECK_THROWS_AS(bench(options), Error);

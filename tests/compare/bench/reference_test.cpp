@@ -4,6 +4,7 @@
 #include "common/system/file.h"
 #include "compare/bench/bias_check.h"
 #include "compare/bench/render_reference.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 
@@ -11,21 +12,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes when the test does.
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-reference-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
 
 /// A scene of every kind of file: mesh, MTL, its picture, a texture, an environment.
 fs::path write_scene(const fs::path& folder) {
@@ -63,8 +57,8 @@ Reference noisy(int size, double mean, double deviation, unsigned seed) {
 TEST_SUITE("unit") {
 
     TEST_CASE("a scene names all its files, and its hash changes with each of them") {
-        const Scratch scratch;
-        const fs::path path = write_scene(scratch.path / "a");
+        const ScratchFolder scratch;
+        const fs::path path = write_scene(scratch / "a");
         const Scene scene = load_scene(path);
         std::vector<std::string> names;
         for (const fs::path& file : scene.files) names.push_back(file.filename().string());
@@ -73,7 +67,7 @@ TEST_SUITE("unit") {
 
         const std::string hash = hash_scene_files(scene);
         CHECK(hash.size() == 16);
-        CHECK(hash_scene_files(load_scene(write_scene(scratch.path / "elsewhere"))) == hash);
+        CHECK(hash_scene_files(load_scene(write_scene(scratch / "elsewhere"))) == hash);
         for (const fs::path& file : scene.files) {
             const std::string bytes = read_file(file);
             write_file(file, bytes + "\n");
@@ -84,14 +78,14 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a bare mesh names its files, too") {
-        const Scratch scratch;
-        write_scene(scratch.path);
-        CHECK(load_scene(scratch.path / "m.obj").files.size() == 3);
+        const ScratchFolder scratch;
+        write_scene(scratch.path());
+        CHECK(load_scene(scratch / "m.obj").files.size() == 3);
     }
 
     TEST_CASE("references are found again under their key only, and a damaged file is no reference") {
-        const Scratch scratch;
-        const ReferenceCache cache(scratch.path / "deep" / "cache");
+        const ScratchFolder scratch;
+        const ReferenceCache cache(scratch / "deep" / "cache");
         const ReferenceKey key{"0123456789abcdef", "path", 1, 8, 8, 64, 256};
         CHECK_FALSE(cache.find("s", key));
         const Reference stored = noisy(8, 0.5, 0.1, 3);
@@ -101,7 +95,7 @@ TEST_SUITE("unit") {
         CHECK(std::equal(found->mean.begin(), found->mean.end(), stored.mean.begin()));
         CHECK(std::equal(found->variance.begin(), found->variance.end(), stored.variance.begin()));
 
-        std::vector<ReferenceKey> others(7, key);
+        std::vector<ReferenceKey> others(8, key);
         others[0].scene_hash[15] = '0';
         others[1].estimator = "naive";
         others[2].version = 2;
@@ -109,6 +103,7 @@ TEST_SUITE("unit") {
         others[4].height = 9;
         others[5].depth = 63;
         others[6].spp = 255;
+        others[7].program = "Blender 3.4.1";
         for (const ReferenceKey& other : others) {
             CHECK_FALSE(cache.find("s", other));
             // Even where the file's name says otherwise.
@@ -128,13 +123,13 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a stopped render leaves no reference behind") {
-        const Scratch scratch;
-        const Scene scene = load_scene(write_scene(scratch.path / "scene"));
+        const ScratchFolder scratch;
+        const Scene scene = load_scene(write_scene(scratch / "scene"));
         const std::atomic<bool> stop{true};
         Control control{&stop, {}};
-        const ReferenceSettings settings{scratch.path / "cache", 4, 2, 1};
+        const ReferenceSettings settings{scratch / "cache", 4, 2, 1};
         CHECK_FALSE(reference_by("path", scene, {scene.camera, 8, 8}, settings, control));
-        CHECK_FALSE(fs::exists(scratch.path / "cache"));
+        CHECK_FALSE(fs::exists(scratch / "cache"));
         Control free;
         const KeptReference first = reference_by("path", scene, {scene.camera, 8, 8}, settings, free);
         const KeptReference second = reference_by("path", scene, {scene.camera, 8, 8}, settings, free);

@@ -4,26 +4,21 @@
 #include "common/system/file.h"
 #include "compare/bench/bias_check.h"
 #include "compare/bench/render_reference.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-cycles-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
 
 bool blender_is_installed() {
     const bool found = std::system("command -v blender >/dev/null 2>&1") == 0;
@@ -33,15 +28,17 @@ bool blender_is_installed() {
 
 /// The z-test of block means of both renderers' pictures.
 BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
-    const Scratch scratch;
+    const ScratchFolder scratch;
     const Scene scene = load_scene(path);
     const View view{scene.camera, width, height};
-    const ReferenceSettings settings{scratch.path, spp, 64, 2};
+    const ReferenceSettings settings{scratch.path(), spp, 64, 2};
     CyclesPeer peer(scene, view, {settings.depth, settings.threads});
     Control control;
     const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_picture(n, seed, control); };
+    const std::string program = peer.program(control);
+    CHECK(program.starts_with("Blender "));
     const KeptReference cycles =
-        reference_by_seeds("cycles", kCyclesExportVersion, scene, view, settings, render, control);
+        reference_by_seeds({"cycles", kCyclesExportVersion, program}, scene, view, settings, render, control);
     const KeptReference ours = reference_by("path", scene, view, settings, control);
     const BiasCheck check = check_bias(ours.reference, cycles.reference);
     MESSAGE(path.filename().string(), ": largest |z| ", std::abs(check.worst_z), ", p ", check.p_value, ", detectable ",
@@ -75,12 +72,12 @@ TEST_SUITE("image") {
     // All materials, lights, textures but noise, an environment picture, a thin lens, mirrored and instanced meshes.
     TEST_CASE("everything that can be exported: both pictures agree within their noise") {
         if (!blender_is_installed()) return;
-        const Scratch scratch;
+        const ScratchFolder scratch;
         const fs::path models = fs::path(DUET_SOURCE_DIR) / "models";
         json scene = json::parse(read_file(models / "everything.json"));
         make_exportable(scene, models);
-        write_file(scratch.path / "everything.json", scene.dump());
-        const BiasCheck check = against_cycles(scratch.path / "everything.json", 64, 48, 512);
+        write_file(scratch / "everything.json", scene.dump());
+        const BiasCheck check = against_cycles(scratch / "everything.json", 64, 48, 512);
         CHECK(check.consistent());
         CHECK(check.detectable < 0.02);
     }

@@ -6,36 +6,31 @@
 #include "compare/peers/export_geometry.h"
 #include "compare/peers/subprocess.h"
 #include "tests/raytrace/scene_builder.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <cstring>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
 using duet::raytrace::SceneBuilder;
+using duet::test::ScratchFolder;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / message("duet-export-test-", ::getpid());
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
-
-json exported(const Scratch& scratch, const Scene& scene, ExportNotes* notes = nullptr) {
-    const ExportNotes list = export_scene(scratch.path, scene, {scene.camera, 40, 30}, {8, 2});
+json exported(const ScratchFolder& scratch, const Scene& scene, ExportNotes* notes = nullptr) {
+    const ExportNotes list = export_scene(scratch.path(), scene, {scene.camera, 40, 30}, {8, 2});
     if (notes != nullptr) *notes = list;
-    return json::parse(read_file(scratch.path / "scene.json"));
+    return json::parse(read_file(scratch / "scene.json"));
 }
 
-template <typename T> std::vector<T> numbers(const Scratch& scratch, const json& part) {
-    const std::string bytes = read_file(scratch.path / "geometry.bin");
+template <typename T> std::vector<T> numbers(const ScratchFolder& scratch, const json& part) {
+    const std::string bytes = read_file(scratch / "geometry.bin");
     std::vector<T> values(part[1].get<std::size_t>());
     const auto offset = part[0].get<std::size_t>();
     REQUIRE(offset + 4 * values.size() <= bytes.size());
@@ -104,7 +99,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("cornell.json: objects, materials, camera and settings as the path tracer has them") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         ExportNotes notes;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         const json file = exported(scratch, scene, &notes);
@@ -129,7 +124,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("all spheres share one mesh; an environment's picture is turned as Cycles sees it") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{});
         builder.add(Sphere{{1, 2, 3}, 0.5f}, grey);
@@ -150,15 +145,15 @@ TEST_SUITE("unit") {
         const double u = 0.5 - std::atan2(turned(1), turned(0)) / (2 * kPiDouble);
         CHECK(u == doctest::Approx(static_cast<double>(sphere_uv(Vec3(w)).x) + 0.25));
         CHECK(turned(2) == doctest::Approx(w.y));
-        CHECK(read_image(scratch.path / "environment.exr").width() == 4);
+        CHECK(read_image(scratch / "environment.exr").width() == 4);
     }
 
     TEST_CASE("what has no counterpart is refused by name") {
-        const Scratch scratch;
+        const ScratchFolder scratch;
         const auto refused = [&](const Scene& scene, const char* what, int depth = 8) {
             std::string text;
             try {
-                export_scene(scratch.path, scene, {scene.camera, 4, 3}, {depth, 1});
+                export_scene(scratch.path(), scene, {scene.camera, 4, 3}, {depth, 1});
             } catch (const Error& error) {
                 text = error.what();
             }

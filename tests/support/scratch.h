@@ -1,4 +1,4 @@
-// Files for tests of readers: written to a folder of their own that goes with them.
+// A folder for the files a test writes.
 #pragma once
 
 #include "common/system/error.h"
@@ -11,11 +11,13 @@
 
 namespace duet::test {
 
+/// Empty at first, no other test's, and gone with this object.
 class ScratchFolder {
 public:
     ScratchFolder() {
         static std::atomic<int> count{0};
-        path_ = std::filesystem::temp_directory_path() / message("duet-scene-test-", ::getpid(), "-", count++);
+        path_ = std::filesystem::temp_directory_path() / message("duet-test-", ::getpid(), "-", count++);
+        std::filesystem::remove_all(path_); // of a process that was killed
         std::filesystem::create_directories(path_);
     }
     ~ScratchFolder() {
@@ -25,7 +27,9 @@ public:
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+    /// Writes a file, and the folders it is in; returns where it is.
     std::filesystem::path write(const std::string& name, const std::string& text) const {
         std::filesystem::create_directories((path_ / name).parent_path());
         write_file(path_ / name, text);
@@ -35,20 +39,5 @@ public:
 private:
     std::filesystem::path path_;
 };
-
-/// The message of the Error that the call throws; "no error" where it throws none.
-template <typename Call> std::string error_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.exit_code() == 2 ? error.what() : message("exit code ", error.exit_code(), ": ", error.what());
-    }
-    return "no error";
-}
-
-/// Whether a message is one line that holds the text.
-inline bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos && text.find('\n') == std::string::npos;
-}
 
 } // namespace duet::test

@@ -1,0 +1,32 @@
+// The subcommands of the program `compare`: each one's arguments stand beside what it runs.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace duet::compare {
+
+/// A subcommand: its arguments, and what runs where it is the one that was given.
+struct Subcommand {
+    CLI::App* arguments;
+    std::function<int()> run; ///< returns the exit code
+};
+
+Subcommand add_run(CLI::App& app);
+Subcommand add_ladder(CLI::App& app);
+Subcommand add_images(CLI::App& app);
+Subcommand add_skip(CLI::App& app);
+Subcommand add_bench(CLI::App& app);
+Subcommand add_kernels(CLI::App& app);
+Subcommand add_frames(CLI::App& app);
+Subcommand add_stress(CLI::App& app);
+
+/// The end of each --help.
+inline constexpr const char* kExitCodes =
+    "\n\nExit codes: 0 done, 1 failed (a metric over its limit, a failed test, a result that could not be written), 2 "
+    "unusable arguments or input, 130 interrupted (nothing is written).";
+
+} // namespace duet::compare

@@ -1,0 +1,137 @@
+#include "compare/kernels/kernels.h"
+
+#include "common/program/program.h"
+#include "common/program/statistics.h"
+#include "common/system/parallel.h"
+#include "common/system/stopwatch.h"
+#include "compare/kernels/measure_kernels.h"
+#include "compare/peers/embree.h"
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kHowToGetThePeer =
+    "no peer: this program was built without Embree. Install it (Debian, Ubuntu: apt install libembree-dev), then "
+    "configure and build again";
+
+template <typename List> std::string listed(const List& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+std::vector<std::string> chosen_works(const std::vector<std::string>& works) {
+    for (const std::string& work : works)
+        if (std::ranges::find(kWorks, work) == kWorks.end())
+            throw Error("--work: found " + work + ", expected some of " + listed(kWorks));
+    return works.empty() ? kWorks : works;
+}
+
+std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
+    const std::vector<EmbreeQuality> all{{false, false}, {true, false}, {false, true}, {true, true}};
+    std::vector<std::string> known;
+    for (const EmbreeQuality& quality : all) known.push_back(name_of(quality));
+    if (names == std::vector<std::string>{"none"}) return {};
+    std::vector<EmbreeQuality> chosen;
+    for (const std::string& name : names) {
+        const auto found = std::ranges::find(known, name);
+        if (found == known.end())
+            throw Error("--peers: found " + name + ", expected none, or some of " + listed(known));
+        chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
+    }
+    if (embree_version().empty()) {
+        if (!names.empty()) throw Error(std::string("--peers: ") + kHowToGetThePeer);
+        return {};
+    }
+    return names.empty() ? all : chosen;
+}
+
+/// What is to be measured: each file in each arrangement it can have.
+struct Case {
+    std::filesystem::path file;
+    Arrangement arrangement;
+};
+
+std::vector<Case> cases_of(const KernelsOptions& options) {
+    std::vector<Arrangement> arrangements;
+    for (const std::string& name : options.scenes) arrangements.push_back(parse_arrangement(name));
+    std::vector<Case> cases;
+    for (const std::filesystem::path& file : options.meshes) {
+        if (!is_bare_mesh(file))
+            cases.push_back({file, Arrangement::kAlone});
+        else
+            for (const Arrangement arrangement : arrangements) cases.push_back({file, arrangement});
+    }
+    return cases;
+}
+
+json report_json(const KernelsOptions& options, const MeasureKernels& settings,
+                 const std::vector<KernelTable>& tables) {
+    json rows = json::array(), watertight = json::array(), judged = json::array();
+    for (const KernelTable& table : tables) {
+        for (json& row : rows_json(table)) rows.push_back(std::move(row));
+        for (json& row : watertight_json(table)) watertight.push_back(std::move(row));
+        for (json& row : judged_json(table)) judged.push_back(std::move(row));
+    }
+    const bool peer = !settings.peers.empty();
+    return {{"program", "compare kernels"},
+            {"version", DUET_VERSION},
+            {"peer", peer ? json(embree_version()) : json(nullptr)},
+            {"width", options.size.width},
+            {"height", options.size.height},
+            {"threads", settings.threads},
+            {"seed", options.seed},
+            {"rows", rows},
+            {"watertight", watertight},
+            {"judged", judged}};
+}
+
+} // namespace
+
+int kernels(const KernelsOptions& options) {
+    check_json_path(options.stats);
+    MeasureKernels settings;
+    settings.works = chosen_works(options.works);
+    settings.peers = chosen_peers(options.peers);
+    settings.size = options.size;
+    settings.threads = options.threads > 0 ? options.threads : available_threads();
+    settings.repeats = options.repeats;
+    settings.seconds = options.seconds;
+    settings.watertight = options.watertight;
+    settings.seed = options.seed;
+    const std::vector<Case> cases = cases_of(options);
+    const bool table_wanted = !options.quiet && options.stats != "-";
+    if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kHowToGetThePeer << '\n';
+
+    const InterruptFlag interrupt;
+    std::vector<KernelTable> tables;
+    ProgressBar bar("kernels", options.quiet);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Control control{&interrupt.flag(), [&](double part) {
+                                  bar.update((static_cast<double>(i) + part) / static_cast<double>(cases.size()));
+                              }};
+        const KernelScene scene = load_kernel_scene(cases[i].file, cases[i].arrangement);
+        tables.push_back(measure_kernels(scene, settings, control));
+        if (interrupt.raised()) return kExitInterrupted;
+        bar.finish();
+        if (table_wanted) print_table(std::cout, tables.back());
+        std::cout.flush();
+    }
+    if (!options.stats.empty()) write_json(options.stats, report_json(options, settings, tables));
+    int code = kExitOk;
+    for (const KernelTable& table : tables)
+        for (const std::string& fault : faults(table)) {
+            std::cerr << "compare: " << fault << '\n';
+            code = kExitFailed;
+        }
+    return code;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,29 @@
+// All measurements of one scene: builds, memory, and each kind of ray, with one thread and with many.
+#pragma once
+
+#include "common/program/render_program.h"
+#include "common/system/control.h"
+#include "compare/kernels/kernel_report.h"
+#include "compare/kernels/kernel_scene.h"
+#include "compare/peers/embree.h"
+
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+struct MeasureKernels {
+    std::vector<std::string> works;   ///< of kWorks
+    std::vector<EmbreeQuality> peers; ///< empty: ours alone
+    PictureSize size{1920, 1080};
+    int threads = 1; ///< of the second set of rows; 1: there is none
+    int repeats = 7;
+    double seconds = 0.15;       ///< of one measurement of rays
+    std::int64_t watertight = 0; ///< rays; 0: none
+    std::uint64_t seed = 0;
+};
+
+/// What is found means nothing where `control` was stopped.
+KernelTable measure_kernels(const KernelScene& scene, const MeasureKernels& settings, const Control& control);
+
+} // namespace duet::compare

@@ -1,0 +1,109 @@
+#include "compare/kernels/ray_sets.h"
+
+#include "common/sampling/hash.h"
+#include "common/sampling/warp.h"
+#include "common/system/parallel.h"
+#include "common/vec/frame.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+namespace duet::compare {
+
+namespace {
+
+constexpr std::size_t kChunk = 4096; ///< rays made at a time
+
+/// Every other bit of a number below 256, from the lowest on.
+int even_bits(int code) {
+    int bits = 0;
+    for (int i = 0; i < 4; ++i) bits |= (code >> (2 * i) & 1) << i;
+    return bits;
+}
+
+/// Where the i-th pixel of a whole tile lies in it.
+std::pair<int, int> place_in_tile(int i, PixelOrder order) {
+    static_assert(kTile == 16);
+    if (order == PixelOrder::kRows) return {i % kTile, i / kTile};
+    return {even_bits(i), even_bits(i >> 1)};
+}
+
+/// What `make` returns for each ray with its index, the empty left out, in order, for any number of threads.
+std::vector<Ray> collect(std::span<const Ray> rays, int threads,
+                         const std::function<std::optional<Ray>(const Ray&, std::size_t)>& make) {
+    std::vector<std::vector<Ray>> parts((rays.size() + kChunk - 1) / kChunk);
+    parallel_for(parts.size(), threads, [&](std::size_t part) {
+        std::vector<Ray> made;
+        for (std::size_t i = part * kChunk; i < std::min(rays.size(), (part + 1) * kChunk); ++i)
+            if (const std::optional<Ray> ray = make(rays[i], i)) made.push_back(*ray);
+        parts[part] = std::move(made);
+    });
+    std::vector<Ray> all;
+    for (const std::vector<Ray>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+/// The point that the ray hits first.
+std::optional<SurfacePoint> first_point(const KernelScene& scene, const raytrace::Accelerator& accelerator,
+                                        const Ray& ray) {
+    const Hit hit = accelerator.closest(ray);
+    if (!hit.valid()) return std::nullopt;
+    return surface_point(*scene.scene, ray, hit);
+}
+
+/// Two numbers in [0, 1) of a ray's own.
+Vec2 numbers(std::uint64_t seed, std::size_t index) {
+    const std::uint64_t bits = hash_combine(mix_bits(seed), index);
+    return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
+}
+
+} // namespace
+
+std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelOrder order, int threads) {
+    const CameraModel model({camera, width, height});
+    const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
+    std::vector<Ray> rays(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
+        const int y0 = static_cast<int>(row) * kTile;
+        auto next = static_cast<std::size_t>(y0) * static_cast<std::size_t>(width); // the rows of tiles above are full
+        for (int column = 0; column < columns; ++column) {
+            for (int i = 0; i < kTile * kTile; ++i) {
+                const auto [x_in_tile, y_in_tile] = place_in_tile(i, order);
+                const int x = column * kTile + x_in_tile, y = y0 + y_in_tile;
+                if (x < width && y < height) rays[next++] = model.ray({x + 0.5, y + 0.5});
+            }
+        }
+    });
+    return rays;
+}
+
+std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
+                             std::span<const Ray> rays, std::uint64_t seed, int threads) {
+    return collect(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
+        const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
+        if (!point) return std::nullopt;
+        const Vec3 n = dot(point->ng, ray.direction) > 0 ? -point->ng : point->ng;
+        const Vec3 w = normalize(frame_from_normal(n).to_world(cosine_hemisphere(numbers(seed, index))));
+        return Ray{offset_origin(*point, w), w};
+    });
+}
+
+std::vector<Ray> shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
+                             std::span<const Ray> rays, std::uint64_t seed, int threads) {
+    constexpr float kShort = 1 - 1e-4f;
+    return collect(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
+        const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
+        if (!point) return std::nullopt;
+        const Light& light = scene.lights[index % scene.lights.size()];
+        const std::optional<LightSample> s = sample_light(light, point->p, numbers(~seed, index));
+        if (!s) return std::nullopt;
+        const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side that is seen
+        if (!lit) return std::nullopt;
+        Ray shadow{offset_origin(*point, s->wi), s->wi};
+        shadow.t_max = s->distance * kShort;
+        return shadow;
+    });
+}
+
+} // namespace duet::compare

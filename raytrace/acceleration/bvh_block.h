@@ -1,0 +1,177 @@
+// Rays against the primitives of a leaf, many at once. The results are those of intersect_triangle, intersect_quad and
+// intersect_sphere, to the bit.
+#pragma once
+
+#include "common/geometry/quad.h"
+#include "common/geometry/sphere.h"
+#include "common/geometry/triangle.h"
+#include "raytrace/acceleration/bvh.h"
+
+#include <bit>
+
+namespace duet::raytrace {
+
+/// Triangles or quads against rays, a pair a lane. What intersect_triangle decides in double is left to it.
+template <typename Batch> class CandidateTest {
+public:
+    /// Of one ray and many polygons or the other way round; ends: of the rays.
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
+        test({ray, p[0], p[1], p[2]}, ends, 0);
+        first_ = ~0u;
+    }
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 4>& p, Batch ends) {
+        using Test = TriangleTest<Batch>;
+        const Vec3T<Batch> a = Test::sheared(ray, p[0]), b = Test::sheared(ray, p[1]), c = Test::sheared(ray, p[2]),
+                           d = Test::sheared(ray, p[3]);
+        const Batch ba = Test::edge(b, a), cb = Test::edge(c, b), dc = Test::edge(d, c), ad = Test::edge(a, d);
+        // The diagonal is an edge of both halves, abc and acd. So a ray meets at most one of them, unless it runs
+        // through the diagonal: then, and where rounding has folded the quad, intersect_quad has to say.
+        const Batch ac = Test::edge(a, c), ca = -ac;
+        const auto first = same_sign(cb, ac, ba), second = same_sign(dc, ad, ca);
+        const auto half = [&](const auto& in_first, const auto& in_second) { return select(first, in_first, in_second); };
+        test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ends, lane_bits(first & second));
+        if (candidates_ == 0) return;
+        first_ = lane_bits(first);
+        const Batch sum = xsimd::min(u_ + v_, Batch(1.0f));
+        u_ = half(sum, u_);
+        v_ = half(v_, sum);
+    }
+
+    /// The lanes with a hit before the end, a bit each: all of them, and hardly any other.
+    unsigned candidates() const { return candidates_; }
+    /// The candidates that are hit just as t, u and v say, if that is within the ray's range.
+    unsigned certain() const { return certain_ & candidates_; }
+    /// Those that are hit where u and v say, but so near to the ray's origin that plane_distance has to say how far:
+    /// most rays leave such a polygon. Of the rest intersect_triangle or intersect_quad has to say all.
+    unsigned touched() const { return touched_ & candidates_; }
+    /// Whether the lane's quad is hit in the first of its halves.
+    bool first_half(std::size_t lane) const { return (first_ >> lane & 1) != 0; }
+    Batch t() const { return t_; }
+    Batch u() const { return u_; }
+    Batch v() const { return v_; }
+
+private:
+    using Lanes = typename Batch::batch_bool_type;
+
+    static Lanes same_sign(Batch a, Batch b, Batch c) {
+        return (xsimd::min(xsimd::min(a, b), c) >= Batch(0.0f)) | (xsimd::max(xsimd::max(a, b), c) <= Batch(0.0f));
+    }
+
+    // unsure: lanes that are candidates whatever the triangle says.
+    [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, Batch ends, unsigned unsure) {
+        const Batch zero(0.0f);
+        const Batch low = xsimd::min(xsimd::min(test.e0, test.e1), test.e2);
+        const Batch high = xsimd::max(xsimd::max(test.e0, test.e1), test.e2);
+        candidates_ = lane_bits((low >= zero) | (high <= zero));
+        if (candidates_ == 0) return;
+        const Batch inv_det = Batch(1.0f) / test.det();
+        const Batch t = test.distance(inv_det), error = test.distance_error(inv_det);
+        unsure |= lane_bits(test.is_needle(inv_det));
+        const auto outside = (t < -error) | (t - error > ends); // and not NaN
+        candidates_ &= ~lane_bits(outside) | unsure;
+        if (candidates_ == 0) return;
+        const unsigned inside = lane_bits((low > zero) | (high < zero)) & ~unsure;
+        const unsigned apart = lane_bits(xsimd::abs(t) > error);
+        certain_ = inside & apart;
+        touched_ = inside & ~apart;
+        t_ = t;
+        u_ = test.e1 * inv_det;
+        v_ = test.e2 * inv_det;
+    }
+
+    unsigned candidates_, certain_ = 0, touched_ = 0, first_ = 0;
+    Batch t_, u_, v_;
+};
+
+/// The polygons of a block against one ray, all at once.
+template <std::size_t kCorners> class BlockTest : public CandidateTest<FloatBatch<kBlockSize>> {
+public:
+    [[gnu::always_inline]] BlockTest(const Shear<float>& ray, const PolygonBlock<kCorners>& block, float end)
+        : CandidateTest(ray, vertices(block, std::make_index_sequence<kCorners>()), Batch(end)) {}
+
+private:
+    using Batch = FloatBatch<kBlockSize>;
+    struct Vertex {
+        const std::array<BlockLanes<float>, 3>* axes;
+        Batch operator[](std::size_t axis) const { return Batch::load_aligned((*axes)[axis].data()); }
+    };
+    template <std::size_t... i>
+    static std::array<Vertex, kCorners> vertices(const PolygonBlock<kCorners>& block, std::index_sequence<i...>) {
+        return {Vertex{&block.corner[i]}...};
+    }
+};
+
+/// Where the ray hits one of the candidates before its end, if it does.
+inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane) {
+    const auto [a, b, c] = block.corners(lane);
+    return intersect_triangle(ray, a, b, c);
+}
+inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
+    return intersect_quad(ray, block.corners(lane));
+}
+/// The distance to a touched one.
+inline float plane_distance(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane, bool) {
+    const auto [a, b, c] = block.corners(lane);
+    return plane_distance(ray, a, b, c);
+}
+inline float plane_distance(const ShearedRay& ray, const QuadBlock& block, std::size_t lane, bool first_half) {
+    const auto [a, b, c, d] = block.corners(lane);
+    return first_half ? plane_distance(ray, a, b, c) : plane_distance(ray, a, c, d);
+}
+
+/// The spheres of a block against one ray, all at once: in double, as one by one.
+class SphereBlockTest {
+public:
+    [[gnu::always_inline]] SphereBlockTest(const Ray& ray, const SphereBlock& block, float end) {
+        if (sabotaged(Guard::kSphereRoots)) {
+            one_by_one(ray, block, end);
+            return;
+        }
+        alignas(32) BlockLanes<float> near, far;
+        unsigned met = 0;
+        for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
+            const auto along = [&](std::size_t axis) {
+                return load_doubles(block.center[axis].data() + i) - DoubleBatch(static_cast<double>(ray.origin[axis]));
+            };
+            const auto direction = [&](std::size_t axis) { return DoubleBatch(static_cast<double>(ray.direction[axis])); };
+            const SphereTest<DoubleBatch> test({along(0), along(1), along(2)}, {direction(0), direction(1), direction(2)},
+                                               load_doubles(block.radius.data() + i));
+            const unsigned these = lane_bits(test.discriminant >= DoubleBatch(0.0));
+            met |= these << i;
+            if (these == 0) continue;
+            const auto roots = test.roots();
+            store_floats(roots.near, near.data() + i);
+            store_floats(roots.far, far.data() + i);
+        }
+        hits_ = met;
+        if (met == 0) return;
+        const auto t_near = Batch::load_aligned(near.data()), t_far = Batch::load_aligned(far.data());
+        const Batch first(ray.t_min), last(end);
+        const auto near_counts = (t_near > first) & (t_near <= last), far_counts = (t_far > first) & (t_far <= last);
+        hits_ &= lane_bits(near_counts | far_counts);
+        xsimd::select(near_counts, t_near, t_far).store_aligned(t_.data());
+    }
+
+    unsigned hits() const { return hits_; } ///< the lanes with a hit in (t_min, end], a bit each
+    float t(std::size_t lane) const { return t_[lane]; }
+
+private:
+    using Batch = FloatBatch<kBlockSize>;
+
+    void one_by_one(Ray ray, const SphereBlock& block, float end) {
+        ray.t_max = end;
+        hits_ = 0;
+        for (std::size_t lane = 0; lane < kBlockSize; ++lane)
+            if (const auto t = intersect_sphere(ray, block.sphere(lane))) {
+                t_[lane] = *t;
+                hits_ |= 1u << lane;
+            }
+    }
+
+    unsigned hits_;
+    alignas(32) BlockLanes<float> t_;
+};
+
+} // namespace duet::raytrace

@@ -1,0 +1,109 @@
+// Rays against the primitives of leaves.
+#pragma once
+
+#include "common/geometry/hit.h"
+#include "raytrace/acceleration/bvh_block.h"
+
+namespace duet::raytrace {
+
+/// The order of hits along a ray: by distance, and at equal distance by (object, primitive).
+inline bool precedes(const Hit& a, const Hit& b) {
+    if (a.t != b.t || sabotaged(Guard::kTieOrder)) return a.t < b.t;
+    return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
+}
+
+/// Tests leaves against one ray. With kAny a test ends at the first hit that comes before the best and is not the
+/// best's own primitive. `instance(i, best)` is asked for instances' hits.
+template <bool kAny, typename Instance> class LeafTest {
+public:
+    /// object: of the primitives where it is not kNoObject (an instance's), else they name their own.
+    LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance)
+        : bvh_(bvh), ray_(ray), sheared_(ray), object_(object), instance_(instance) {}
+
+    bool found() const { return found_; } ///< whether any test has found a hit
+
+    /// Leaves in `best` what comes first of it and the leaf's hits. True where the search is over.
+    [[gnu::always_inline]] bool operator()(BvhRef leaf, Hit& best) {
+        if (leaf.kind() == PrimitiveKind::kTriangle) return polygons(bvh_.triangles[leaf.index()], best);
+        return others(leaf, best);
+    }
+
+private:
+    // Out of the way of a scene of triangles alone.
+    [[gnu::noinline]] bool others(BvhRef leaf, Hit& best) {
+        if (leaf.kind() == PrimitiveKind::kQuad) return polygons(bvh_.quads[leaf.index()], best);
+        if (leaf.kind() == PrimitiveKind::kSphere) return spheres(bvh_.spheres[leaf.index()], best);
+        if (!instance_(bvh_.instances[leaf.index()], best)) return false;
+        found_ = true;
+        return kAny;
+    }
+
+    template <std::size_t kCorners>
+    [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
+        const BlockTest<kCorners> test(sheared_.shear, block, best.t);
+        if (test.candidates() == 0) return false;
+        if constexpr (kAny) {
+            using Batch = FloatBatch<kBlockSize>;
+            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
+            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
+            }
+        }
+        const Lanes t(test.t()), u(test.u()), v(test.v());
+        for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            if (test.certain() >> lane & 1) {
+                if (!(t[lane] > sheared_.t_min && t[lane] <= best.t)) continue;
+                if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
+            } else if (test.touched() >> lane & 1) {
+                if (touched(block, lane, test.first_half(lane), u[lane], v[lane], best)) return true;
+            } else if (exactly(block, lane, best)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    template <typename Block>
+    [[gnu::noinline]] bool touched(const Block& block, std::size_t lane, bool first_half, float u, float v, Hit& best) {
+        const float t = plane_distance(sheared_, block, lane, first_half);
+        return t > sheared_.t_min && t <= best.t && consider(block, lane, {t, u, v}, best);
+    }
+    template <typename Block> [[gnu::noinline]] bool exactly(const Block& block, std::size_t lane, Hit& best) {
+        sheared_.t_max = best.t;
+        const auto hit = exact_hit(sheared_, block, lane);
+        return hit && consider(block, lane, *hit, best);
+    }
+
+    bool spheres(const SphereBlock& block, Hit& best) {
+        const SphereBlockTest test(ray_, block, best.t);
+        for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            if (consider({name(block.object[lane]), 0, 0, 0, test.t(lane)}, best)) return true;
+        }
+        return false;
+    }
+
+    template <typename Block>
+    bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
+        return consider({name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
+    }
+    bool consider(const Hit& hit, Hit& best) {
+        if (!precedes(hit, best)) return false;
+        if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;
+        found_ = true;
+        if (!kAny) best = hit;
+        return kAny;
+    }
+    std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
+
+    const Bvh& bvh_;
+    Ray ray_;
+    ShearedRay sheared_;
+    std::uint32_t object_;
+    const Instance& instance_;
+    bool found_ = false;
+};
+
+} // namespace duet::raytrace

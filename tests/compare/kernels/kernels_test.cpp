@@ -1,0 +1,253 @@
+#include "compare/kernels/interleave.h"
+#include "compare/kernels/kernels.h"
+#include "compare/kernels/measure_kernels.h"
+#include "compare/kernels/ray_sets.h"
+#include "compare/kernels/watertight.h"
+#include "compare/stress/stage.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+using namespace duet;
+using namespace duet::compare;
+
+namespace {
+
+Camera outside_camera() {
+    Camera camera;
+    camera.eye = {2, 1.5, 3};
+    return camera;
+}
+
+KernelScene lump(Arrangement arrangement, int levels = 3) {
+    Mesh mesh = ball(levels, 0.1f);
+    if (arrangement == Arrangement::kRoom) mesh = enclosed(std::move(mesh), Vec3(), 4);
+    return make_kernel_scene("lump", arrangement, std::move(mesh), outside_camera());
+}
+
+TracerFor ours_for(const raytrace::Accelerator& accelerator) {
+    return [&](std::span<const Ray> rays) { return our_closest(accelerator, rays); };
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+    TEST_CASE("ranges") {
+        CHECK(range_of({3}).median == 3);
+        const Range range = range_of({4, 1, 3, 8});
+        CHECK(range.min == 1);
+        CHECK(range.median == 3.5);
+        CHECK(range.max == 8);
+    }
+
+    TEST_CASE("ours runs beside every peer's measurement, and ratios are of neighbours") {
+        std::string order;
+        double pace = 1; // the machine grows slower: ratios must not notice much
+        const auto timed = [&](char name, double seconds) -> Timed {
+            return [&order, &pace, name, seconds] {
+                order += name;
+                pace *= 1.01;
+                return seconds * pace;
+            };
+        };
+        const Interleaved found =
+            interleave(timed('o', 2), {timed('a', 4), timed('b', 1), timed('c', 6)}, 5, 1e9, Control{});
+        CHECK(order.substr(0, 12) == "oabocoaboco" + std::string("a"));
+        CHECK(found.repeats == 5);
+        REQUIRE(found.peers.size() == 3);
+        CHECK(found.peers[0].ratio.median == doctest::Approx(2).epsilon(0.011));
+        CHECK(found.peers[1].ratio.median == doctest::Approx(0.5).epsilon(0.011));
+        CHECK(found.peers[2].ratio.median == doctest::Approx(3).epsilon(0.011));
+        CHECK(interleave(timed('o', 1), {timed('a', 1)}, 10, 0, Control{}).repeats == 3); // time was up: three still
+        CHECK(interleave(timed('o', 1), {}, 4, 1e9, Control{}).peers.empty());
+    }
+
+    TEST_CASE("a portion is whole groups, spread over the set, of about the length asked for") {
+        constexpr std::size_t kGroupRays = kBlock * Portion::kGroup;
+        for (const std::size_t rays : {std::size_t{1}, kGroupRays - 1, kGroupRays, 100 * kGroupRays + 17}) {
+            const Portion all = portion_of(rays, 1e9, 1e-3 * static_cast<double>(rays) / 1e6);
+            CHECK(all.rays == rays);
+            const std::size_t groups = (rays + kGroupRays - 1) / kGroupRays;
+            CHECK(std::set(all.groups.begin(), all.groups.end()).size() == groups);
+            CHECK(portion_of(rays, 1e6, 10 * static_cast<double>(groups * kGroupRays) / 1e6).passes == 10);
+        }
+        const Portion tenth = portion_of(1000 * kGroupRays, 1e6, 0.1 * static_cast<double>(kGroupRays) / 1e3);
+        CHECK(tenth.passes == 1);
+        CHECK(tenth.rays == 100 * kGroupRays);
+        CHECK(tenth.groups.front() == 0);
+        CHECK(tenth.groups.back() == 990);
+        CHECK(portion_of(0, 1e6, 1).groups.empty());
+    }
+
+    TEST_CASE("one by one, in bulk and in any number of threads the answers are the same") {
+        const KernelScene scene = lump(Arrangement::kRoom);
+        const raytrace::Accelerator accelerator(*scene.scene, 1);
+        const auto rays = camera_rays(scene.camera, 70, 50, PixelOrder::kZCurve, 1);
+        const auto one = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+        REQUIRE(one.size() == rays.size());
+        for (const auto& other : {all_answers(our_closest(accelerator, rays), rays.size(), 3),
+                                  all_answers(our_bulk(accelerator, rays), rays.size(), 1)})
+            CHECK(std::ranges::equal(
+                one, other, [](const Answer& a, const Answer& b) { return a.t == b.t && a.triangle == b.triangle; }));
+    }
+
+    TEST_CASE("points inside lie inside; a closed mesh lets no ray out, one with a hole does") {
+        const KernelScene scene = lump(Arrangement::kAlone);
+        REQUIRE(scene.triangles().closed);
+        const Judge judge(*scene.scene);
+        for (const Vec3& p : points_inside(scene, judge, 200, 1)) REQUIRE(length(p) < 1.1f);
+        const raytrace::Accelerator accelerator(*scene.scene, 1);
+        const Watertight tight = test_watertight(scene, judge, {ours_for(accelerator)}, 100'000, 0, 2, Control{});
+        CHECK(tight.rays == 100'000);
+        CHECK(tight.misses == std::vector<std::int64_t>{0});
+
+        Mesh holed = scene.triangles();
+        holed.triangles.pop_back();
+        const KernelScene leaky = make_kernel_scene("holed", Arrangement::kAlone, holed, scene.camera);
+        REQUIRE_FALSE(leaky.triangles().closed);
+        const raytrace::Accelerator other(*leaky.scene, 1);
+        const TracerFor plant = [&](std::span<const Ray> rays) { return our_closest(other, rays); };
+        const std::int64_t found = test_watertight(scene, judge, {plant}, 100'000, 0, 2, Control{}).misses.front();
+        CHECK(found > 10); // one of 1280 triangles
+        CHECK(found < 1000);
+    }
+
+    TEST_CASE("the JSON has a row for each work and number of threads, with the keys of the design") {
+        for (const Arrangement arrangement : {Arrangement::kAlone, Arrangement::kRoom}) {
+            const KernelScene scene = lump(arrangement);
+            MeasureKernels settings;
+            settings.works = kWorks;
+            if (!embree_version().empty()) settings.peers = {{false, false}, {true, true}};
+            settings.size = {64, 48};
+            settings.threads = 2;
+            settings.repeats = 1;
+            settings.seconds = 1e-3;
+            settings.watertight = 5000;
+            const KernelTable table = measure_kernels(scene, settings, Control{});
+            std::set<std::pair<std::string, int>> seen;
+            const bool peer = !settings.peers.empty();
+            for (const nlohmann::json& row : rows_json(table)) {
+                CAPTURE(row.dump());
+                seen.insert({row.at("work").get<std::string>(), row.at("threads").get<int>()});
+                CHECK(row.at("mesh") == "lump");
+                CHECK(row.at("scene") == name_of(arrangement));
+                CHECK(row.at("triangles") == (arrangement == Arrangement::kRoom ? 1292 : 1280));
+                CHECK(row.at("ours").get<double>() > 0);
+                CHECK(row.at("peer").is_number() == peer);
+                CHECK(row.at("peer_name").is_string() == peer);
+                if (!peer) continue;
+                const auto& ratio = row.at("ratio");
+                CHECK(ratio.at("min").get<double>() > 0);
+                CHECK(ratio.at("min") <= ratio.at("median"));
+                CHECK(ratio.at("median") <= ratio.at("max"));
+                if (row.contains("mismatches")) {
+                    CHECK(row["mismatches"].at("ours_wrong") == 0);
+                    CHECK(row["mismatches"].at("rays").get<int>() > 0);
+                }
+                if (row.contains("leaks")) CHECK(row["leaks"].at("ours") == 0);
+            }
+            for (const std::string& work : kWorks)
+                for (const int threads : {1, 2}) CHECK(seen.count({work, threads}) == 1);
+            CHECK(seen.count({"memory", 2}) == 1);
+            CHECK(watertight_json(table).empty() == (arrangement == Arrangement::kRoom));
+            for (const nlohmann::json& judged : judged_json(table)) {
+                CHECK(judged.at("rays").get<int>() > 0);
+                CHECK(judged.at("wrong") == 0);
+            }
+            CHECK(table.judged.size() == 4);
+            CHECK(faults(table).empty());
+        }
+    }
+
+    TEST_CASE("faults are reported: wrong answers, leaks, misses") {
+        KernelTable table;
+        CHECK(faults(table).empty());
+        table.our_leaks = 1;
+        table.watertight = {{"duet", 10, 2}, {"embree", 10, 5}};
+        KernelRow row;
+        row.mismatches = Mismatches{10, 0, 0, 1, 1, 0};
+        table.rows = {row};
+        CHECK(faults(table).size() == 3);
+        table.judged = {{"bounce", {100, 1}}};
+        CHECK(faults(table).size() == 4);
+        table.judged.clear();
+        table.watertight.front().misses = 0;
+        table.rows.front().mismatches->ours_wrong = 0;
+        CHECK(faults(table).size() == 1);
+    }
+
+    TEST_CASE("the best of the peer's settings: the highest rate, the shortest build, the least memory") {
+        std::vector<KernelRow> rows(6);
+        const std::array<const char*, 6> works{"bounce", "bounce", "build", "build", "memory", "memory"};
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            rows[i].work = works[i];
+            rows[i].peer_name = "peer";
+            rows[i].peer = 1.0 + static_cast<double>(i % 2);
+        }
+        mark_best(rows);
+        CHECK_FALSE(rows[0].best);
+        CHECK(rows[1].best);
+        CHECK(rows[2].best);
+        CHECK_FALSE(rows[3].best);
+        CHECK(rows[4].best);
+        CHECK_FALSE(rows[5].best);
+        rows[4].peer = rows[5].peer; // of equals the first
+        mark_best(rows);
+        CHECK(rows[4].best);
+        CHECK_FALSE(rows[5].best);
+        CHECK(verdict({1.01, 1.1, 1.2}) == "ahead");
+        CHECK(verdict({0.9, 1.1, 1.2}) == "even");
+        CHECK(verdict({0.8, 0.9, 0.99}) == "behind");
+    }
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    TEST_CASE("the accelerator's account of its memory is what it has allocated") {
+        const KernelScene scene = lump(Arrangement::kAlone, 6); // 81,920 triangles
+        const auto allocated = [] {
+            const struct mallinfo2 info = mallinfo2();
+            return static_cast<double>(info.uordblks + info.hblkhd);
+        };
+        const double before = allocated();
+        const raytrace::Accelerator accelerator(*scene.scene, 1);
+        const double grown = allocated() - before;
+        // Two arrays may each be rounded up to, and aligned within, large pages.
+        CHECK(grown < 1.02 * static_cast<double>(accelerator.memory_bytes()) + 4 * (2 << 20));
+        CHECK(grown > 0.98 * static_cast<double>(accelerator.memory_bytes()));
+    }
+#endif
+
+    TEST_CASE("Embree's answers are ours but for ties and edges, one by one and in packets" *
+              doctest::skip(embree_version().empty())) {
+        const KernelScene scene = lump(Arrangement::kRoom, 4);
+        const raytrace::Accelerator accelerator(*scene.scene, 1);
+        const Judge judge(*scene.scene);
+        const EmbreeDevice device(scene.triangles(), 1);
+        const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kZCurve, 1);
+        const auto bounce = bounce_rays(scene, accelerator, camera, 0, 1);
+        const auto shadow = shadow_rays(scene, accelerator, camera, 0, 1);
+        for (const bool robust : {false, true})
+            for (const bool high : {false, true}) {
+                const EmbreeScene embree(device, {high, robust});
+                CHECK(embree.memory_bytes() > 20 * std::ssize(scene.triangles().triangles));
+                CHECK(embree.memory_bytes() < 400 * std::ssize(scene.triangles().triangles));
+                for (const std::vector<Ray>& rays : {camera, bounce}) {
+                    const auto ours = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+                    for (const int width : {1, 8, 16}) {
+                        const auto theirs = all_answers(embree.closest(rays, width, true), rays.size(), 1);
+                        const Mismatches found = compare_answers(judge, Question::kClosest, rays, ours, theirs, 1);
+                        CHECK(found.unexplained == 0);
+                        CHECK(found.differ() < 100);
+                    }
+                }
+                const auto ours = all_answers(our_occluded(accelerator, shadow), shadow.size(), 1);
+                const auto theirs = all_answers(embree.occluded(shadow), shadow.size(), 1);
+                CHECK(compare_answers(judge, Question::kOccluded, shadow, ours, theirs, 1).unexplained == 0);
+            }
+    }
+}
