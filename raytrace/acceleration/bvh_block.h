@@ -5,6 +5,7 @@
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
+#include "common/system/sabotage.h"
 #include "raytrace/acceleration/bvh.h"
 
 #include <bit>
@@ -77,7 +78,7 @@ private:
         const unsigned inside = lane_bits((low > zero) | (high < zero)) & ~unsure;
         const unsigned apart = lane_bits(xsimd::abs(t) > error);
         certain_ = inside & apart;
-        touched_ = inside & ~apart;
+        touched_ = sabotaged(Guard::kPlaneDistance) ? 0 : inside & ~apart;
         t_ = t;
         u_ = test.e1 * inv_det;
         v_ = test.e2 * inv_det;
