@@ -25,7 +25,7 @@ template <typename T> struct HugePageAllocator {
         constexpr std::size_t kPage = std::size_t{2} << 20;
         const std::size_t bytes = count * sizeof(T);
         const std::size_t alignment = bytes >= 2 * kPage ? kPage : std::size_t{64};
-        void* memory = std::aligned_alloc(alignment, (bytes + 63) / 64 * 64);
+        void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
         if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
         if (alignment == kPage) madvise(memory, bytes, MADV_HUGEPAGE); // advice: a refusal changes nothing
