@@ -10,15 +10,16 @@
 
 namespace duet::raytrace {
 
-std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t done, double seconds, const Film& film) {
+std::optional<SampleRange> next_pass(const Settings& settings, SampleRange range, double seconds, const Film& film) {
     const auto asked = static_cast<std::uint32_t>(settings.samples_per_pixel);
+    const std::uint32_t done = range.last;
     if (done >= asked) return std::nullopt;
     const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
     if (!limited) return SampleRange{done, std::min(done + 16, asked)};
     // Even counts: both replicates grow alike.
     const std::uint32_t count = std::min(std::clamp(done / 4 & ~1u, 2u, 32u), asked - done);
-    if (done > 0 && settings.time_limit > 0) {
-        const double expected = seconds / done * count;
+    if (done > range.first && settings.time_limit > 0) {
+        const double expected = seconds / (done - range.first) * count;
         if (seconds + expected / 2 > settings.time_limit) return std::nullopt;
     }
     // A first few samples that all miss the lights look converged: the estimate is asked from kMinForError samples on.
@@ -92,7 +93,7 @@ public:
         for (std::size_t i = 0; i < size_; ++i) {
             const auto [x, y, index] = samples_[i];
             sampler_.start(x, y, index);
-            target_.film.add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler_, counts_));
+            target_.keeper.film().add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler_, counts_));
             if (target_.aovs.any()) target_.aovs.add(x, y, index, rays_[i], hits_[i]);
         }
         counts_.camera += static_cast<std::int64_t>(size_);
@@ -131,7 +132,8 @@ RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const
     for (unsigned code = 0; code < kTile * kTile; ++code) { // along a Z-curve: pixels near in order are near
         const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
         if (x >= tile.x1 || y >= tile.y1) continue;
-        for (std::uint32_t index = range.first; index < range.last; ++index) batch.add(x, y, index);
+        for (std::uint32_t index = target.keeper.film().taken(x, y); index < range.last; ++index)
+            batch.add(x, y, target.settings.first_sample + index);
     }
     batch.finish();
     return batch.counts();
@@ -150,7 +152,8 @@ bool render_pass(const PassTarget& target, SampleRange range, double begin, doub
             complete = false;
             return;
         }
-        const RayCounts counts = render_tile(target, camera, tiles[i], range);
+        RayCounts counts;
+        target.keeper.add([&] { counts = render_tile(target, camera, tiles[i], range); });
         const std::lock_guard lock(mutex);
         target.counts += counts;
         target.control.report(lerp(begin, end, static_cast<double>(++finished) / static_cast<double>(tiles.count())));

@@ -1,15 +1,48 @@
 // raytrace SCENE -o OUT: renders a scene by sending rays from the pixels into it.
 #include "common/program/render_program.h"
+#include "common/system/error.h"
+#include "common/system/file.h"
+#include "raytrace/merge.h"
 #include "raytrace/render.h"
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
+
+namespace {
+
+using namespace duet;
+
+// "A:B" → first_sample and samples_per_pixel.
+void set_samples(const std::string& text, raytrace::Settings& settings) {
+    std::uint32_t first = 0, last = 0;
+    const char* const end = text.data() + text.size();
+    const auto a = std::from_chars(text.data(), end, first);
+    const bool colon = a.ec == std::errc() && a.ptr != end && *a.ptr == ':';
+    const auto b = std::from_chars(colon ? a.ptr + 1 : end, end, last);
+    if (!colon || b.ec != std::errc() || b.ptr != end || first >= last || last > 1u << 24)
+        throw Error(message("--samples: found ", text, ", expected FIRST:END such as 0:128, FIRST below END, END at most ",
+                            1 << 24));
+    settings.first_sample = first;
+    settings.samples_per_pixel = static_cast<int>(last - first);
+}
+
+} // namespace
+
 int main(int argc, char** argv) {
-    using namespace duet;
-    std::string integrator_name = "path", sampler = "sobol", bvh = "default";
+    if (argc > 1 && std::string_view(argv[1]) == "merge") return raytrace::run_merge(argc - 1, argv + 1);
+    std::string integrator_name = "path", sampler = "sobol", bvh = "default", film, samples;
     raytrace::Settings settings;
     bool no_environment = false;
     RenderProgram program;
+    program.check = [&](const OutputOptions& output) {
+        if (film.empty()) return;
+        if (output.frames > 0) throw Error("--film: keeps one picture, cannot go with --orbit");
+        if (lower_case_ending(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
+        if (film == output.path) throw Error("--film: is the picture's own file, expected another");
+        const auto folder = std::filesystem::absolute(film).parent_path();
+        if (!std::filesystem::is_directory(folder)) throw Error(message("--film: no folder ", folder.string()));
+    };
     program.name = "raytrace";
     program.description = "Renders a scene with the path tracer.";
     program.example = "raytrace models/cornell.json -o cornell.png --spp 256";
@@ -30,6 +63,14 @@ int main(int argc, char** argv) {
             ->check(CLI::PositiveNumber);
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(CLI::PositiveNumber);
+        auto* const film_option = app.add_option(
+            "--film", film,
+            "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
+            "from there, to the same bits as one run. `raytrace merge` joins films");
+        app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
+            ->check(CLI::NonNegativeNumber)
+            ->needs(film_option);
+        app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
         app.add_option("--bvh", bvh,
                        "Quality of the hierarchies that rays search: default, or high (long to build; faster to search "
                        "where triangles are long or overlap; the same picture)");
@@ -39,6 +80,11 @@ int main(int argc, char** argv) {
         const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(limited ? 1 << 24 : 64);
+        if (!samples.empty()) {
+            if (spp) throw Error("--samples: cannot go with --spp: the range says how many");
+            set_samples(samples, settings);
+        }
+        settings.film = film;
         settings.integrator = raytrace::integrator(integrator_name);
         settings.sampler = sampler_kind(sampler);
         settings.bvh = raytrace::bvh_quality(bvh);

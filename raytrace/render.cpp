@@ -2,6 +2,7 @@
 
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
+#include "raytrace/film_keeper.h"
 #include "raytrace/pass.h"
 
 #include <algorithm>
@@ -15,6 +16,11 @@ void check(const View& view, const Settings& settings) {
         throw Error(message("picture of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
     if (settings.samples_per_pixel < 1)
         throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
+    if (!settings.film.empty() &&
+        (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
+        throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary pictures with it");
+    if (settings.first_sample > 0 && settings.sampler == SamplerKind::kStratified)
+        throw Error("samples of the stratified sampler are not taken in parts: expected another sampler");
     if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
 }
 
@@ -34,17 +40,19 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     check(view, settings);
     Stopwatch watch;
     const RenderPlan plan(prepared.data(), view, settings);
-    Film film(view.width, view.height);
+    FilmKeeper keeper(plan.scene, view, settings);
+    Film& film = keeper.film();
     AovBuffers aovs(plan.scene, view, settings.aovs);
     RayCounts rays;
-    const PassTarget target{plan, view, settings, control, film, aovs, rays};
+    const PassTarget target{plan, view, settings, control, keeper, aovs, rays};
 
     Rendering rendering;
     RenderStatistics& statistics = rendering.statistics;
-    std::uint32_t done = 0;
+    std::uint32_t done = film.least_taken();
+    const std::uint32_t begun = done;
     double progress = 0;
-    while (const auto range = next_pass(settings, done, watch.seconds(), film)) {
-        const double after = done > 0 ? watch.seconds() * range->last / done : 0;
+    while (const auto range = next_pass(settings, {begun, done}, watch.seconds(), film)) {
+        const double after = done > begun ? watch.seconds() * (range->last - begun) / (done - begun) : 0;
         const double next = std::max(progress, fraction_done(settings, range->last, after));
         if (!render_pass(target, *range, progress, next)) {
             statistics.interrupted = true;
@@ -55,6 +63,10 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
         ++statistics.passes;
     }
     statistics.seconds.emplace_back("trace", watch.lap());
+    if (!settings.film.empty()) {
+        keeper.keep();
+        statistics.seconds.emplace_back("film", watch.lap());
+    }
 
     rendering.radiance = film.image();
     aovs.finish(film, rendering);

@@ -8,6 +8,7 @@
 #include "common/system/control.h"
 #include "raytrace/acceleration/bvh_quality.h"
 
+#include <filesystem>
 #include <memory>
 #include <string_view>
 
@@ -32,6 +33,7 @@ enum class Integrator {
 /// "path", "naive", "direct", "unshadowed", "lights", "environment", "reflection", "normal", "albedo"; throws Error for
 /// another name.
 Integrator integrator(std::string_view name);
+std::string_view integrator_name(Integrator integrator);
 
 struct Settings : RenderSettings {
     Settings() { samples_per_pixel = 64; }
@@ -41,6 +43,9 @@ struct Settings : RenderSettings {
     bool russian_roulette = true;
     BvhQuality bvh = BvhQuality::kDefault; ///< for prepare(): of the hierarchies; no bit of the picture depends on it
     bool environment = true; ///< as raster::Settings::environment
+    std::uint32_t first_sample = 0; ///< samples first_sample … first_sample + samples_per_pixel − 1: a shard of more
+    std::filesystem::path film;     ///< keeps the film, and is continued where it exists (film_keeper.h); empty: none
+    double film_interval = 60;      ///< seconds between two writings of it
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
     double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
 };
@@ -58,7 +63,8 @@ private:
 };
 
 Prepared prepare(const Scene& scene, const Settings& settings);
-/// One picture. Stopped by `control`, it returns the mean of the samples taken so far.
+/// One picture. Stopped by `control`, it returns the mean of the samples taken so far. With Settings::film it goes on from
+/// there, to the same bits as in one go, and throws Error for one of another picture, or that cannot be written.
 Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
 
 /// The first hit of one ray: what the oracles and tests of hits ask for. Bit-equal to what render's camera rays get.

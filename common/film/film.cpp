@@ -39,6 +39,15 @@ Rgbd Film::variance(int x, int y) const {
 
 std::uint32_t Film::samples(int x, int y) const { return pixels_(x, y).count[0] + pixels_(x, y).count[1]; }
 
+std::uint32_t Film::taken(int x, int y) const { return samples(x, y) + invalid(x, y); }
+
+std::uint32_t Film::least_taken() const {
+    std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) least = min(least, taken(x, y));
+    return least;
+}
+
 ImageRgb Film::image() const {
     ImageRgb image(width(), height());
     for (int y = 0; y < height(); ++y)

@@ -24,6 +24,10 @@ public:
     int height() const { return pixels_.height(); }
     /// Mean of all samples of a pixel; black where there is none.
     Rgbd mean(int x, int y) const;
+    /// Samples that were added or dropped: the next one's number, where they are taken in order.
+    std::uint32_t taken(int x, int y) const;
+    /// The fewest taken of any pixel.
+    std::uint32_t least_taken() const;
     /// Estimated variance of that mean, by channel; infinity where a replicate has no sample.
     Rgbd variance(int x, int y) const;
     std::uint32_t samples(int x, int y) const;
@@ -37,12 +41,16 @@ public:
     /// than half.
     double estimated_relmse() const;
 
-private:
+    /// What a pixel keeps.
     struct Pixel {
         std::array<Rgbd, kReplicates> sum{};
         std::array<std::uint32_t, kReplicates> count{};
         std::uint32_t invalid = 0;
     };
+    const Image<Pixel>& pixels() const { return pixels_; }
+    Image<Pixel>& pixels() { return pixels_; }
+
+private:
     Image<Pixel> pixels_;
 };
 

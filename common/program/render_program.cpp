@@ -82,6 +82,7 @@ void print_summary(const RenderContext& context, const Rendering& rendering, con
 
 int render_all(const RenderProgram& program, const Options& options) {
     check_output(options);
+    if (program.check) program.check({options.output, options.orbit});
     RenderSettings settings;
     settings.threads = options.threads;
     settings.seed = options.seed;

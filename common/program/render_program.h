@@ -20,12 +20,20 @@ namespace duet {
 /// One prepared scene, ready for any number of views.
 using RenderFunction = std::function<Rendering(const View&, Control&)>;
 
+/// Where the pictures go.
+struct OutputOptions {
+    std::string path;
+    int frames = 0; ///< of an orbit; 0: a single picture
+};
+
 /// What a pipeline adds to the common program.
 struct RenderProgram {
     std::string name, description, example;
     std::string spp_help; ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
     std::function<void(CLI::App&)> add_options;
+    /// Throws Error for options of its own that cannot be used, before anything is loaded; may be empty.
+    std::function<void(const OutputOptions&)> check;
     /// Prepares the scene; `settings` are the common options, `spp` is empty where --spp was not given.
     std::function<RenderFunction(const Scene&, const RenderSettings& settings, std::optional<int> spp)> prepare;
 };

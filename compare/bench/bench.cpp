@@ -2,6 +2,7 @@
 
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "common/scene/scene_hash.h"
 #include "common/system/file.h"
 #include "common/system/parallel.h"
 #include "compare/bench/bench_report.h"

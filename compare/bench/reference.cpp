@@ -1,13 +1,11 @@
 #include "compare/bench/reference.h"
 
 #include "common/image/image_file.h"
-#include "common/sampling/hash.h"
-#include "common/system/file.h"
+#include "common/sampling/digest.h"
+#include "common/system/error.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
 namespace duet::compare {
 
@@ -16,23 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKeyAttribute = "duet:reference";
-
-/// A hash of bytes: their number, then eight at a time.
-std::uint64_t hash_bytes(std::uint64_t state, std::string_view bytes) {
-    state = hash_combine(state, bytes.size());
-    for (std::size_t at = 0; at < bytes.size(); at += 8) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, bytes.data() + at, std::min<std::size_t>(8, bytes.size() - at));
-        state = hash_combine(state, word);
-    }
-    return state;
-}
-
-std::string hexadecimal(std::uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
 
 /// The picture of three channels of a file; empty where one is missing.
 ImageRgb picture(const ExrFile& file, const std::string& prefix) {
@@ -58,12 +39,6 @@ double Reference::mse() const {
 std::string ReferenceKey::text() const {
     return message("scene ", scene_hash, ", estimator ", estimator, " ", version, ", ", width, "x", height, ", depth ",
                    depth, ", ", spp, " samples a pixel", program.empty() ? "" : ", by ", program);
-}
-
-std::string hash_scene_files(const Scene& scene) {
-    std::uint64_t state = hash_combine(0, scene.files.size());
-    for (const fs::path& file : scene.files) state = hash_bytes(state, read_file(file));
-    return hexadecimal(state);
 }
 
 fs::path default_reference_folder() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "common/image/image.h"
-#include "common/scene/scene.h"
 
 #include <filesystem>
 #include <optional>
@@ -32,10 +31,6 @@ struct ReferenceKey {
     /// All of it in one line, which the file keeps.
     std::string text() const;
 };
-
-/// 64 bits, as 16 hexadecimal digits, of the bytes of Scene::files in order. Where a file lies and what it is called
-/// does not matter. Throws Error for a file that can no longer be read.
-std::string hash_scene_files(const Scene& scene);
 
 /// $XDG_CACHE_HOME/duet/references, ~/.cache/duet/references, or below the system's temporary folder where neither
 /// variable is set.

@@ -1,6 +1,7 @@
 #include "compare/bench/render_reference.h"
 
 #include "common/sampling/hash.h"
+#include "common/scene/scene_hash.h"
 #include "raytrace/render.h"
 
 #include <algorithm>

@@ -7,21 +7,33 @@
 
 namespace duet::raytrace {
 
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Integrator>, 9> kNames{{{"path", Integrator::kPath},
+                                                                         {"naive", Integrator::kNaive},
+                                                                         {"direct", Integrator::kDirect},
+                                                                         {"unshadowed", Integrator::kUnshadowed},
+                                                                         {"lights", Integrator::kLights},
+                                                                         {"environment", Integrator::kEnvironment},
+                                                                         {"reflection", Integrator::kReflection},
+                                                                         {"normal", Integrator::kNormal},
+                                                                         {"albedo", Integrator::kAlbedo}}};
+
+} // namespace
+
 Integrator integrator(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, Integrator>, 9> kNames{{{"path", Integrator::kPath},
-                                                                             {"naive", Integrator::kNaive},
-                                                                             {"direct", Integrator::kDirect},
-                                                                             {"unshadowed", Integrator::kUnshadowed},
-                                                                             {"lights", Integrator::kLights},
-                                                                             {"environment", Integrator::kEnvironment},
-                                                                             {"reflection", Integrator::kReflection},
-                                                                             {"normal", Integrator::kNormal},
-                                                                             {"albedo", Integrator::kAlbedo}}};
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
                         "': expected path, naive, direct, unshadowed, lights, environment, "
                         "reflection, normal or albedo"));
+}
+
+std::string_view integrator_name(Integrator integrator) {
+    for (const auto& [name, value] : kNames)
+        if (value == integrator) return name;
+    DUET_CHECK(!"an integrator without a name");
+    return {};
 }
 
 RadianceFunction radiance_function(Integrator integrator) {

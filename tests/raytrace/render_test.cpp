@@ -84,22 +84,22 @@ TEST_SUITE("unit") {
         Settings settings;
         settings.samples_per_pixel = 100;
         Film film(1, 1);
-        CHECK(next_pass(settings, 96, 0, film)->last == 100);
-        CHECK(!next_pass(settings, 100, 0, film));
+        CHECK(next_pass(settings, {0, 96}, 0, film)->last == 100);
+        CHECK(!next_pass(settings, {0, 100}, 0, film));
         settings.samples_per_pixel = 1000000;
         settings.time_limit = 10;
-        CHECK(next_pass(settings, 0, 0, film)->last == 2);
-        CHECK(next_pass(settings, 64, 1, film)->last == 80);
-        CHECK(next_pass(settings, 4096, 1, film)->last == 4096 + 32);
-        CHECK(next_pass(settings, 100, 8.9, film));  // 24 more would end at 11.04: nearer to the limit than stopping
-        CHECK(!next_pass(settings, 100, 9.5, film)); // these would end at 11.78, farther beyond than this is before
+        CHECK(next_pass(settings, {0, 0}, 0, film)->last == 2);
+        CHECK(next_pass(settings, {0, 64}, 1, film)->last == 80);
+        CHECK(next_pass(settings, {0, 4096}, 1, film)->last == 4096 + 32);
+        CHECK(next_pass(settings, {0, 100}, 8.9, film));  // 24 more would end at 11.04: nearer to the limit than stopping
+        CHECK(!next_pass(settings, {0, 100}, 9.5, film)); // these would end at 11.78, farther beyond than this is before
         settings.time_limit = 0;
         settings.error_limit = 0.01;
         film.add(0, 0, 0, Rgb(1.0f));
-        CHECK(next_pass(settings, 1, 0, film)); // the error is not known yet
+        CHECK(next_pass(settings, {0, 1}, 0, film)); // the error is not known yet
         film.add(0, 0, 1, Rgb(1.0f));
-        CHECK(next_pass(settings, 2, 0, film)); // two equal samples are no proof yet
-        CHECK(!next_pass(settings, 16, 0, film));
+        CHECK(next_pass(settings, {0, 2}, 0, film)); // two equal samples are no proof yet
+        CHECK(!next_pass(settings, {0, 16}, 0, film));
     }
 
     TEST_CASE("a limit of time or error ends the render between passes") {

@@ -1,6 +1,7 @@
 #include "compare/bench/bench.h"
 
 #include "common/image/image_file.h"
+#include "common/scene/scene_hash.h"
 #include "common/system/file.h"
 #include "compare/bench/baseline.h"
 #include "compare/bench/bench_report.h"

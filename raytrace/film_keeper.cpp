@@ -1,0 +1,95 @@
+#include "raytrace/film_keeper.h"
+
+#include "common/sampling/digest.h"
+#include "common/scene/scene_hash.h"
+#include "common/system/error.h"
+
+#include <bit>
+
+namespace duet::raytrace {
+
+namespace {
+
+std::string camera_hash(const Camera& camera) {
+    const double numbers[] = {static_cast<double>(camera.projection),
+                              camera.eye.x,
+                              camera.eye.y,
+                              camera.eye.z,
+                              camera.look_at.x,
+                              camera.look_at.y,
+                              camera.look_at.z,
+                              camera.up.x,
+                              camera.up.y,
+                              camera.up.z,
+                              camera.fov_degrees,
+                              camera.height,
+                              camera.near,
+                              camera.aperture_radius,
+                              camera.focus_distance,
+                              camera.shutter_open,
+                              camera.shutter_close};
+    return hexadecimal(hash_bytes(0, {reinterpret_cast<const char*>(numbers), sizeof numbers}));
+}
+
+// A film as the file has it, if there is one, else an empty one.
+KeptFilm opened(const Scene& scene, const View& view, const Settings& settings) {
+    KeptFilm fresh{Film(view.width, view.height), {}, settings.first_sample};
+    if (settings.film.empty()) return fresh;
+    fresh.settings = film_settings(scene, view, settings);
+    if (!std::filesystem::exists(settings.film)) return fresh;
+    KeptFilm kept = read_film(settings.film);
+    const std::string name = settings.film.string();
+    if (kept.film.width() != view.width || kept.film.height() != view.height)
+        throw Error(message(name, ": a film of another picture: size: found ", kept.film.width(), " x ",
+                            kept.film.height(), ", expected ", view.width, " x ", view.height));
+    check_same_settings(name, kept.settings, fresh.settings);
+    if (kept.first_sample != settings.first_sample)
+        throw Error(message(name, ": a film of samples from ", kept.first_sample, " on, expected from ",
+                            settings.first_sample, " on"));
+    return kept;
+}
+
+} // namespace
+
+std::vector<KeptFilm::Setting> film_settings(const Scene& scene, const View& view, const Settings& settings) {
+    std::vector<KeptFilm::Setting> all{
+        {"scene", hash_scene_files(scene)},
+        {"camera", camera_hash(view.camera)},
+        {"program", message("raytrace ", DUET_VERSION, ", estimators ", kEstimatorVersion)},
+        {"integrator", std::string(integrator_name(settings.integrator))},
+        {"depth", std::to_string(settings.max_depth)},
+        {"roulette", settings.russian_roulette ? "yes" : "no"},
+        {"environment", settings.environment ? "yes" : "no"},
+        {"sampler", std::string(sampler_name(settings.sampler))},
+        {"seed", std::to_string(settings.seed)},
+    };
+    if (settings.sampler == SamplerKind::kStratified) // its strata depend on how many there are to be
+        all.push_back({"samples", std::to_string(settings.samples_per_pixel)});
+    return all;
+}
+
+FilmKeeper::FilmKeeper(const Scene& scene, const View& view, const Settings& settings)
+    : path_(settings.film), interval_(settings.film_interval), kept_(opened(scene, view, settings)) {}
+
+void FilmKeeper::add(const std::function<void()>& work) {
+    {
+        const std::shared_lock adding(at_rest_);
+        work();
+    }
+    if (path_.empty()) return;
+    const std::unique_lock one(writing_, std::try_to_lock); // another is at it: no need
+    if (!one || since_written_.seconds() < interval_) return;
+    keep();
+    since_written_.restart();
+}
+
+void FilmKeeper::keep() {
+    if (path_.empty()) return;
+    const KeptFilm now = [&] {
+        const std::unique_lock alone(at_rest_);
+        return kept_;
+    }();
+    write_film(path_, now); // while others go on
+}
+
+} // namespace duet::raytrace

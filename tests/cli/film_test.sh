@@ -1,0 +1,61 @@
+#!/bin/sh
+# Films: whatever kills the program, the next run goes on to the same bits; shards join to the picture of one run.
+. "$(dirname "$0")/support.sh"
+
+render() {
+    out=$1
+    shift
+    "$bin/raytrace" models/cornell.json -o "$scratch/$out" --size 64x64 --quiet "$@"
+}
+
+render whole.pfm --spp 48
+
+# Killed again and again, with no time to say goodbye.
+for delay in 0.1 0.2 0.3; do
+    render killed.pfm --spp 48 --threads 1 --film "$scratch/kept.exr" --film-interval 0 &
+    process=$!
+    sleep "$delay"
+    kill -9 $process 2>/dev/null || true
+    wait $process || true
+done
+render killed.pfm --spp 48 --film "$scratch/kept.exr"
+cmp "$scratch/whole.pfm" "$scratch/killed.pfm" || fail "a killed render that went on from its film has other bits"
+
+# Interrupted: what it has is in the film, however long the interval.
+terminated 1 "$bin/raytrace" models/cornell.json -o "$scratch/stopped.pfm" --size 64x64 --quiet --spp 1000000 \
+    --film "$scratch/stopped.exr" --film-interval 10000
+expect 0 "$bin/raytrace" merge -o "$scratch/again.pfm" "$scratch/stopped.exr"
+cmp "$scratch/stopped.pfm" "$scratch/again.pfm" || fail "the film of an interrupted render is not what the picture shows"
+
+# Shards, and the joint film, which goes on.
+render a.png --samples 0:16 --film "$scratch/a.exr"
+render b.png --samples 16:32 --film "$scratch/b.exr"
+expect 0 "$bin/raytrace" merge -o "$scratch/joined.pfm" --film "$scratch/joint.exr" "$scratch/b.exr" "$scratch/a.exr"
+grep -q "2 films, 32 samples a pixel" "$scratch/stderr" || fail "merge does not say what it joined"
+render one.pfm --spp 32
+"$bin/compare" images "$scratch/joined.pfm" "$scratch/one.pfm" --fail-above rmse=1e-9 >/dev/null ||
+    fail "shards do not join to the picture of one run"
+render more.pfm --spp 48 --film "$scratch/joint.exr"
+"$bin/compare" images "$scratch/more.pfm" "$scratch/whole.pfm" --fail-above rmse=1e-9 >/dev/null ||
+    fail "a joint film does not go on"
+
+# What cannot be: each says why in a line.
+expect 2 render x.pfm --spp 48 --seed 3 --film "$scratch/a.exr"
+one_line_error "a film of another picture: seed: found 0, expected 3"
+expect 2 "$bin/raytrace" merge -o "$scratch/x.pfm" "$scratch/a.exr" "$scratch/a.exr"
+one_line_error "expected films that share none"
+expect 2 "$bin/raytrace" merge -o "$scratch/x.pfm" --film "$scratch/x.exr" "$scratch/b.exr" "$scratch/joint.exr"
+one_line_error "expected films that share none"
+expect 2 "$bin/raytrace" merge -o "$scratch/x.pfm" "$scratch/joined.pfm"
+one_line_error "not an EXR file"
+expect 2 render x.pfm --samples 5:5
+one_line_error "expected FIRST:END"
+expect 2 render x.pfm --samples 0:8 --spp 8
+one_line_error "cannot go with --spp"
+expect 2 render x.pfm --film "$scratch/x.png"
+one_line_error "expected an .exr"
+expect 2 "$bin/raytrace" models/cornell.json -o "$scratch/x%04d.png" --orbit 2 --film "$scratch/x.exr"
+one_line_error "cannot go with --orbit"
+expect 2 render x.pfm --film "$scratch/missing/x.exr"
+one_line_error "no folder"
+finish

@@ -1,0 +1,174 @@
+// Films in files: kept, continued to the same bits, joined.
+#include "raytrace/film_keeper.h"
+
+#include "common/image/image_file.h"
+#include "raytrace/merge.h"
+#include "tests/raytrace/scene_builder.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+using namespace duet;
+using namespace duet::raytrace;
+using namespace duet::test;
+
+namespace {
+
+constexpr int kWidth = 40, kHeight = 30;
+
+Scene small_scene() {
+    SceneBuilder builder;
+    const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f, 0.6f, 0.7f)}});
+    builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
+    builder.add(Sphere{{0, 0, 0}, 1}, grey);
+    builder.scene.environment = SkyEnvironment{};
+    return builder.finish();
+}
+
+Rendering rendered(const Scene& scene, const Settings& settings, Control control = {}) {
+    return render(prepare(scene, settings), View{scene.camera, kWidth, kHeight}, settings, control);
+}
+
+bool same_bits(const Film& a, const Film& b) {
+    return std::equal(a.pixels().begin(), a.pixels().end(), b.pixels().begin(), b.pixels().end(),
+                      [](const Film::Pixel& x, const Film::Pixel& y) {
+                          for (std::size_t r = 0; r < Film::kReplicates; ++r)
+                              for (std::size_t c = 0; c < 3; ++c)
+                                  if (std::bit_cast<std::uint64_t>(x.sum[r][c]) !=
+                                      std::bit_cast<std::uint64_t>(y.sum[r][c]))
+                                      return false;
+                          return x.count == y.count && x.invalid == y.invalid;
+                      });
+}
+
+KeptFilm film_of(const Scene& scene, Settings settings, const std::filesystem::path& path, int first, int last) {
+    settings.film = path;
+    settings.first_sample = static_cast<std::uint32_t>(first);
+    settings.samples_per_pixel = last - first;
+    rendered(scene, settings);
+    return read_film(path);
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a film comes back from its file with every bit, and any viewer sees its means") {
+        const ScratchFolder folder;
+        KeptFilm kept{Film(3, 2), {{"seed", "7"}, {"sampler", "sobol"}}, 12};
+        for (int i = 0; i < 60; ++i) {
+            const float value = std::ldexp(1.0f + static_cast<float>(i) * 0x1p-20f, i % 40 - 20);
+            kept.film.add(i % 3, i / 3 % 2, static_cast<std::size_t>(i / 6 % 2), Rgb(value, 0.1f * value, 0));
+        }
+        kept.film.add(1, 1, 0, Rgb(-1.0f));
+        write_film(folder / "film.exr", kept);
+        const KeptFilm back = read_film(folder / "film.exr");
+        CHECK(same_bits(back.film, kept.film));
+        CHECK(back.film.invalid(1, 1) == 1);
+        CHECK(back.settings == kept.settings);
+        CHECK(back.first_sample == 12);
+        CHECK(read_image(folder / "film.exr").pixels() == kept.film.image().pixels());
+    }
+
+    TEST_CASE("a render that is stopped at any point and goes on from its film has the bits of one in one go") {
+        const Scene scene = small_scene();
+        Settings settings;
+        settings.samples_per_pixel = 40;
+        const ImageRgb expected = rendered(scene, settings).radiance;
+        for (const double where : {0.0, 0.01, 0.2, 0.4, 0.7, 0.99}) {
+            const ScratchFolder folder;
+            settings.film = folder / "film.exr";
+            std::atomic<bool> stop = where == 0;
+            const Control stopping{&stop, [&](double fraction) { stop = fraction >= where; }};
+            const Rendering half = rendered(scene, settings, stopping);
+            CHECK(half.statistics.interrupted);
+            CHECK(read_film(settings.film).film.image().pixels() == half.radiance.pixels());
+            settings.threads = where < 0.5 ? 1 : 2;
+            const Rendering whole = rendered(scene, settings);
+            CHECK(whole.radiance.pixels() == expected.pixels());
+            CHECK(whole.statistics.camera_rays + half.statistics.camera_rays == 40 * kWidth * kHeight);
+            CHECK(rendered(scene, settings).statistics.camera_rays == 0); // nothing is left to do
+        }
+    }
+
+    TEST_CASE("the film is written while the render goes on") {
+        const Scene scene = small_scene();
+        const ScratchFolder folder;
+        Settings settings;
+        settings.samples_per_pixel = 64;
+        settings.film = folder / "film.exr";
+        settings.film_interval = 0;
+        std::uint32_t seen = 0;
+        const Control watching{nullptr, [&](double) {
+                                   if (!std::filesystem::exists(settings.film)) return;
+                                   const Film film = read_film(settings.film).film; // whole whenever one looks
+                                   std::uint32_t most = 0;
+                                   for (int y = 0; y < kHeight; ++y)
+                                       for (int x = 0; x < kWidth; ++x) most = std::max(most, film.taken(x, y));
+                                   CHECK(most >= seen);
+                                   seen = most;
+                               }};
+        rendered(scene, settings, watching);
+        CHECK(seen > 0);
+        CHECK(read_film(settings.film).film.least_taken() == 64);
+    }
+
+    TEST_CASE("shards join to the sums of one run, to 1e-12; films that do not fit are refused") {
+        const Scene scene = small_scene();
+        const ScratchFolder folder;
+        Settings settings;
+        const KeptFilm one = film_of(scene, settings, folder / "one.exr", 0, 30);
+        const KeptFilm a = film_of(scene, settings, folder / "a.exr", 0, 7), b = film_of(scene, settings, folder / "b.exr", 7, 16),
+                       c = film_of(scene, settings, folder / "c.exr", 16, 30);
+        const KeptFilm joined = merged({{"c", c}, {"a", a}, {"b", b}});
+        CHECK(joined.first_sample == 0);
+        double worst = 0;
+        for (std::size_t i = 0; i < one.film.pixels().size(); ++i) {
+            const Film::Pixel &x = one.film.pixels()[i], &y = joined.film.pixels()[i];
+            CHECK(x.count == y.count);
+            for (std::size_t r = 0; r < Film::kReplicates; ++r)
+                for (std::size_t color = 0; color < 3; ++color)
+                    worst = std::max(worst, std::abs(x.sum[r][color] - y.sum[r][color]) / std::max(x.sum[r][color], 1e-30));
+        }
+        CHECK(worst <= 1e-12);
+
+        CHECK(error_of([&] { merged({}); }) == Containing("no film"));
+        CHECK(error_of([&] { merged({{"a", a}, {"again", a}}); }) == Containing("again: has samples from 0 on, but a has"));
+        settings.seed = 1;
+        const KeptFilm other = film_of(scene, settings, folder / "other.exr", 40, 50);
+        CHECK(error_of([&] { merged({{"a", a}, {"other", other}}); }) == Containing("other: a film of another picture: seed: found 1, expected 0"));
+    }
+
+    TEST_CASE("a film of another picture, or none at all, is not continued") {
+        const Scene scene = small_scene();
+        const ScratchFolder folder;
+        Settings settings;
+        settings.samples_per_pixel = 2;
+        settings.film = folder / "film.exr";
+        rendered(scene, settings);
+        const auto error_with = [&](auto change) {
+            Settings changed = settings;
+            change(changed);
+            return error_of([&] { rendered(scene, changed); });
+        };
+        CHECK(error_with([](Settings& s) { s.seed = 5; }) == Containing("seed: found 0, expected 5"));
+        CHECK(error_with([](Settings& s) { s.max_depth = 3; }) == Containing("depth: found 64, expected 3"));
+        CHECK(error_with([](Settings& s) { s.integrator = Integrator::kNaive; }) == Containing("integrator: found path, expected naive"));
+        CHECK(error_with([](Settings& s) { s.sampler = SamplerKind::kIndependent; }) == Containing("sampler"));
+        CHECK(error_with([](Settings& s) { s.first_sample = 2; }) == Containing("samples from 0 on, expected from 2 on"));
+        CHECK(error_with([](Settings& s) { s.aovs.depth = true; }) == Containing("keeps no depth"));
+        Scene moved = scene;
+        moved.camera.eye.x += 1;
+        CHECK(error_of([&] { rendered(moved, settings); }) == Containing("camera"));
+
+        write_exr(settings.film, kWidth, kHeight, rgb_channels("", ImageRgb(kWidth, kHeight)));
+        CHECK(error_with([](Settings&) {}) == Containing("no film: found no channel"));
+        write_file(settings.film, "not an EXR");
+        CHECK(error_with([](Settings&) {}) == Containing("film.exr"));
+    }
+}
