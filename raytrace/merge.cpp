@@ -62,11 +62,11 @@ int merge(const Options& options) {
     for (const std::string& name : options.films) films.push_back({name, read_film(name)});
     sort_by_samples(films);
     const bool is_whole = whole(films);
+    const std::size_t count = films.size();
+    const KeptFilm all = merged(std::move(films));
     if (!options.film.empty() && !is_whole)
         throw Error("--film: the films leave out samples, or some pixels have more than others: the whole could not be "
                     "continued (the picture alone can be written)");
-    const std::size_t count = films.size();
-    const KeptFilm all = merged(std::move(films));
     if (!options.film.empty()) write_film(options.film, all);
     write_image(options.output, all.film.image());
     if (options.quiet) return kExitOk;
