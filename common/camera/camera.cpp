@@ -111,13 +111,15 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
 }
 
 Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
-    Rayd exact = center_.ray(pixel);
+    Rayd exact;
     if (has_lens()) { // as through(), without the matrix
         const Vec3d offset = lens_offset(lens_sample);
-        const Vec3d centered = exact.direction * (exact.t_min / center_.near);
+        const Vec3d centered = center_.direction + center_.direction_dx * pixel.x + center_.direction_dy * pixel.y;
         const Vec3d d = (centered * focus_distance_ - offset) / (focus_distance_ - dot(offset, center_.forward));
         const double per_depth = length(d);
         exact = {center_.origin + offset, d / per_depth, center_.near * per_depth};
+    } else {
+        exact = center_.ray(pixel);
     }
     Ray ray;
     ray.origin = Vec3(exact.origin);

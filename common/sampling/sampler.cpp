@@ -3,6 +3,7 @@
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
 #include "common/system/error.h"
+#include "common/vec/simd.h"
 
 #include <algorithm>
 #include <array>
@@ -24,18 +25,49 @@ float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominato
 
 // Padding (Kollig and Keller 2002): the points of each pair of dimensions are those of the plane's Sobol sequence,
 // scrambled anew and visited in an order of their own. Shuffling the index by an Owen scrambling keeps every aligned
-// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5).
+// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5). Everything is
+// computed for one number or, U being a batch, for several dimensions at once.
 
-float sobol_1d(std::uint32_t index, std::uint64_t key) {
-    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
-    return unit_float(reverse_bits(owen_scramble(point, low_bits(key))));
+/// The seed of a dimension's shuffling, well mixed, from the pixel's 64 bits.
+template <typename U> U dimension_seed(std::uint64_t pixel, U dimension) {
+    return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + U(low_bits(pixel))) ^ U(high_bits(pixel)));
+}
+/// The seed of the scrambling of its first (0) or second (1) coordinate.
+template <typename U> U scramble_seed(U seed, U coordinate) {
+    return mix_bits_32(seed + (coordinate + U(1u)) * U(kGoldenStep32));
+}
+/// The point of a pair that the sample visits, its digits reversed.
+template <typename U> U sobol_point(U reversed_index, U seed) {
+    return reverse_bits(owen_scramble(reversed_index, seed));
 }
 
-Vec2 sobol_2d(std::uint32_t index, std::uint64_t key) {
-    const std::uint64_t scrambles = mix_bits(key);
-    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
-    return {unit_float(reverse_bits(owen_scramble(point, high_bits(scrambles)))),
-            unit_float(reverse_bits(owen_scramble(sobol_second(point), low_bits(scrambles))))};
+float sobol_1d(std::uint32_t reversed_index, std::uint32_t seed) {
+    const std::uint32_t point = sobol_point(reversed_index, seed);
+    return unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u))));
+}
+
+Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
+    const std::uint32_t point = sobol_point(reversed_index, seed);
+    return {unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u)))),
+            unit_float(reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, 1u))))};
+}
+
+/// Pairs of dimensions from `first` on, a number a lane.
+std::array<float, Sampler::kBlock> sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
+    using Batch = xsimd::make_sized_batch_t<std::uint32_t, kSimdLanes>;
+    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6};
+    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
+    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
+    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes) {
+        const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
+        const Batch seed = dimension_seed(pixel, Batch::load_aligned(&kPairs[lane]) + Batch(first));
+        const Batch point = sobol_point(Batch(reversed_index), seed);
+        const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
+        reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(&bits[lane]);
+    }
+    std::array<float, Sampler::kBlock> numbers;
+    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
+    return numbers;
 }
 
 float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
@@ -82,6 +114,7 @@ Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
     replicate_ = index & 1u;
     index_ = index >> 1;
+    reversed_index_ = reverse_bits(index_);
     dimension_ = 0;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
@@ -89,34 +122,36 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
 }
 
 float Sampler::get_1d() {
-    const std::uint64_t key = stream_number(pixel_hash_, dimension_++);
-    switch (kind_) {
-    case SamplerKind::kStratified:
-        return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
-    case SamplerKind::kIndependent:
-        return unit_float(high_bits(stream_number(key, index_)));
-    case SamplerKind::kSobol:
-    case SamplerKind::kCenter:
-        break;
-    }
-    return sobol_1d(index_, key);
+    const std::uint32_t dimension = dimension_++;
+    if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    const std::uint64_t key = stream_number(pixel_hash_, dimension);
+    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
+    return unit_float(high_bits(stream_number(key, index_)));
 }
 
 Vec2 Sampler::get_2d() {
-    const std::uint64_t key = stream_number(pixel_hash_, dimension_);
+    const std::uint32_t dimension = dimension_;
     dimension_ += 2;
-    switch (kind_) {
-    case SamplerKind::kStratified:
-        return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
-    case SamplerKind::kIndependent: {
-        const std::uint64_t bits = stream_number(key, index_);
-        return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
+    if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    const std::uint64_t key = stream_number(pixel_hash_, dimension);
+    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
+    const std::uint64_t bits = stream_number(key, index_);
+    return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
+}
+
+std::array<float, Sampler::kBlock> Sampler::get_block() {
+    std::array<float, kBlock> numbers;
+    if (is_sobol()) {
+        numbers = sobol_block(reversed_index_, pixel_hash_, dimension_);
+        dimension_ += kBlock;
+        return numbers;
     }
-    case SamplerKind::kSobol:
-    case SamplerKind::kCenter:
-        break;
+    for (std::size_t i = 0; i < kBlock; i += 2) {
+        const Vec2 pair = get_2d();
+        numbers[i] = pair.x;
+        numbers[i + 1] = pair.y;
     }
-    return sobol_2d(index_, key);
+    return numbers;
 }
 
 Vec2 Sampler::get_centered_2d() {

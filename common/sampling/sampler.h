@@ -4,6 +4,7 @@
 
 #include "common/vec/vec.h"
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -36,16 +37,21 @@ public:
     /// The next one or two dimensions: numbers in [0, 1).
     float get_1d();
     Vec2 get_2d();
+    /// The next eight dimensions as four pairs: what get_2d would give four times, for little more than one costs.
+    static constexpr std::size_t kBlock = 8;
+    std::array<float, kBlock> get_block();
     /// As get_2d, and as get_1d, but (½, ½) and 0 for kCenter: for the pixel and the lens, and for the time.
     Vec2 get_centered_2d();
     float get_time();
 
 private:
+    bool is_sobol() const { return kind_ == SamplerKind::kSobol || kind_ == SamplerKind::kCenter; }
+
     SamplerKind kind_;
     std::uint64_t seed_;
     std::uint32_t samples_per_pixel_;
     std::uint64_t pixel_hash_ = 0;
-    std::uint32_t index_ = 0, replicate_ = 0, dimension_ = 0;
+    std::uint32_t index_ = 0, reversed_index_ = 0, replicate_ = 0, dimension_ = 0;
 };
 
 } // namespace duet

@@ -12,7 +12,7 @@ namespace {
 
 // How the ray left the vertex before: what its chance to find a light is weighed against.
 struct Departure {
-    Vec3 p;
+    LightReceiver receiver;
     float pdf = 0;
     bool certain = true; // no light sample competes: a camera ray, or a delta lobe
 };
@@ -63,19 +63,19 @@ public:
     auto trace(Ray ray, Hit hit) {
         for (int depth = 0;; ++depth) {
             if (!hit.valid()) {
-                add_environment(normalize(ray.direction), depth);
+                add_environment(ray.direction, depth);
                 break;
             }
             const Vertex vertex = make_vertex(plan_, ray, hit);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
             if (depth == plan_.max_depth) break;
-            const VertexDimensions dimensions(depth);
+            const VertexNumbers u = vertex_numbers(sampler_, depth);
             const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
-            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, dimensions, depth);
+            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
             if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) break; // nothing is left to find
-            if (!scatter(vertex, dimensions, ray)) break;
-            if (plan_.russian_roulette && depth >= kFirstRoulette && !survives(dimensions)) break;
+            if (!scatter(vertex, u, ray)) break;
+            if (plan_.russian_roulette && depth >= kFirstRoulette && !survives(u.roulette)) break;
             hit = plan_.prepared.accelerator.closest(ray);
             ++counts_.indirect;
         }
@@ -88,7 +88,9 @@ private:
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
         float weight = 1;
-        if (!departure_.certain) weight = mis_weight(departure_.pdf, arrival_pdf(*plan_.environment, *plan_.lights, w));
+        if (!departure_.certain)
+            weight = mis_weight(departure_.pdf,
+                                arrival_pdf(*plan_.environment, *plan_.lights, departure_.receiver, w));
         sink_.add(throughput_ * radiance(*plan_.environment, w) * weight, LightSource::kEnvironment, bounces);
     }
 
@@ -98,15 +100,13 @@ private:
         if (is_black(emission)) return;
         float weight = 1;
         if (!departure_.certain)
-            weight = mis_weight(departure_.pdf, arrival_pdf(plan_.scene, *plan_.lights, departure_.p, vertex.point));
+            weight = mis_weight(departure_.pdf,
+                                arrival_pdf(plan_.scene, *plan_.lights, departure_.receiver, vertex.point));
         sink_.add(throughput_ * emission * weight, source_of(vertex.point), bounces);
     }
 
-    void add_light_sample(const Vertex& vertex, VertexDimensions dimensions, int bounces) {
-        sampler_.set_dimension(dimensions.light_choice());
-        const float choice = sampler_.get_1d();
-        sampler_.set_dimension(dimensions.light());
-        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.point.p, choice, sampler_.get_2d());
+    void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
+        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
         if (!arrival) return;
         const Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
         if (is_black(scattered) && !plan_.black_shadow_rays) return;
@@ -129,17 +129,14 @@ private:
     }
 
     // Chooses the next direction by the BSDF; false where the path ends.
-    bool scatter(const Vertex& vertex, VertexDimensions dimensions, Ray& ray) {
-        sampler_.set_dimension(dimensions.lobe());
-        const float lobe = sampler_.get_1d();
-        sampler_.set_dimension(dimensions.bsdf());
-        const auto s = sample(vertex.bsdf, vertex.wo, lobe, sampler_.get_2d());
+    bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
+        const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
         if (!vertex.consistent(wi, s->wi)) return false;
         throughput_ *= s->weight;
         if (s->transmitted) note_refraction(vertex);
-        departure_ = {vertex.point.p, s->pdf, s->specular || plan_.lights == nullptr};
+        departure_ = {vertex.receiver(), s->pdf, s->specular || plan_.lights == nullptr};
         ray = spawn_ray(vertex, wi);
         return true;
     }
@@ -152,11 +149,10 @@ private:
     }
 
     // Russian roulette: ends dim paths, and lets the survivors stand for them.
-    bool survives(VertexDimensions dimensions) {
+    bool survives(float u) {
         const float probability = max_component(throughput_) / refraction_;
         if (probability >= 1) return true;
-        sampler_.set_dimension(dimensions.roulette());
-        if (!(sampler_.get_1d() < probability)) return false;
+        if (!(u < probability)) return false;
         throughput_ *= 1 / probability;
         return true;
     }

@@ -19,6 +19,11 @@ struct Vertex {
         const Vec3 local = frame.to_local(wi);
         return consistent(wi, local) ? eval(bsdf, wo, local) * abs_cos_theta(local) : Rgb();
     }
+    /// Where it gathers light: on the side from which it is seen, if it only reflects.
+    LightReceiver receiver() const {
+        if (std::holds_alternative<DielectricBsdf>(bsdf)) return {point.p, Vec3()};
+        return {point.p, wo.z < 0 ? -point.ng : point.ng};
+    }
     /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
     /// frame.
     bool consistent(Vec3 wi, Vec3 local) const { return dot(wi, point.ng) * local.z > 0; }
