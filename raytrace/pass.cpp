@@ -32,19 +32,8 @@ std::optional<SampleRange> next_pass(const Settings& settings, std::uint32_t don
 }
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    sampler.set_dimension(kPixelDimension);
-    const Vec2 in_pixel = sampler.get_centered_2d();
-    Vec2d lens{0.5, 0.5};
-    if (plan.lens) {
-        sampler.set_dimension(kLensDimension);
-        lens = Vec2d(sampler.get_centered_2d());
-    }
-    double time = 0;
-    if (plan.motion) {
-        sampler.set_dimension(kTimeDimension);
-        time = static_cast<double>(sampler.get_time());
-    }
-    return camera.ray(Vec2d(x, y) + Vec2d(in_pixel), lens, time);
+    const CameraNumbers u = plan.lens || plan.motion ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
+    return camera.ray(Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), Vec2d(u.lens), static_cast<double>(u.time));
 }
 
 namespace {

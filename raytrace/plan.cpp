@@ -35,7 +35,7 @@ int depth(const Settings& settings) {
 } // namespace
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings)
-    : prepared(prepared_), scene(prepared_.scene), max_depth(depth(settings)),
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 0) {
     const Skips& skips = settings.skips;
     lens = CameraModel(view).has_lens() || !skips.lens;

@@ -91,7 +91,7 @@ CameraModel::CameraModel(const View& view)
 
 // The lens point's offset from the centre, ending on float coordinates.
 Vec3d CameraModel::lens_offset(Vec2d lens_sample) const {
-    const Vec2d lens = concentric_disk(lens_sample) * aperture_radius_;
+    const Vec2d lens = Vec2d(concentric_disk(Vec2(lens_sample))) * aperture_radius_;
     return rounded(center_.origin + right_ * lens.x + up_ * lens.y) - center_.origin;
 }
 

@@ -15,8 +15,8 @@ namespace {
 struct LocalPoint {
     Vec3d p;
     Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
-    Vec3d ng;        // any length
-    Vec3d ns;        // any length, or (0, 0, 0): ng
+    Vec3d ng, ns;      // any length
+    bool unit = false; // both are of length 1
     Vec2 uv;
     Vec3d dpdu, dpdv;
 };
@@ -28,6 +28,7 @@ LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t, SurfaceDet
     local.p = center + n * static_cast<double>(sphere.radius);
     local.magnitude = abs(local.p);
     local.ng = local.ns = n;
+    local.unit = true;
     if (detail == SurfaceDetail::kWithoutUv) return local;
     local.uv = sphere_uv(Vec3(n));
     const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
@@ -134,7 +135,7 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     if (identity) {
         point.p = point.p_object;
         point.p_error = Vec3(local.magnitude * kRounding);
-        point.ng = unit(local.ng);
+        point.ng = local.unit ? Vec3(local.ng) : unit(local.ng);
         point.ns = local.ns == local.ng ? point.ng : unit(local.ns);
         point.dpdu = Vec3(local.dpdu);
         point.dpdv = Vec3(local.dpdv);

@@ -1,5 +1,6 @@
 #include "common/light/solid_angle.h"
 
+#include "common/light/spherical_rectangle.h"
 #include "common/light/spherical_triangle.h"
 #include "common/sampling/warp.h"
 #include "common/vec/frame.h"
@@ -75,6 +76,22 @@ std::optional<Seen<Corners - 2>> seen_near(const Plane& plane, const std::array<
     return seen;
 }
 
+/// Right angles but for rounding. Other parallelograms are two triangles.
+bool is_rectangle(const Quad& q) {
+    const double cosine = dot(Vec3d(q.u), Vec3d(q.v));
+    return cosine * cosine <= 1e-12 * length_squared(Vec3d(q.u)) * length_squared(Vec3d(q.v));
+}
+
+/// As seen_near, of a rectangle.
+std::optional<SphericalRectangle> rectangle_near(const Plane& plane, const Quad& q, Vec3d p) {
+    const Vec3d corner = plane.to_plane, center = corner + (Vec3d(q.u) + Vec3d(q.v)) * 0.5;
+    if (!(length(plane.area_vector) > kNear * length_squared(center))) return std::nullopt;
+    if (dot(plane.area_vector, corner) == 0) return std::nullopt;
+    const SphericalRectangle seen(Vec3d(q.corner) - p, Vec3d(q.u), Vec3d(q.v));
+    if (!(seen.solid_angle() > kMinSolidAngle && seen.solid_angle() < kMaxSolidAngle)) return std::nullopt;
+    return seen;
+}
+
 template <std::size_t N> std::optional<SolidAngleSample> sample_seen(const Plane& plane, const Seen<N>& seen, Vec2d u) {
     double share = u.x * seen.total; // chooses the triangle; what is left of it is used again
     std::size_t i = 0;
@@ -115,11 +132,23 @@ double solid_angle_pdf(const Triangle& t, Vec3d p, Vec3d q) { return flat_pdf(t,
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& q, Vec3d p, Vec2d u) {
     const Plane plane = plane_of(q, p);
-    const std::array<Vec3d, 4> c = corners(q, p);
-    if (const auto seen = seen_near(plane, c)) return sample_seen(plane, *seen, u);
-    return sample_area(plane, c[0] + Vec3d(q.u) * u.x + Vec3d(q.v) * u.y);
+    if (is_rectangle(q)) {
+        if (const auto seen = rectangle_near(plane, q, p)) {
+            const Vec3d w = seen->sample(u);
+            const double distance = length(w);
+            return SolidAngleSample{w / distance, distance, 1 / seen->solid_angle()};
+        }
+    } else if (const auto seen = seen_near(plane, corners(q, p))) {
+        return sample_seen(plane, *seen, u);
+    }
+    return sample_area(plane, plane.to_plane + Vec3d(q.u) * u.x + Vec3d(q.v) * u.y);
 }
-double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q) { return flat_pdf(quad, p, q); }
+double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q) {
+    if (!is_rectangle(quad)) return flat_pdf(quad, p, q);
+    const Plane plane = plane_of(quad, p);
+    const auto seen = rectangle_near(plane, quad, p);
+    return seen ? 1 / seen->solid_angle() : area_pdf(plane, q - p);
+}
 
 std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p, Vec2d u) {
     const Vec3d to_center = Vec3d(sphere.center) - p;

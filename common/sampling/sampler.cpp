@@ -7,13 +7,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 namespace duet {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SamplerKind>, 4> kNames{{{"sobol", SamplerKind::kSobol},
+constexpr std::array<std::pair<std::string_view, SamplerKind>, 5> kNames{{{"sobol", SamplerKind::kSobol},
+                                                                          {"blue-noise", SamplerKind::kBlueNoise},
                                                                           {"stratified", SamplerKind::kStratified},
                                                                           {"independent", SamplerKind::kIndependent},
                                                                           {"center", SamplerKind::kCenter}}};
@@ -70,6 +72,15 @@ std::array<float, Sampler::kBlock> sobol_block(std::uint32_t reversed_index, std
     return numbers;
 }
 
+/// The lower 16 bits at even places.
+constexpr std::uint32_t spread_bits(std::uint32_t x) {
+    x &= 0xffffu;
+    x = (x | x << 8) & 0x00ff00ffu;
+    x = (x | x << 4) & 0x0f0f0f0fu;
+    x = (x | x << 2) & 0x33333333u;
+    return (x | x << 1) & 0x55555555u;
+}
+
 float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
     const std::uint32_t round = index / count;
     key = stream_number(key, round);
@@ -98,7 +109,7 @@ Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) 
 SamplerKind sampler_kind(std::string_view name) {
     for (const auto& [known, kind] : kNames)
         if (known == name) return kind;
-    throw Error(message("unknown sampler '", name, "': expected sobol, stratified, independent or center"));
+    throw Error(message("unknown sampler '", name, "': expected sobol, blue-noise, stratified, independent or center"));
 }
 
 std::string_view sampler_name(SamplerKind kind) {
@@ -114,11 +125,31 @@ Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
     replicate_ = index & 1u;
     index_ = index >> 1;
-    reversed_index_ = reverse_bits(index_);
     dimension_ = 0;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
     pixel_hash_ = hash_combine(hash_combine(seed_, pixel), replicate_);
+    if (kind_ == SamplerKind::kBlueNoise)
+        share_sequence(static_cast<std::uint32_t>(pixel_x), static_cast<std::uint32_t>(pixel_y));
+    reversed_index_ = reverse_bits(index_);
+}
+
+// Pixels along a Z-curve take consecutive blocks of one sequence: blocks of 4, 16, 64 … pixels are nets together, too,
+// so that errors of neighbours cancel, and what noise is left has little of the low frequencies that eyes see (Ahmed and
+// Wonka 2020, «Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels»,
+// §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
+// sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
+void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
+    const std::uint32_t samples = (samples_per_pixel_ + 1) / 2;
+    const int digits = std::bit_width(samples - 1);       // of the index within a pixel
+    const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
+    const std::uint32_t mask = (1u << side) - 1;
+    const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;
+    const std::uint64_t tile = (static_cast<std::uint64_t>(pixel_y >> side) << 32) | (pixel_x >> side);
+    pixel_hash_ = hash_combine(hash_combine(seed_, tile), replicate_);
+    const std::uint32_t round = index_ >> digits; // beyond the promised number of samples: fresh sequences
+    if (round > 0) pixel_hash_ = hash_combine(pixel_hash_, round);
+    index_ = (curve << digits) | (index_ & ((1u << digits) - 1));
 }
 
 float Sampler::get_1d() {
@@ -154,16 +185,16 @@ std::array<float, Sampler::kBlock> Sampler::get_block() {
     return numbers;
 }
 
-Vec2 Sampler::get_centered_2d() {
-    if (kind_ != SamplerKind::kCenter) return get_2d();
-    dimension_ += 2;
-    return {0.5f, 0.5f};
+Vec2 Sampler::pixel_numbers() {
+    dimension_ = 0;
+    return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
 }
 
-float Sampler::get_time() {
-    if (kind_ != SamplerKind::kCenter) return get_1d();
-    ++dimension_;
-    return 0;
+CameraNumbers Sampler::camera_numbers() {
+    dimension_ = 0;
+    const std::array<float, kBlock> u = get_block();
+    if (kind_ == SamplerKind::kCenter) return {{0.5f, 0.5f}, {0.5f, 0.5f}, 0};
+    return {{u[0], u[1]}, {u[2], u[3]}, u[4]};
 }
 
 } // namespace duet

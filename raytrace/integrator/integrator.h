@@ -22,7 +22,6 @@ struct RayCounts {
 
 // Dimensions of a sample: the camera's come first, then each vertex of the path has a block of its own. What is left
 // out anywhere moves no number elsewhere.
-inline constexpr std::uint32_t kPixelDimension = 0, kLensDimension = 2, kTimeDimension = 4;
 
 /// The numbers in [0, 1) that a vertex uses.
 struct VertexNumbers {

@@ -66,7 +66,7 @@ public:
                 add_environment(ray.direction, depth);
                 break;
             }
-            const Vertex vertex = make_vertex(plan_, ray, hit);
+            const Vertex vertex(plan_, ray, hit);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
             if (depth == plan_.max_depth) break;
@@ -75,7 +75,7 @@ public:
             if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
             if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) break; // nothing is left to find
             if (!scatter(vertex, u, ray)) break;
-            if (plan_.russian_roulette && depth >= kFirstRoulette && !survives(u.roulette)) break;
+            if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
             hit = plan_.prepared.accelerator.closest(ray);
             ++counts_.indirect;
         }
@@ -83,8 +83,6 @@ public:
     }
 
 private:
-    static constexpr int kFirstRoulette = 3;
-
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
         float weight = 1;
@@ -96,7 +94,7 @@ private:
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
         if (!plan_.emission) return;
-        const Rgb emission = emitted(*vertex.material, vertex.point, -direction);
+        const Rgb emission = emitted(vertex.material, vertex.point, -direction);
         if (is_black(emission)) return;
         float weight = 1;
         if (!departure_.certain)
@@ -148,9 +146,12 @@ private:
         refraction_ *= vertex.wo.z > 0 ? 1 / sqr(glass->eta) : sqr(glass->eta);
     }
 
-    // Russian roulette: ends dim paths, and lets the survivors stand for them.
+    // Russian roulette: ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier,
+    // and well placed samples suffer most: a path of half its throughput is still worth its rays (README.md has what
+    // other thresholds cost).
     bool survives(float u) {
-        const float probability = max_component(throughput_) / refraction_;
+        constexpr float kDim = 0.25f;
+        const float probability = max_component(throughput_) / (refraction_ * kDim);
         if (probability >= 1) return true;
         if (!(u < probability)) return false;
         throughput_ *= 1 / probability;
