@@ -22,8 +22,8 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d u, Vec3d v) {
 
     // The planes through the origin and the edges at y0, x1, y1, x0: the z of their unit normals, which lie in a plane of
     // axes, so that the cosine of an inner angle is a product of two.
-    const double n0 = -y0_ / std::hypot(y0_, z0_), n1 = x1_ / std::hypot(x1_, z0_);
-    const double n2 = y1_ / std::hypot(y1_, z0_), n3 = -x0_ / std::hypot(x0_, z0_);
+    const auto z_of_normal = [this](double to_edge) { return to_edge / std::sqrt(to_edge * to_edge + z0_ * z0_); };
+    const double n0 = z_of_normal(-y0_), n1 = z_of_normal(x1_), n2 = z_of_normal(y1_), n3 = z_of_normal(-x0_);
     const auto inner_angle = [](double a, double b) { return std::acos(std::clamp(-a * b, -1.0, 1.0)); };
     after_upper_ = 2 * kPiDouble - inner_angle(n1, n2) - inner_angle(n2, n3);
     solid_angle_ = inner_angle(n3, n0) + inner_angle(n0, n1) - after_upper_;
