@@ -61,9 +61,10 @@ std::vector<KeptFilm::Setting> film_settings(const Scene& scene, const View& vie
         {"roulette", settings.russian_roulette ? "yes" : "no"},
         {"environment", settings.environment ? "yes" : "no"},
         {"sampler", std::string(sampler_name(settings.sampler))},
+        {"filter", std::string(filter_name(settings.filter))},
         {"seed", std::to_string(settings.seed)},
     };
-    if (settings.sampler == SamplerKind::kStratified) // its strata depend on how many there are to be
+    if (depends_on_count(settings.sampler))
         all.push_back({"samples", std::to_string(settings.samples_per_pixel)});
     return all;
 }

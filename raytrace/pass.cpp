@@ -7,6 +7,7 @@
 #include <atomic>
 #include <mutex>
 #include <span>
+#include <vector>
 
 namespace duet::raytrace {
 
@@ -32,19 +33,8 @@ std::optional<SampleRange> next_pass(const Settings& settings, SampleRange range
 }
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    sampler.set_dimension(kPixelDimension);
-    const Vec2 in_pixel = sampler.get_centered_2d();
-    Vec2d lens{0.5, 0.5};
-    if (plan.lens) {
-        sampler.set_dimension(kLensDimension);
-        lens = Vec2d(sampler.get_centered_2d());
-    }
-    double time = 0;
-    if (plan.motion) {
-        sampler.set_dimension(kTimeDimension);
-        time = static_cast<double>(sampler.get_time());
-    }
-    return camera.ray(Vec2d(x, y) + Vec2d(in_pixel), lens, time);
+    const CameraNumbers u = plan.lens || plan.motion ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
+    return camera.ray(Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), Vec2d(u.lens), static_cast<double>(u.time));
 }
 
 namespace {
@@ -78,26 +68,28 @@ class CameraBatch {
 public:
     CameraBatch(const PassTarget& target, const CameraModel& camera)
         : target_(target), camera_(camera), radiance_(radiance_function(target.settings.integrator)),
-          sampler_(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel) {}
+          sampler_(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel) {
+        samples_.reserve(kSize);
+    }
 
     void add(int x, int y, std::uint32_t index) {
         sampler_.start(x, y, index);
-        samples_[size_] = {x, y, index};
-        rays_[size_] = camera_ray(target_.plan, camera_, x, y, sampler_);
-        if (++size_ == kSize) finish();
+        rays_[samples_.size()] = camera_ray(target_.plan, camera_, x, y, sampler_);
+        samples_.push_back({x, y, index, sampler_});
+        if (samples_.size() == kSize) finish();
     }
 
     // Renders what has been added and not been rendered yet.
     void finish() {
-        target_.plan.prepared.accelerator.closest(std::span(rays_).first(size_), std::span(hits_).first(size_));
-        for (std::size_t i = 0; i < size_; ++i) {
-            const auto [x, y, index] = samples_[i];
-            sampler_.start(x, y, index);
-            target_.keeper.film().add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler_, counts_));
+        const std::size_t size = samples_.size();
+        target_.plan.prepared.accelerator.closest(std::span(rays_).first(size), std::span(hits_).first(size));
+        for (std::size_t i = 0; i < size; ++i) {
+            auto& [x, y, index, sampler] = samples_[i];
+            target_.keeper.film().add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler, counts_));
             if (target_.aovs.any()) target_.aovs.add(x, y, index, rays_[i], hits_[i]);
         }
-        counts_.camera += static_cast<std::int64_t>(size_);
-        size_ = 0;
+        counts_.camera += static_cast<std::int64_t>(size);
+        samples_.clear();
     }
 
     const RayCounts& counts() const { return counts_; }
@@ -107,6 +99,7 @@ private:
     struct Sample {
         int x, y;
         std::uint32_t index;
+        Sampler sampler;
     };
 
     const PassTarget& target_;
@@ -114,8 +107,7 @@ private:
     RadianceFunction radiance_;
     Sampler sampler_;
     RayCounts counts_;
-    std::size_t size_ = 0;
-    std::array<Sample, kSize> samples_;
+    std::vector<Sample> samples_; // so many of rays_ and hits_
     std::array<Ray, kSize> rays_;
     std::array<Hit, kSize> hits_;
 };

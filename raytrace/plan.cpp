@@ -35,7 +35,7 @@ int depth(const Settings& settings) {
 } // namespace
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings)
-    : prepared(prepared_), scene(prepared_.scene), max_depth(depth(settings)),
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 0) {
     const Skips& skips = settings.skips;
     lens = CameraModel(view).has_lens() || !skips.lens;
@@ -82,7 +82,11 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
         else if (!plan.prepared.scatters_diffusely)
             skip("light samples", "all materials are mirrors or glass, which they cannot reach");
         else
-            skip("light samples", "nothing emits");
+            skip("light samples",
+                 plan.environment != nullptr ? "only the environment emits, so evenly that rays find it best"
+                                             : "nothing emits");
+    } else if (plan.lights != nullptr && plan.environment != nullptr && sampled_irradiance(*plan.environment) == 0) {
+        skip("light samples of the environment", "it is so even that rays find it best");
     }
     if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
         skip("last bounce", "rays cannot find the lights: point, spot and sun");

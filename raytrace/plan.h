@@ -14,6 +14,7 @@ struct RenderPlan {
 
     const PreparedData& prepared;
     const Scene& scene;
+    const PixelFilter filter;
     const LightChooser* lights = nullptr;                    ///< null: no light is sampled
     const Environment* environment = nullptr;                ///< null: rays that escape find nothing
     const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material: made once, where no texture varies it

@@ -19,15 +19,12 @@ template <typename Predicate> bool any_used_material(const Scene& scene, Predica
     });
 }
 
-float radius(const Box3& box) { return box.empty() ? 0.0f : static_cast<float>(length(Vec3d(box.diagonal())) / 2); }
-
 } // namespace
 
 PreparedData::PreparedData(const Scene& scene_, int threads, BvhQuality quality)
     : scene(scene_), accelerator(scene_, threads, quality),
-      lights(scene_.lights, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
-      finite_lights(scene_.lights, 0, radius(scene_.bounds)),
-      environment_light({}, environment_power(scene_.environment, radius(scene_.bounds)), radius(scene_.bounds)),
+      lights(scene_.lights, sampled_irradiance(scene_.environment)), finite_lights(scene_.lights, 0),
+      environment_light({}, sampled_irradiance(scene_.environment)),
       emitters(any_used_material(scene_, emits)), environment(!is_black(scene_.environment)) {
     bsdfs.reserve(scene.materials.size());
     for (const Material& material : scene.materials)

@@ -16,7 +16,7 @@ struct PreparedData {
 
     const Scene& scene;
     Accelerator accelerator;
-    LightChooser lights;                    ///< the scene's lights and its environment
+    LightChooser lights;                    ///< the scene's lights, and its environment if it is uneven
     LightChooser finite_lights;             ///< without the environment, for settings that leave it out
     LightChooser environment_light;         ///< the environment alone
     std::vector<std::optional<Bsdf>> bsdfs; ///< by material: made once, where no texture varies it

@@ -31,7 +31,7 @@ void set_samples(const std::string& text, raytrace::Settings& settings) {
 
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "merge") return raytrace::run_merge(argc - 1, argv + 1);
-    std::string integrator_name = "path", sampler = "sobol", bvh = "default", film, samples;
+    std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples;
     raytrace::Settings settings;
     bool no_environment = false;
     RenderProgram program;
@@ -57,8 +57,12 @@ int main(int argc, char** argv) {
                        "surfaces), reflection (what is seen by way of "
                        "metal and glass), normal or albedo");
         app.add_option("--sampler", sampler,
-                       "sobol (default: Owen-scrambled), stratified, independent, or center (pixel and lens centre, "
+                       "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
+                       "samples is even over the picture), stratified, independent, or center (pixel and lens centre, "
                        "shutter open)");
+        app.add_option("--filter", filter,
+                       "How a pixel weighs the light around its centre: box (default, the pixel itself) or "
+                       "blackman-harris (a smooth bell over 3 x 3 pixels)");
         app.add_option("--time", settings.time_limit, "Stop after this many seconds, between passes")
             ->check(CLI::PositiveNumber);
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
@@ -87,6 +91,7 @@ int main(int argc, char** argv) {
         settings.film = film;
         settings.integrator = raytrace::integrator(integrator_name);
         settings.sampler = sampler_kind(sampler);
+        settings.filter = filter_kind(filter);
         settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
         return [prepared = raytrace::prepare(scene, settings), settings](const View& view, Control& control) {

@@ -19,8 +19,9 @@ void check(const View& view, const Settings& settings) {
     if (!settings.film.empty() &&
         (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
         throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary pictures with it");
-    if (settings.first_sample > 0 && settings.sampler == SamplerKind::kStratified)
-        throw Error("samples of the stratified sampler are not taken in parts: expected another sampler");
+    if (settings.first_sample > 0 && depends_on_count(settings.sampler))
+        throw Error(message("samples of the ", sampler_name(settings.sampler),
+                            " sampler depend on how many there are, and are not taken in parts: expected another"));
     if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
 }
 

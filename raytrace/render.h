@@ -3,6 +3,7 @@
 
 #include "common/camera/camera.h"
 #include "common/film/rendering.h"
+#include "common/sampling/pixel_filter.h"
 #include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
@@ -39,6 +40,7 @@ struct Settings : RenderSettings {
     Settings() { samples_per_pixel = 64; }
     Integrator integrator = Integrator::kPath;
     SamplerKind sampler = SamplerKind::kSobol;
+    FilterKind filter = FilterKind::kBox;
     int max_depth = 64; ///< scattering events at most: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
     BvhQuality bvh = BvhQuality::kDefault; ///< for prepare(): of the hierarchies; no bit of the picture depends on it

@@ -19,7 +19,7 @@ CameraSample SplitTracer::sample(int x, int y, std::uint32_t index) const {
     result.ray = camera_ray(plan_, camera_, x, y, sampler);
     result.hit = plan_.prepared.accelerator.closest(result.ray);
     if (result.hit.valid()) {
-        const Vertex vertex = make_vertex(plan_, result.ray, result.hit);
+        const Vertex vertex(plan_, result.ray, result.hit);
         result.surface = FirstSurface{vertex.point, vertex.bsdf};
     }
     RayCounts counts;

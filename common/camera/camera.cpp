@@ -91,7 +91,7 @@ CameraModel::CameraModel(const View& view)
 
 // The lens point's offset from the centre, ending on float coordinates.
 Vec3d CameraModel::lens_offset(Vec2d lens_sample) const {
-    const Vec2d lens = concentric_disk(lens_sample) * aperture_radius_;
+    const Vec2d lens = Vec2d(concentric_disk(Vec2(lens_sample))) * aperture_radius_;
     return rounded(center_.origin + right_ * lens.x + up_ * lens.y) - center_.origin;
 }
 
@@ -111,13 +111,15 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
 }
 
 Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
-    Rayd exact = center_.ray(pixel);
+    Rayd exact;
     if (has_lens()) { // as through(), without the matrix
         const Vec3d offset = lens_offset(lens_sample);
-        const Vec3d centered = exact.direction * (exact.t_min / center_.near);
+        const Vec3d centered = center_.direction + center_.direction_dx * pixel.x + center_.direction_dy * pixel.y;
         const Vec3d d = (centered * focus_distance_ - offset) / (focus_distance_ - dot(offset, center_.forward));
         const double per_depth = length(d);
         exact = {center_.origin + offset, d / per_depth, center_.near * per_depth};
+    } else {
+        exact = center_.ray(pixel);
     }
     Ray ray;
     ray.origin = Vec3(exact.origin);

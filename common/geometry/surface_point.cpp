@@ -15,19 +15,21 @@ namespace {
 struct LocalPoint {
     Vec3d p;
     Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
-    Vec3d ng;        // any length
-    Vec3d ns;        // any length, or (0, 0, 0): ng
+    Vec3d ng, ns;      // any length
+    bool unit = false; // both are of length 1
     Vec2 uv;
     Vec3d dpdu, dpdv;
 };
 
-LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t) {
+LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t, SurfaceDetail detail) {
     const Vec3d center(sphere.center);
     const Vec3d n = normalize(ray.at(t) - center); // back onto the sphere: the error of t drops out along n
     LocalPoint local;
     local.p = center + n * static_cast<double>(sphere.radius);
     local.magnitude = abs(local.p);
     local.ng = local.ns = n;
+    local.unit = true;
+    if (detail == SurfaceDetail::kWithoutUv) return local;
     local.uv = sphere_uv(Vec3(n));
     const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
     if (ring > 0) { // at the poles u has no direction
@@ -49,7 +51,7 @@ LocalPoint on_quad(const Quad& quad, double u, double v) {
     return local;
 }
 
-LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v) {
+LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v, SurfaceDetail detail) {
     const auto& index = mesh.triangles[primitive];
     const double w = 1 - u - v;
     const Vec3d a(mesh.positions[index[0]]), b(mesh.positions[index[1]]), c(mesh.positions[index[2]]);
@@ -61,6 +63,7 @@ LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, doub
     if (!mesh.normals.empty())
         local.ns =
             Vec3d(mesh.normals[index[0]]) * w + Vec3d(mesh.normals[index[1]]) * u + Vec3d(mesh.normals[index[2]]) * v;
+    if (detail == SurfaceDetail::kWithoutUv) return local;
     if (mesh.uvs.empty()) {
         local.uv = {static_cast<float>(u), static_cast<float>(v)};
         local.dpdu = ab;
@@ -107,11 +110,11 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
 }
 
 SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,
-                           const Mat4& to_object, bool identity) {
+                           const Mat4& to_object, bool identity, SurfaceDetail detail) {
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
     LocalPoint local;
     if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-        local = on_triangle(*mesh, hit.primitive, u, v);
+        local = on_triangle(*mesh, hit.primitive, u, v, detail);
     } else if (const auto* list = std::get_if<QuadList>(&shape)) {
         local = on_quad(list->quads[hit.primitive], u, v);
     } else {
@@ -120,7 +123,7 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
             const Mat4d m(to_world), inverse(to_object);
             exact = {transform_point_back(m, inverse, exact.origin), transform_vector(inverse, exact.direction)};
         }
-        local = on_sphere(std::get<Sphere>(shape), exact, static_cast<double>(hit.t));
+        local = on_sphere(std::get<Sphere>(shape), exact, static_cast<double>(hit.t), detail);
     }
 
     SurfacePoint point;
@@ -132,8 +135,8 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     if (identity) {
         point.p = point.p_object;
         point.p_error = Vec3(local.magnitude * kRounding);
-        point.ng = unit(local.ng);
-        point.ns = unit(local.ns);
+        point.ng = local.unit ? Vec3(local.ng) : unit(local.ng);
+        point.ns = local.ns == local.ng ? point.ng : unit(local.ns);
         point.dpdu = Vec3(local.dpdu);
         point.dpdv = Vec3(local.dpdv);
     } else {

@@ -24,9 +24,14 @@ struct SurfacePoint {
 /// (Pharr, Jakob and Humphreys 2023, §6.8.6).
 Vec3 offset_origin(const SurfacePoint& point, Vec3 w);
 
+/// What of a surface point is asked for: only textures look at uv, its derivatives and p_object, which cost more than
+/// all the rest.
+enum class SurfaceDetail { kAll, kWithoutUv };
+
 /// The surface point of a hit of `ray` on a shape under to_world (to_object its inverse; ray in the world). Fills all
-/// fields but object and material; `identity` promises that to_world is the identity, and saves the arithmetic.
+/// fields but object and material, or leaves out those that `detail` says; `identity` promises that to_world is the
+/// identity, and saves the arithmetic.
 SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,
-                           const Mat4& to_object, bool identity);
+                           const Mat4& to_object, bool identity, SurfaceDetail detail = SurfaceDetail::kAll);
 
 } // namespace duet

@@ -1,7 +1,6 @@
 #include "common/light/environment.h"
 
 #include "common/geometry/sphere.h"
-#include "common/sampling/warp.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,42 +9,15 @@ namespace duet {
 
 namespace {
 
-std::optional<EnvironmentSample> checked(Vec3 wi, Rgb radiance, float pdf) {
-    if (!(pdf > 0) || !std::isfinite(pdf)) return std::nullopt;
-    return EnvironmentSample{wi, radiance, pdf};
-}
-
 // Constant -----------------------------------------------------------------------------------------------------------
 
 Rgb look_up(const ConstantEnvironment& e, Vec3) { return e.radiance; }
 bool black(const ConstantEnvironment& e) { return is_black(e.radiance); }
-float density(const ConstantEnvironment& e, Vec3) { return black(e) ? 0.0f : kUniformSpherePdf; }
-std::optional<EnvironmentSample> draw(const ConstantEnvironment& e, Vec2 u) {
-    if (black(e)) return std::nullopt;
-    return EnvironmentSample{uniform_sphere(u), e.radiance, kUniformSpherePdf};
-}
 
 // Sky ----------------------------------------------------------------------------------------------------------------
-// A uniform direction has a uniform height h = (y + 1)/2 (Archimedes), so a luminance linear in h is sampled by a
-// linear density p(h) = 2·(a(1 − h) + b·h)/(a + b) of the height, p(h)/4π by solid angle.
 
-float height(Vec3 w) { return clamp(0.5f * (w.y + 1), 0.0f, 1.0f); }
-Rgb look_up(const SkyEnvironment& e, Vec3 w) { return lerp(e.down, e.up, height(w)); }
+Rgb look_up(const SkyEnvironment& e, Vec3 w) { return lerp(e.down, e.up, clamp(0.5f * (w.y + 1), 0.0f, 1.0f)); }
 bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up); }
-float density(const SkyEnvironment& e, Vec3 w) {
-    const float a = luminance(e.down), b = luminance(e.up);
-    return a + b > 0 ? 2 * lerp(a, b, height(w)) / (a + b) * kUniformSpherePdf : 0.0f;
-}
-std::optional<EnvironmentSample> draw(const SkyEnvironment& e, Vec2 u) {
-    if (black(e)) return std::nullopt;
-    const double a = static_cast<double>(luminance(e.down)), b = static_cast<double>(luminance(e.up));
-    // The inverse of (a·h + (b − a)·h²/2)·2/(a + b), its difference rationalised.
-    const double x = static_cast<double>(u.y), root = std::sqrt(lerp(a * a, b * b, x));
-    const double h = a + root > 0 ? std::min(x * (a + b) / (a + root), 1.0) : 0.0;
-    const double ring = 2 * std::sqrt(h * (1 - h)), phi = 2 * kPiDouble * static_cast<double>(u.x);
-    const Vec3 wi(Vec3d(ring * std::cos(phi), 2 * h - 1, ring * std::sin(phi)));
-    return checked(wi, look_up(e, wi), density(e, wi));
-}
 
 // Picture ------------------------------------------------------------------------------------------------------------
 // The mapping turns about +y by shifting u. Within a row of the distribution the *height* y of a direction is uniform,
@@ -87,19 +59,19 @@ Rgb look_up(const ImageEnvironment& e, Vec3 w) {
     const Rgb lower = lerp(pixel(i, j + 1), pixel(i + 1, j + 1), x - left);
     return lerp(upper, lower, y - top) * e.scale;
 }
-bool black(const ImageEnvironment& e) { return e.scale == 0 || e.distribution.integral() == 0; }
+bool black(const ImageEnvironment& e) { return e.scale == 0 || e.dark; }
 float cell_density(const ImageEnvironment& e, float pdf_uv, float v) {
     const int rows = e.image.height();
     const double extent = band(band_index(v, rows), static_cast<std::size_t>(rows)).extent;
     return static_cast<float>(static_cast<double>(pdf_uv) / (2 * kPiDouble * static_cast<double>(rows) * extent));
 }
 float density(const ImageEnvironment& e, Vec3 w) {
-    if (black(e)) return 0;
+    if (black(e) || e.excess == 0) return 0;
     const Vec2 uv = picture_uv(e, w);
     return cell_density(e, e.distribution.pdf(uv), uv.y);
 }
 std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
-    if (black(e)) return std::nullopt;
+    if (black(e) || e.excess == 0) return std::nullopt;
     const Distribution2D::Sample s = e.distribution.sample(u);
     const auto rows = static_cast<std::size_t>(e.image.height());
     const std::size_t k = band_index(s.uv.y, e.image.height());
@@ -108,12 +80,13 @@ std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
     const double y = std::clamp(row.low + within * row.extent, -1.0, 1.0), ring = std::sqrt((1 - y) * (1 + y));
     const double longitude = (static_cast<double>(s.uv.x) - 0.5) * 2 * kPiDouble - static_cast<double>(e.rotation);
     const Vec3 wi(Vec3d(ring * std::sin(longitude), y, -ring * std::cos(longitude)));
-    return checked(wi, look_up(e, wi), cell_density(e, s.pdf, s.uv.y));
+    const float pdf = cell_density(e, s.pdf, s.uv.y);
+    if (!(pdf > 0) || !std::isfinite(pdf)) return std::nullopt;
+    return EnvironmentSample{wi, look_up(e, wi), pdf};
 }
 
 /// Luminance of each pixel's cell, integrated over solid angle up to a factor, rows from below. The mean of a bilinear
-/// function over a pixel weights the three pixels of each axis by 1/8, 6/8, 1/8; so a cell is positive wherever the
-/// interpolated radiance in it is.
+/// function over a pixel weights the three pixels of each axis by 1/8, 6/8, 1/8.
 std::vector<double> cell_weights(const ImageRgb& image) {
     const int width = image.width(), rows = image.height();
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(rows);
@@ -134,6 +107,30 @@ std::vector<double> cell_weights(const ImageRgb& image) {
     return weights;
 }
 
+/// A picture is sampled where the part of its light above the mean is more than this.
+constexpr double kUneven = 0.25;
+
+/// Makes the distribution of what lies above the mean, where that is enough to be worth a shadow ray.
+void distribute_excess(ImageEnvironment& e) {
+    std::vector<double> weights = cell_weights(e.image);
+    const int width = e.image.width();
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(e.image.height());
+    const double cells = 2 * static_cast<double>(w); // the bands' extents add up to 2
+    double mean = 0, excess = 0;
+    for (const double weight : weights) mean += weight / cells;
+    for (std::size_t k = 0; k < h; ++k) {
+        const double mean_of_cell = mean * band(k, h).extent;
+        for (std::size_t x = 0; x < w; ++x) {
+            double& weight = weights[k * w + x];
+            weight = std::max(weight - mean_of_cell, 0.0);
+            excess += weight / cells;
+        }
+    }
+    if (!(excess > kUneven * mean)) return;
+    e.excess = static_cast<float>(excess);
+    e.distribution = Distribution2D(weights, width, e.image.height());
+}
+
 } // namespace
 
 ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotation) {
@@ -145,8 +142,12 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
         if (!is_finite(c)) throw Error("the environment's picture has a pixel that is infinite or not a number");
         c = {max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)};
     }
-    ImageEnvironment e{std::move(image), scale, rotation, {}};
-    e.distribution = Distribution2D(cell_weights(e.image), e.image.width(), e.image.height());
+    ImageEnvironment e;
+    e.dark = std::all_of(image.pixels().begin(), image.pixels().end(), [](Rgb c) { return is_black(c); });
+    e.image = std::move(image);
+    e.scale = scale;
+    e.rotation = rotation;
+    distribute_excess(e);
     return e;
 }
 
@@ -154,10 +155,16 @@ Rgb radiance(const Environment& environment, Vec3 w) {
     return std::visit([&](const auto& e) { return look_up(e, w); }, environment);
 }
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u) {
-    return std::visit([&](const auto& e) { return draw(e, u); }, environment);
+    const auto* picture = std::get_if<ImageEnvironment>(&environment);
+    return picture != nullptr ? draw(*picture, u) : std::nullopt;
 }
 float pdf(const Environment& environment, Vec3 w) {
-    return std::visit([&](const auto& e) { return density(e, w); }, environment);
+    const auto* picture = std::get_if<ImageEnvironment>(&environment);
+    return picture != nullptr ? density(*picture, w) : 0.0f;
+}
+float sampled_irradiance(const Environment& environment) {
+    const auto* picture = std::get_if<ImageEnvironment>(&environment);
+    return picture != nullptr && !black(*picture) ? kPi * picture->scale * picture->excess : 0.0f;
 }
 bool is_black(const Environment& environment) {
     return std::visit([](const auto& e) { return black(e); }, environment);

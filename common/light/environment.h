@@ -1,4 +1,10 @@
 // Light from infinitely far in all directions.
+//
+// Rays that follow the materials find an even sky well enough, and only unevenness calls for samples of its own: so it
+// is the light *above the mean* that is sampled, and all light must also be looked for by BSDF samples, the two combined
+// by multiple importance sampling («MIS compensation», Karlík et al. 2019, «MIS Compensation: Optimizing Sampling
+// Techniques in Multiple Importance Sampling», §5). A constant sky or a plain gradient has no samples at all, which
+// saves a shadow ray at every vertex.
 #pragma once
 
 #include "common/image/image.h"
@@ -20,9 +26,12 @@ struct SkyEnvironment {
 /// A lat-long picture, by the mapping of sphere_uv: u = ½ + atan2(x, −z)/2π, top row = +y; bilinear.
 struct ImageEnvironment {
     ImageRgb image;
-    float scale = 1;             ///< multiplies the picture
-    float rotation = 0;          ///< radians about +y, counter-clockwise seen from above
-    Distribution2D distribution; ///< over (u, v) by luminance × sin θ; made by make_image_environment
+    float scale = 1;    ///< multiplies the picture
+    float rotation = 0; ///< radians about +y, counter-clockwise seen from above
+    // Made by make_image_environment:
+    bool dark = true;            ///< all pixels are black
+    float excess = 0;            ///< mean over directions of the luminance above its mean; 0: too little to be sampled
+    Distribution2D distribution; ///< of that part, over (u, v); empty where it is not sampled
 };
 using Environment = std::variant<ConstantEnvironment, SkyEnvironment, ImageEnvironment>;
 
@@ -38,14 +47,16 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
 
 /// Radiance from direction w (unit).
 Rgb radiance(const Environment& environment, Vec3 w);
-/// A direction by importance: uniform over the whole sphere for constant, proportional to luminance for sky and image
-/// (for the image: to the mean of each pixel's cell). Empty if it is black. u in [0, 1)².
+/// A direction in proportion to the luminance above the mean (of a picture: to the mean of each pixel's cell), or
+/// nothing, where an environment has too little of it: BSDF samples then find its light best. u in [0, 1)².
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u);
 /// The density with which sample would return w.
 float pdf(const Environment& environment, Vec3 w);
+/// What sample's light would give a surface that faced it all, W/m²: what the choice among lights weighs it by. 0 where
+/// there is nothing to sample.
+float sampled_irradiance(const Environment& environment);
 bool is_black(const Environment& environment);
-/// Radiance averaged over all directions, exact up to the bilinear blur of a picture's rows: what the choice among
-/// lights weighs the environment by.
+/// Radiance averaged over all directions, exact up to the bilinear blur of a picture's rows.
 Rgb mean_radiance(const Environment& environment);
 /// ∫ L(w) max(0, n·w) dw, in closed form for constant and sky; by second-order spherical harmonics is the rasterizer's
 /// business.

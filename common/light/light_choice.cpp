@@ -1,43 +1,83 @@
 #include "common/light/light_choice.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace duet {
 
-LightChooser::LightChooser(const std::vector<Light>& lights, float environment_power, float scene_radius)
-    : light_count_(lights.size()) {
-    std::vector<double> powers;
-    powers.reserve(lights.size() + 1);
-    for (const Light& light : lights) powers.push_back(static_cast<double>(light_power(light, scene_radius)));
-    powers.push_back(static_cast<double>(environment_power));
-    // A power may exceed float's range at extreme scales: such a light takes (nearly) all samples.
-    for (double& power : powers)
-        power = power > 0 ? std::min(power, static_cast<double>(std::numeric_limits<float>::max())) : 0.0;
-    // Power says little of what reaches a point: the sun and the sky of a scene a kilometre wide would starve the lamp
-    // on the table. Half of the samples are shared evenly, so no light's probability is below 1/2n.
-    double total = 0;
-    for (const double power : powers) total += power;
-    const auto lit = static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0; }));
-    if (total > 0)
-        for (double& power : powers) power = power > 0 ? 0.5 / lit + 0.5 * (power / total) : 0.0;
-    distribution_ = Distribution1D(powers);
+namespace {
+
+/// What is estimated is irradiance without shadows. A sun that no window lets in must not starve the lamp in the room:
+/// this part of the samples is shared evenly among distant lights and the tree of all others.
+constexpr float kEven = 0.5f;
+
+} // namespace
+
+LightChooser::LightChooser(const std::vector<Light>& lights, float sampled_irradiance)
+    : light_count_(lights.size()), tree_(lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const auto* sun = std::get_if<SunLight>(&lights[i]);
+        if (sun != nullptr && !is_black(sun->irradiance))
+            distant_.push_back({i, -sun->direction, average(sun->irradiance)});
+    }
+    if (sampled_irradiance > 0) distant_.push_back({light_count_, Vec3(), sampled_irradiance});
+    sources_ = distant_.size() + (tree_.empty() ? 0 : 1);
 }
 
-std::optional<LightChoice> LightChooser::sample(float u) const {
-    if (empty()) return std::nullopt;
-    const Distribution1D::Sample s = distribution_.sample(u);
-    return LightChoice{s.index, distribution_.probability(s.index), s.remapped};
+float LightChooser::weight(const Distant& distant, const LightReceiver& receiver) const {
+    if (distant.index == light_count_ || receiver.n == Vec3()) return distant.irradiance;
+    return distant.irradiance * max(dot(distant.to_light, receiver.n), 0.0f);
 }
 
-float LightChooser::probability(std::size_t index) const {
-    return !empty() && index < distribution_.size() ? distribution_.probability(index) : 0.0f;
+float LightChooser::Weights::probability(float weight) const {
+    return weight > 0 ? kEven / static_cast<float>(lit) + (1 - kEven) * (weight / sum) : 0.0f;
 }
 
-float environment_power(const Environment& environment, float scene_radius) {
-    // From each direction of the sphere's 4π, radiance times the ball's cross-section π r².
-    const double r = static_cast<double>(scene_radius);
-    return static_cast<float>(4 * kPiDouble * kPiDouble * r * r *
-                              static_cast<double>(average(mean_radiance(environment))));
+LightChooser::Weights LightChooser::weights(const LightReceiver& receiver) const {
+    Weights all;
+    all.tree = min(tree_.irradiance(receiver), std::numeric_limits<float>::max());
+    const auto add = [&](float weight) {
+        all.sum += weight;
+        all.lit += weight > 0;
+    };
+    add(all.tree);
+    for (const Distant& distant : distant_) add(weight(distant, receiver));
+    return all;
+}
+
+std::optional<LightChoice> LightChooser::sample(const LightReceiver& receiver, float u) const {
+    if (distant_.empty()) return tree_.sample(receiver, u);
+    if (sources_ == 1) return LightChoice{distant_[0].index, 1, u};
+    const Weights all = weights(receiver);
+    const auto choose = [&](float probability) { // or leave u for the next
+        if (!(u < probability)) {
+            u -= probability;
+            return false;
+        }
+        u = min(u / probability, kOneMinusEpsilon);
+        return true;
+    };
+    const float through_tree = all.probability(all.tree);
+    if (choose(through_tree)) {
+        std::optional<LightChoice> choice = tree_.sample(receiver, u);
+        if (choice) choice->probability *= through_tree;
+        return choice;
+    }
+    for (const Distant& distant : distant_) {
+        const float probability = all.probability(weight(distant, receiver));
+        if (choose(probability)) return LightChoice{distant.index, probability, u};
+    }
+    return std::nullopt; // nothing lights the receiver, or u fell into the rounding of the sum
+}
+
+float LightChooser::probability(const LightReceiver& receiver, std::size_t index) const {
+    if (distant_.empty()) return tree_.probability(receiver, index);
+    const auto found = std::find_if(distant_.begin(), distant_.end(), [&](const Distant& d) { return d.index == index; });
+    if (sources_ == 1) return found != distant_.end() ? 1.0f : 0.0f;
+    const Weights all = weights(receiver);
+    if (found != distant_.end()) return all.probability(weight(*found, receiver));
+    const float in_tree = tree_.probability(receiver, index);
+    return in_tree > 0 ? all.probability(all.tree) * in_tree : 0.0f;
 }
 
 } // namespace duet

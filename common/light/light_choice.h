@@ -1,45 +1,53 @@
-// Which light to sample: one of the scene's, or the environment, in proportion to power.
+// Which light to sample: by what each could contribute at a point.
 #pragma once
 
 #include "common/light/environment.h"
 #include "common/light/light.h"
-#include "common/sampling/distribution.h"
+#include "common/light/light_tree.h"
 
 #include <optional>
 #include <vector>
 
 namespace duet {
 
-struct LightChoice {
-    std::size_t index; ///< into the list of lights; its size stands for the environment
-    float probability; ///< of this choice, > 0
-    float remapped;    ///< what is left of the number that chose: uniform in [0, 1)
-};
-
 /// Chooses among lights and the environment. Index i < light_count() is a light, index light_count() the environment.
 class LightChooser {
 public:
     LightChooser() = default;
-    /// environment_power: W, of environment_power(); scene_radius: metres, of a ball around all objects, for suns.
-    LightChooser(const std::vector<Light>& lights, float environment_power, float scene_radius);
+    /// sampled_irradiance: of the environment (see there), W/m²; 0: it is not sampled.
+    LightChooser(const std::vector<Light>& lights, float sampled_irradiance);
 
-    /// u in [0, 1). Empty where nothing emits.
-    std::optional<LightChoice> sample(float u) const;
-    /// The probability with which `index` is chosen; 0 beyond the last.
-    float probability(std::size_t index) const;
+    /// u in [0, 1). Empty where nothing can light the receiver.
+    std::optional<LightChoice> sample(const LightReceiver& receiver, float u) const;
+    /// The probability with which sample chooses `index`; 0 beyond the last.
+    float probability(const LightReceiver& receiver, std::size_t index) const;
 
     std::size_t light_count() const { return light_count_; }
     std::size_t environment_index() const { return light_count_; }
     /// Nothing emits: there is no light to sample.
-    bool empty() const { return distribution_.integral() == 0; }
+    bool empty() const { return sources_ == 0; }
 
 private:
-    std::size_t light_count_ = 0;
-    Distribution1D distribution_;
-};
+    /// Lights infinitely far away; the tree of all others is one choice more.
+    struct Distant {
+        std::size_t index;
+        Vec3 to_light; ///< of a sun; (0, 0, 0) for the environment
+        float irradiance;
+    };
+    float weight(const Distant& distant, const LightReceiver& receiver) const;
+    /// What the choices weigh at a receiver, W/m².
+    struct Weights {
+        float tree = 0, sum = 0;
+        int lit = 0; ///< choices of a weight above 0
+        /// Of a choice of this weight.
+        float probability(float weight) const;
+    };
+    Weights weights(const LightReceiver& receiver) const;
 
-/// The flux that the environment sends through a ball of the scene's radius, W, averaged over channels as light_power
-/// is.
-float environment_power(const Environment& environment, float scene_radius);
+    std::size_t light_count_ = 0;
+    std::size_t sources_ = 0; ///< choices: distant lights and the tree
+    std::vector<Distant> distant_;
+    LightTree tree_;
+};
 
 } // namespace duet

@@ -16,8 +16,8 @@ struct SolidAngleSample {
 // For each shape: a direction from p to it, and the density with which sample_solid_angle returns the direction to its
 // point q. Empty, and 0, where p lies in the plane of a flat shape. u in [0, 1)².
 
-/// Near: uniform by solid angle (a quad as two spherical triangles). Far: uniform by area, which is nearly the same
-/// there.
+/// Near: uniform by solid angle (a quad as a spherical rectangle, or, where its sides are not at right angles, as two
+/// triangles). Far: uniform by area, which is nearly the same there.
 std::optional<SolidAngleSample> sample_solid_angle(const SurfaceLight::Triangle& triangle, Vec3d p, Vec2d u);
 double solid_angle_pdf(const SurfaceLight::Triangle& triangle, Vec3d p, Vec3d q);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/material/bsdf.h"
+#include "common/sampling/warp.h"
 #include "common/texture/texture.h"
 
 namespace duet {
@@ -11,10 +12,18 @@ struct DiffuseBsdf {
     Rgb albedo;
 
     /// albedo / π, where wo and wi are on one side.
-    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    Rgb eval(Vec3 wo, Vec3 wi, TransportMode) const { return same_hemisphere(wo, wi) ? albedo * kInvPi : Rgb(); }
     /// Cosine-distributed on wo's side; never empty for wo.z ≠ 0.
-    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
-    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    std::optional<BsdfSample> sample(Vec3 wo, float, Vec2 u, TransportMode) const {
+        if (wo.z == 0) return std::nullopt;
+        Vec3 wi = cosine_hemisphere(u);
+        const float density = cosine_hemisphere_pdf(wi.z);
+        if (wo.z < 0) wi.z = -wi.z;
+        return BsdfSample{wi, albedo, density}; // (albedo / π)·cos / (cos / π)
+    }
+    float pdf(Vec3 wo, Vec3 wi, TransportMode) const {
+        return same_hemisphere(wo, wi) ? cosine_hemisphere_pdf(abs_cos_theta(wi)) : 0.0f;
+    }
 };
 
 struct Diffuse {

@@ -6,6 +6,7 @@
 // tangent: nothing divides by a cosine that may be tiny.
 #pragma once
 
+#include "common/sampling/warp.h"
 #include "common/system/sabotage.h"
 #include "common/vec/vec.h"
 
@@ -61,9 +62,9 @@ template <Arithmetic T> Vec3T<T> ggx_sample_visible_normal(Vec3T<T> wo, T alpha,
     // wo.
     const T gap = u.y * (T(1) + w.z);
     const T r = safe_sqrt(gap * (T(2) - gap));
-    const T phi = T(2 * kPiDouble) * u.x;
+    const Vec2T<T> circle = unit_circle(u.x);
     const T z = sabotaged(Guard::kVisibleNormals) ? T(1) - u.y : (T(1) - u.y) * (T(1) + w.z);
-    return normalize(Vec3T<T>(alpha * (r * std::cos(phi) + w.x), alpha * (r * std::sin(phi) + w.y), z));
+    return normalize(Vec3T<T>(alpha * (r * circle.x + w.x), alpha * (r * circle.y + w.y), z));
 }
 
 } // namespace duet

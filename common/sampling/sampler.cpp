@@ -3,16 +3,19 @@
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
 #include "common/system/error.h"
+#include "common/vec/simd.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 namespace duet {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SamplerKind>, 4> kNames{{{"sobol", SamplerKind::kSobol},
+constexpr std::array<std::pair<std::string_view, SamplerKind>, 5> kNames{{{"sobol", SamplerKind::kSobol},
+                                                                          {"blue-noise", SamplerKind::kBlueNoise},
                                                                           {"stratified", SamplerKind::kStratified},
                                                                           {"independent", SamplerKind::kIndependent},
                                                                           {"center", SamplerKind::kCenter}}};
@@ -24,18 +27,58 @@ float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominato
 
 // Padding (Kollig and Keller 2002): the points of each pair of dimensions are those of the plane's Sobol sequence,
 // scrambled anew and visited in an order of their own. Shuffling the index by an Owen scrambling keeps every aligned
-// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5).
+// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5). Everything is
+// computed for one number or, U being a batch, for several dimensions at once.
 
-float sobol_1d(std::uint32_t index, std::uint64_t key) {
-    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
-    return unit_float(reverse_bits(owen_scramble(point, low_bits(key))));
+/// The seed of a dimension's shuffling, well mixed, from the pixel's 64 bits.
+template <typename U> U dimension_seed(std::uint64_t pixel, U dimension) {
+    return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + U(low_bits(pixel))) ^ U(high_bits(pixel)));
+}
+/// The seed of the scrambling of its first (0) or second (1) coordinate.
+template <typename U> U scramble_seed(U seed, U coordinate) {
+    return mix_bits_32(seed + (coordinate + U(1u)) * U(kGoldenStep32));
+}
+/// The point of a pair that the sample visits, its digits reversed.
+template <typename U> U sobol_point(U reversed_index, U seed) {
+    return reverse_bits(owen_scramble(reversed_index, seed));
 }
 
-Vec2 sobol_2d(std::uint32_t index, std::uint64_t key) {
-    const std::uint64_t scrambles = mix_bits(key);
-    const std::uint32_t point = reverse_bits(owen_scramble(reverse_bits(index), high_bits(key)));
-    return {unit_float(reverse_bits(owen_scramble(point, high_bits(scrambles)))),
-            unit_float(reverse_bits(owen_scramble(sobol_second(point), low_bits(scrambles))))};
+float sobol_1d(std::uint32_t reversed_index, std::uint32_t seed) {
+    const std::uint32_t point = sobol_point(reversed_index, seed);
+    return unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u))));
+}
+
+Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
+    const std::uint32_t point = sobol_point(reversed_index, seed);
+    return {unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u)))),
+            unit_float(reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, 1u))))};
+}
+
+/// Pairs of dimensions from `first` on, a number a lane.
+std::array<float, Sampler::kBlock> sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
+    using Batch = xsimd::make_sized_batch_t<std::uint32_t, kSimdLanes>;
+    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6};
+    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
+    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
+    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes) {
+        const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
+        const Batch seed = dimension_seed(pixel, Batch::load_aligned(&kPairs[lane]) + Batch(first));
+        const Batch point = sobol_point(Batch(reversed_index), seed);
+        const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
+        reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(&bits[lane]);
+    }
+    std::array<float, Sampler::kBlock> numbers;
+    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
+    return numbers;
+}
+
+/// The lower 16 bits at even places.
+constexpr std::uint32_t spread_bits(std::uint32_t x) {
+    x &= 0xffffu;
+    x = (x | x << 8) & 0x00ff00ffu;
+    x = (x | x << 4) & 0x0f0f0f0fu;
+    x = (x | x << 2) & 0x33333333u;
+    return (x | x << 1) & 0x55555555u;
 }
 
 float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
@@ -66,7 +109,11 @@ Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) 
 SamplerKind sampler_kind(std::string_view name) {
     for (const auto& [known, kind] : kNames)
         if (known == name) return kind;
-    throw Error(message("unknown sampler '", name, "': expected sobol, stratified, independent or center"));
+    throw Error(message("unknown sampler '", name, "': expected sobol, blue-noise, stratified, independent or center"));
+}
+
+bool depends_on_count(SamplerKind kind) {
+    return kind == SamplerKind::kStratified || kind == SamplerKind::kBlueNoise;
 }
 
 std::string_view sampler_name(SamplerKind kind) {
@@ -86,49 +133,72 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
     pixel_hash_ = hash_combine(hash_combine(seed_, pixel), replicate_);
+    if (kind_ == SamplerKind::kBlueNoise)
+        share_sequence(static_cast<std::uint32_t>(pixel_x), static_cast<std::uint32_t>(pixel_y));
+    reversed_index_ = reverse_bits(index_);
+}
+
+// Pixels along a Z-curve take consecutive blocks of one sequence: blocks of 4, 16, 64 … pixels are nets together, too,
+// so that errors of neighbours cancel, and what noise is left has little of the low frequencies that eyes see (Ahmed and
+// Wonka 2020, «Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels»,
+// §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
+// sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
+void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
+    const std::uint32_t samples = (samples_per_pixel_ + 1) / 2;
+    const int digits = std::bit_width(samples - 1);       // of the index within a pixel
+    const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
+    const std::uint32_t mask = (1u << side) - 1;
+    const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;
+    const std::uint64_t tile = (static_cast<std::uint64_t>(pixel_y >> side) << 32) | (pixel_x >> side);
+    pixel_hash_ = hash_combine(hash_combine(seed_, tile), replicate_);
+    const std::uint32_t round = index_ >> digits; // beyond the promised number of samples: fresh sequences
+    if (round > 0) pixel_hash_ = hash_combine(pixel_hash_, round);
+    index_ = (curve << digits) | (index_ & ((1u << digits) - 1));
 }
 
 float Sampler::get_1d() {
-    const std::uint64_t key = stream_number(pixel_hash_, dimension_++);
-    switch (kind_) {
-    case SamplerKind::kStratified:
-        return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
-    case SamplerKind::kIndependent:
-        return unit_float(high_bits(stream_number(key, index_)));
-    case SamplerKind::kSobol:
-    case SamplerKind::kCenter:
-        break;
-    }
-    return sobol_1d(index_, key);
+    const std::uint32_t dimension = dimension_++;
+    if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    const std::uint64_t key = stream_number(pixel_hash_, dimension);
+    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
+    return unit_float(high_bits(stream_number(key, index_)));
 }
 
 Vec2 Sampler::get_2d() {
-    const std::uint64_t key = stream_number(pixel_hash_, dimension_);
+    const std::uint32_t dimension = dimension_;
     dimension_ += 2;
-    switch (kind_) {
-    case SamplerKind::kStratified:
-        return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
-    case SamplerKind::kIndependent: {
-        const std::uint64_t bits = stream_number(key, index_);
-        return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
-    }
-    case SamplerKind::kSobol:
-    case SamplerKind::kCenter:
-        break;
-    }
-    return sobol_2d(index_, key);
+    if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    const std::uint64_t key = stream_number(pixel_hash_, dimension);
+    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
+    const std::uint64_t bits = stream_number(key, index_);
+    return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
 }
 
-Vec2 Sampler::get_centered_2d() {
-    if (kind_ != SamplerKind::kCenter) return get_2d();
-    dimension_ += 2;
-    return {0.5f, 0.5f};
+std::array<float, Sampler::kBlock> Sampler::get_block() {
+    std::array<float, kBlock> numbers;
+    if (is_sobol()) {
+        numbers = sobol_block(reversed_index_, pixel_hash_, dimension_);
+        dimension_ += kBlock;
+        return numbers;
+    }
+    for (std::size_t i = 0; i < kBlock; i += 2) {
+        const Vec2 pair = get_2d();
+        numbers[i] = pair.x;
+        numbers[i + 1] = pair.y;
+    }
+    return numbers;
 }
 
-float Sampler::get_time() {
-    if (kind_ != SamplerKind::kCenter) return get_1d();
-    ++dimension_;
-    return 0;
+Vec2 Sampler::pixel_numbers() {
+    dimension_ = 0;
+    return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
+}
+
+CameraNumbers Sampler::camera_numbers() {
+    dimension_ = 0;
+    const std::array<float, kBlock> u = get_block();
+    if (kind_ == SamplerKind::kCenter) return {{0.5f, 0.5f}, {0.5f, 0.5f}, 0};
+    return {{u[0], u[1]}, {u[2], u[3]}, u[4]};
 }
 
 } // namespace duet

@@ -4,6 +4,7 @@
 
 #include "common/vec/vec.h"
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -11,20 +12,29 @@ namespace duet {
 
 enum class SamplerKind {
     kSobol,       ///< Owen-scrambled Sobol points, padded by pairs of dimensions (Burley 2020)
+    kBlueNoise,   ///< the same, neighbouring pixels sharing a sequence; needs the number of samples
     kStratified,  ///< jittered strata, shuffled by dimension; needs the number of samples
     kIndependent, ///< independent uniform numbers
     kCenter,      ///< pixel and lens centre, shutter open; all other dimensions as kSobol: for parity of the pipelines
 };
-/// "sobol", "stratified", "independent", "center"; throws Error for another name.
+/// "sobol", "blue-noise", "stratified", "independent", "center"; throws Error for another name.
 SamplerKind sampler_kind(std::string_view name);
 std::string_view sampler_name(SamplerKind kind);
+/// Whether its samples depend on how many the pixel is to get.
+bool depends_on_count(SamplerKind kind);
+
+/// The numbers in [0, 1) that a camera ray uses.
+struct CameraNumbers {
+    Vec2 pixel, lens{0.5f, 0.5f};
+    float time = 0;
+};
 
 /// The numbers of one sample of one pixel, drawn in order of dimension. Samples of one pixel fall into two
 /// replicates, scrambled independently of each other: sample i is point i/2 of replicate i mod 2. Their spread is what
 /// the film estimates its variance from.
 class Sampler {
 public:
-    /// samples_per_pixel: how many samples the pixel will get (stratified needs it; others ignore it).
+    /// samples_per_pixel: how many samples the pixel will get (stratified and blue-noise need it).
     Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel);
 
     /// To dimension 0 of sample `index` of a pixel.
@@ -36,16 +46,24 @@ public:
     /// The next one or two dimensions: numbers in [0, 1).
     float get_1d();
     Vec2 get_2d();
-    /// As get_2d, and as get_1d, but (½, ½) and 0 for kCenter: for the pixel and the lens, and for the time.
-    Vec2 get_centered_2d();
-    float get_time();
+    /// The next eight dimensions as four pairs: what get_2d would give four times, for little more than one costs.
+    static constexpr std::size_t kBlock = 8;
+    std::array<float, kBlock> get_block();
+    /// The first block, or only its first pair, for the camera; of kCenter (½, ½), (½, ½) and 0.
+    CameraNumbers camera_numbers();
+    Vec2 pixel_numbers();
 
 private:
+    bool is_sobol() const {
+        return kind_ == SamplerKind::kSobol || kind_ == SamplerKind::kBlueNoise || kind_ == SamplerKind::kCenter;
+    }
+    void share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y);
+
     SamplerKind kind_;
     std::uint64_t seed_;
     std::uint32_t samples_per_pixel_;
     std::uint64_t pixel_hash_ = 0;
-    std::uint32_t index_ = 0, replicate_ = 0, dimension_ = 0;
+    std::uint32_t index_ = 0, reversed_index_ = 0, replicate_ = 0, dimension_ = 0;
 };
 
 } // namespace duet

@@ -4,8 +4,33 @@
 #include "common/vec/vec.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace duet {
+
+/// 1 − x²/(n(n+1))·(1 − x²/((n+2)(n+3))·(…)), for |x| ≤ π/4 as far as T can tell: the Taylor series of cos x for n = 1,
+/// of sin x / x for n = 2.
+template <int n, Arithmetic T> constexpr T trigonometric_series(T x_squared) {
+    if constexpr (n > (std::is_same_v<T, float> ? 8 : 18))
+        return T(1);
+    else
+        return T(1) - x_squared * static_cast<T>(1.0 / (n * (n + 1))) * trigonometric_series<n + 2>(x_squared);
+}
+
+/// Cosine and sine of an angle within ±π/4, to a few roundings: a fraction of what the library's functions cost, which
+/// serve any angle.
+template <Arithmetic T> constexpr Vec2T<T> unit_circle_near(T angle) {
+    const T squared = angle * angle;
+    return {trigonometric_series<1>(squared), angle * trigonometric_series<2>(squared)};
+}
+
+/// The point (cos 2πu, sin 2πu), u in [0, 1].
+template <Arithmetic T> Vec2T<T> unit_circle(T u) {
+    const int quarter = static_cast<int>(4 * u + T(0.5)); // 4u less this many quarters: exact
+    const Vec2T<T> p = unit_circle_near((4 * u - static_cast<T>(quarter)) * static_cast<T>(kPiDouble / 2));
+    const Vec2T<T> turned = quarter & 1 ? Vec2T<T>(-p.y, p.x) : p;
+    return quarter & 2 ? Vec2T<T>(-turned.x, -turned.y) : turned;
+}
 
 /// The unit disk, uniformly (density 1/π): squares around (½, ½) become circles, so strata stay compact. The centre
 /// maps to the centre (Shirley and Chiu 1997, «A Low Distortion Map Between Disk and Square»).
@@ -13,10 +38,9 @@ template <Arithmetic T> Vec2T<T> concentric_disk(Vec2T<T> u) {
     const T a = T(2) * u.x - T(1), b = T(2) * u.y - T(1);
     if (a == T(0) && b == T(0)) return {};
     const bool wide = std::abs(a) > std::abs(b);
-    const T quarter = static_cast<T>(kPiDouble / 4);
-    const T r = wide ? a : b;
-    const T angle = wide ? quarter * (b / a) : 2 * quarter - quarter * (a / b);
-    return {r * std::cos(angle), r * std::sin(angle)};
+    const T r = wide ? a : b, other = wide ? b : a;
+    const Vec2T<T> p = unit_circle_near(static_cast<T>(kPiDouble / 4) * (other / r)); // about the nearer axis
+    return wide ? Vec2T<T>(r * p.x, r * p.y) : Vec2T<T>(r * p.y, r * p.x);
 }
 
 /// Unit directions about +z with density cos θ / π (Malley's method). z > 0 always: the rim of the disk is moved
@@ -33,19 +57,19 @@ inline float cosine_hemisphere_pdf(float cos_theta) { return max(cos_theta, 0.0f
 
 /// Unit directions of the whole sphere, density 1/4π.
 inline Vec3 uniform_sphere(Vec2 u) {
-    const float phi = 2 * kPi * u.x;
+    const Vec2 circle = unit_circle(u.x);
     const float r = 2 * std::sqrt(u.y * (1 - u.y)); // sin θ = √(1 − z²) without the difference
-    return {r * std::cos(phi), r * std::sin(phi), 1 - 2 * u.y};
+    return {r * circle.x, r * circle.y, 1 - 2 * u.y};
 }
 inline constexpr float kUniformSpherePdf = kInvPi / 4;
 
 /// Unit directions within a cone about +z, uniformly by solid angle: density 1 / (2π·one_minus_cos), with
 /// one_minus_cos = 1 − cos θ_max in (0, 2], which the caller computes without cancellation.
 template <Arithmetic T> Vec3T<T> uniform_cone(Vec2T<T> u, T one_minus_cos) {
-    const T phi = T(2 * kPiDouble) * u.x;
+    const Vec2T<T> circle = unit_circle(u.x);
     const T gap = u.y * one_minus_cos; // 1 − cos θ
     const T r = safe_sqrt(gap * (T(2) - gap));
-    return {r * std::cos(phi), r * std::sin(phi), T(1) - gap};
+    return {r * circle.x, r * circle.y, T(1) - gap};
 }
 template <Arithmetic T> T uniform_cone_pdf(T one_minus_cos) { return T(1) / (T(2 * kPiDouble) * one_minus_cos); }
 

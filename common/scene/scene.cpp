@@ -12,15 +12,15 @@ ObjectTransform object_transform(const Object& object, float time) {
     return {to_world, Mat4(inverse_affine(Mat4d(to_world)))};
 }
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
     SurfacePoint point;
     if (object.moving) {
         const ObjectTransform moved = object_transform(object, ray.time);
-        point = surface_point(shape, hit, ray, moved.to_world, moved.to_object, false);
+        point = surface_point(shape, hit, ray, moved.to_world, moved.to_object, false, detail);
     } else {
-        point = surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity);
+        point = surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity, detail);
     }
     point.object = hit.object;
     point.material = material_index(scene, hit.object, hit.primitive);

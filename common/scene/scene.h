@@ -83,7 +83,8 @@ inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_
 }
 
 /// The surface point of a hit, with material, by the one way that both pipelines share.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit,
+                           SurfaceDetail detail = SurfaceDetail::kAll);
 /// The material of a primitive.
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
 /// The index in Scene::lights of the SurfaceLight of a primitive, or −1 where it emits nothing or moves.

@@ -34,9 +34,13 @@ template <typename T = float> constexpr T gamma_bound(int n) {
     return (static_cast<T>(n) * kRoundoff<T>) / (T(1) - static_cast<T>(n) * kRoundoff<T>);
 }
 
-/// The next float above x; infinity stays. NaN stays NaN.
-inline float next_up(float x) { return std::nextafter(x, std::numeric_limits<float>::infinity()); }
+/// The next float above x; infinity stays. NaN stays NaN. (std::nextafter's result, without its call.)
+inline float next_up(float x) {
+    if (!(x < std::numeric_limits<float>::infinity())) return x;
+    const auto bits = std::bit_cast<std::uint32_t>(x == 0 ? 0.0f : x); // of −0, too, the least positive number is next
+    return std::bit_cast<float>(x >= 0 ? bits + 1 : bits - 1);
+}
 /// The next float below x; −infinity stays. NaN stays NaN.
-inline float next_down(float x) { return std::nextafter(x, -std::numeric_limits<float>::infinity()); }
+inline float next_down(float x) { return -next_up(-x); }
 
 } // namespace duet

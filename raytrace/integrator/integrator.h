@@ -22,19 +22,20 @@ struct RayCounts {
 
 // Dimensions of a sample: the camera's come first, then each vertex of the path has a block of its own. What is left
 // out anywhere moves no number elsewhere.
-inline constexpr std::uint32_t kPixelDimension = 0, kLensDimension = 2, kTimeDimension = 4;
-struct VertexDimensions {
-    std::uint32_t base;
 
-    explicit VertexDimensions(int depth) : base(8 + 8 * static_cast<std::uint32_t>(depth)) {}
-    std::uint32_t bsdf() const { return base; }             ///< 2
-    std::uint32_t light() const { return base + 2; }        ///< 2
-    std::uint32_t light_choice() const { return base + 4; } ///< 1
-    std::uint32_t lobe() const { return base + 5; }         ///< 1
-    std::uint32_t roulette() const { return base + 6; }     ///< 1
+/// The numbers in [0, 1) that a vertex uses.
+struct VertexNumbers {
+    Vec2 bsdf, light;
+    float light_choice, lobe, roulette;
 };
+/// Those of the vertex after `depth` scatterings.
+inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+    sampler.set_dimension(static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1));
+    const std::array<float, Sampler::kBlock> u = sampler.get_block();
+    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
+}
 
-/// An unbiased estimate of the radiance along a camera ray, whose first hit (or none) is given.
+/// An unbiased estimate of the radiance along a camera ray (its direction unit), whose first hit (or none) is given.
 using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
                                  RayCounts& counts);
 

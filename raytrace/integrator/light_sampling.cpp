@@ -5,15 +5,16 @@
 
 namespace duet::raytrace {
 
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, Vec3 p, float choice, Vec2 u) {
-    const std::optional<LightChoice> chosen = lights.sample(choice);
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                                      float choice, Vec2 u) {
+    const std::optional<LightChoice> chosen = lights.sample(receiver, choice);
     if (!chosen) return std::nullopt;
     if (chosen->index == lights.environment_index()) {
         const std::optional<EnvironmentSample> s = sample(scene.environment, u);
         if (!s) return std::nullopt;
         return Arrival{s->wi, s->radiance, s->pdf * chosen->probability, false, kInfinity, -1};
     }
-    const std::optional<LightSample> s = sample_light(scene.lights[chosen->index], p, u);
+    const std::optional<LightSample> s = sample_light(scene.lights[chosen->index], receiver.p, u);
     if (!s) return std::nullopt;
     return Arrival{s->wi,    s->radiance, s->pdf * chosen->probability,
                    s->delta, s->distance, static_cast<std::int64_t>(chosen->index)};
@@ -52,15 +53,18 @@ bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arriva
     return !plan.prepared.accelerator.occluded(ray, end);
 }
 
-float arrival_pdf(const Scene& scene, const LightChooser& lights, Vec3 p, const SurfacePoint& point) {
+float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                  const SurfacePoint& point) {
     const std::int64_t index = surface_light_index(scene, point.object, point.primitive);
     if (index < 0) return 0;
     const auto i = static_cast<std::size_t>(index);
-    return lights.probability(i) * light_pdf(std::get<SurfaceLight>(scene.lights[i]), p, point.p);
+    const float chosen = lights.probability(receiver, i);
+    return chosen > 0 ? chosen * light_pdf(std::get<SurfaceLight>(scene.lights[i]), receiver.p, point.p) : 0.0f;
 }
 
-float arrival_pdf(const Environment& environment, const LightChooser& lights, Vec3 w) {
-    return lights.probability(lights.environment_index()) * pdf(environment, w);
+float arrival_pdf(const Environment& environment, const LightChooser& lights, const LightReceiver& receiver, Vec3 w) {
+    const float density = pdf(environment, w);
+    return density > 0 ? density * lights.probability(receiver, lights.environment_index()) : 0.0f;
 }
 
 } // namespace duet::raytrace

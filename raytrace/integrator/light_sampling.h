@@ -6,7 +6,7 @@
 
 namespace duet::raytrace {
 
-/// Light that could arrive at a point from a light or the environment, chosen by power.
+/// Light that could arrive at a point from a light or the environment.
 struct Arrival {
     Vec3 wi;                 ///< unit, in the world
     Rgb radiance;            ///< as LightSample::radiance
@@ -16,16 +16,18 @@ struct Arrival {
     std::int64_t light = -1; ///< index into Scene::lights; −1: the environment
 };
 /// choice in [0, 1) chooses the light, u in [0, 1)² the point on it. Empty where the chosen one sends nothing.
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, Vec3 p, float choice, Vec2 u);
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                                      float choice, Vec2 u);
 
 /// Whether nothing stands between the vertex and the light. Sends one shadow ray.
 bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival);
 
-/// The density with which sample_arrival at p returns the direction to `point`, which lies on an emissive surface: 0
-/// where that is no light that is sampled (it moves, or does not emit towards p).
-float arrival_pdf(const Scene& scene, const LightChooser& lights, Vec3 p, const SurfacePoint& point);
+/// The density with which sample_arrival returns the direction to `point`, which lies on an emissive surface: 0 where
+/// that is no light that is sampled (it moves, or does not emit towards the receiver).
+float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                  const SurfacePoint& point);
 /// The same of a direction w to the environment.
-float arrival_pdf(const Environment& environment, const LightChooser& lights, Vec3 w);
+float arrival_pdf(const Environment& environment, const LightChooser& lights, const LightReceiver& receiver, Vec3 w);
 
 /// The weight of a sample that was drawn with density `own` and could have been drawn with density `other`: the power
 /// heuristic, β = 2 (Veach 1997, §9.2.4). own > 0.

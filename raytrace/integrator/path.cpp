@@ -12,7 +12,7 @@ namespace {
 
 // How the ray left the vertex before: what its chance to find a light is weighed against.
 struct Departure {
-    Vec3 p;
+    LightReceiver receiver;
     float pdf = 0;
     bool certain = true; // no light sample competes: a camera ray, or a delta lobe
 };
@@ -63,19 +63,19 @@ public:
     auto trace(Ray ray, Hit hit) {
         for (int depth = 0;; ++depth) {
             if (!hit.valid()) {
-                add_environment(normalize(ray.direction), depth);
+                add_environment(ray.direction, depth);
                 break;
             }
-            const Vertex vertex = make_vertex(plan_, ray, hit);
+            const Vertex vertex(plan_, ray, hit);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
             if (depth == plan_.max_depth) break;
-            const VertexDimensions dimensions(depth);
+            const VertexNumbers u = vertex_numbers(sampler_, depth);
             const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
-            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, dimensions, depth);
+            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
             if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) break; // nothing is left to find
-            if (!scatter(vertex, dimensions, ray)) break;
-            if (plan_.russian_roulette && depth >= kFirstRoulette && !survives(dimensions)) break;
+            if (!scatter(vertex, u, ray)) break;
+            if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
             hit = plan_.prepared.accelerator.closest(ray);
             ++counts_.indirect;
         }
@@ -83,30 +83,28 @@ public:
     }
 
 private:
-    static constexpr int kFirstRoulette = 3;
-
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
         float weight = 1;
-        if (!departure_.certain) weight = mis_weight(departure_.pdf, arrival_pdf(*plan_.environment, *plan_.lights, w));
+        if (!departure_.certain)
+            weight = mis_weight(departure_.pdf,
+                                arrival_pdf(*plan_.environment, *plan_.lights, departure_.receiver, w));
         sink_.add(throughput_ * radiance(*plan_.environment, w) * weight, LightSource::kEnvironment, bounces);
     }
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
         if (!plan_.emission) return;
-        const Rgb emission = emitted(*vertex.material, vertex.point, -direction);
+        const Rgb emission = emitted(vertex.material, vertex.point, -direction);
         if (is_black(emission)) return;
         float weight = 1;
         if (!departure_.certain)
-            weight = mis_weight(departure_.pdf, arrival_pdf(plan_.scene, *plan_.lights, departure_.p, vertex.point));
+            weight = mis_weight(departure_.pdf,
+                                arrival_pdf(plan_.scene, *plan_.lights, departure_.receiver, vertex.point));
         sink_.add(throughput_ * emission * weight, source_of(vertex.point), bounces);
     }
 
-    void add_light_sample(const Vertex& vertex, VertexDimensions dimensions, int bounces) {
-        sampler_.set_dimension(dimensions.light_choice());
-        const float choice = sampler_.get_1d();
-        sampler_.set_dimension(dimensions.light());
-        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.point.p, choice, sampler_.get_2d());
+    void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
+        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
         if (!arrival) return;
         const Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
         if (is_black(scattered) && !plan_.black_shadow_rays) return;
@@ -129,17 +127,14 @@ private:
     }
 
     // Chooses the next direction by the BSDF; false where the path ends.
-    bool scatter(const Vertex& vertex, VertexDimensions dimensions, Ray& ray) {
-        sampler_.set_dimension(dimensions.lobe());
-        const float lobe = sampler_.get_1d();
-        sampler_.set_dimension(dimensions.bsdf());
-        const auto s = sample(vertex.bsdf, vertex.wo, lobe, sampler_.get_2d());
+    bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
+        const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
         if (!vertex.consistent(wi, s->wi)) return false;
         throughput_ *= s->weight;
         if (s->transmitted) note_refraction(vertex);
-        departure_ = {vertex.point.p, s->pdf, s->specular || plan_.lights == nullptr};
+        departure_ = {vertex.receiver(), s->pdf, s->specular || plan_.lights == nullptr};
         ray = spawn_ray(vertex, wi);
         return true;
     }
@@ -151,12 +146,14 @@ private:
         refraction_ *= vertex.wo.z > 0 ? 1 / sqr(glass->eta) : sqr(glass->eta);
     }
 
-    // Russian roulette: ends dim paths, and lets the survivors stand for them.
-    bool survives(VertexDimensions dimensions) {
-        const float probability = max_component(throughput_) / refraction_;
+    // Russian roulette: ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier,
+    // and well placed samples suffer most: a path of half its throughput is still worth its rays (README.md has what
+    // other thresholds cost).
+    bool survives(float u) {
+        constexpr float kDim = 0.25f;
+        const float probability = max_component(throughput_) / (refraction_ * kDim);
         if (probability >= 1) return true;
-        sampler_.set_dimension(dimensions.roulette());
-        if (!(sampler_.get_1d() < probability)) return false;
+        if (!(u < probability)) return false;
         throughput_ *= 1 / probability;
         return true;
     }

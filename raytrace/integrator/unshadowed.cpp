@@ -7,34 +7,36 @@ namespace duet::raytrace {
 
 namespace {
 
-// A mirror or glass shows the environment, and none of what stands before it.
-Rgb mirrored_environment(const RenderPlan& plan, const Vertex& vertex, VertexDimensions dimensions, Sampler& sampler) {
+// The environment as BSDF samples find it, and none of what stands before it: all that mirrors and glass show.
+Rgb environment_found(const RenderPlan& plan, const Vertex& vertex, const VertexNumbers& u) {
     if (plan.environment == nullptr) return Rgb();
-    sampler.set_dimension(dimensions.lobe());
-    const float lobe = sampler.get_1d();
-    sampler.set_dimension(dimensions.bsdf());
-    const auto s = sample(vertex.bsdf, vertex.wo, lobe, sampler.get_2d());
+    const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
     if (!s) return Rgb();
     const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
-    return vertex.consistent(wi, s->wi) ? s->weight * radiance(*plan.environment, wi) : Rgb();
+    if (!vertex.consistent(wi, s->wi)) return Rgb();
+    const bool sampled = plan.lights != nullptr && !s->specular;
+    const float other = sampled ? arrival_pdf(*plan.environment, *plan.lights, vertex.receiver(), wi) : 0.0f;
+    return s->weight * radiance(*plan.environment, wi) * mis_weight(s->pdf, other);
+}
+
+Rgb light_sampled(const RenderPlan& plan, const Vertex& vertex, const VertexNumbers& u) {
+    if (plan.lights == nullptr || is_specular(vertex.bsdf)) return Rgb();
+    const auto arrival = sample_arrival(plan.scene, *plan.lights, vertex.receiver(), u.light_choice, u.light);
+    if (!arrival) return Rgb();
+    const Rgb light = vertex.scattered(arrival->wi) * arrival->radiance / arrival->pdf;
+    if (arrival->light >= 0) return light;
+    return light * mis_weight(arrival->pdf, pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi)));
 }
 
 } // namespace
 
 Rgb unshadowed_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts&) {
-    if (!hit.valid()) return plan.environment ? radiance(*plan.environment, normalize(ray.direction)) : Rgb();
-    const Vertex vertex = make_vertex(plan, ray, hit);
-    const Rgb emission = emitted(*vertex.material, vertex.point, -ray.direction);
+    if (!hit.valid()) return plan.environment ? radiance(*plan.environment, ray.direction) : Rgb();
+    const Vertex vertex(plan, ray, hit);
+    const Rgb emission = emitted(vertex.material, vertex.point, -ray.direction);
     if (plan.max_depth == 0) return emission;
-    const VertexDimensions dimensions(0);
-    if (is_specular(vertex.bsdf)) return emission + mirrored_environment(plan, vertex, dimensions, sampler);
-    if (plan.lights == nullptr) return emission;
-    sampler.set_dimension(dimensions.light_choice());
-    const float choice = sampler.get_1d();
-    sampler.set_dimension(dimensions.light());
-    const auto arrival = sample_arrival(plan.scene, *plan.lights, vertex.point.p, choice, sampler.get_2d());
-    if (!arrival) return emission;
-    return emission + vertex.scattered(arrival->wi) * arrival->radiance / arrival->pdf;
+    const VertexNumbers u = vertex_numbers(sampler, 0);
+    return emission + environment_found(plan, vertex, u) + light_sampled(plan, vertex, u);
 }
 
 } // namespace duet::raytrace

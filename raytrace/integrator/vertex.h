@@ -6,12 +6,23 @@
 
 namespace duet::raytrace {
 
-struct Vertex {
-    SurfacePoint point;
-    const Material* material;
-    Bsdf bsdf;
-    Frame frame; ///< about the shading normal: the space in which the BSDF works
-    Vec3 wo;     ///< back along the ray, unit, in that space
+class Vertex {
+public:
+    /// The vertex at a valid hit of a ray. Refers to the plan.
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+    Vertex(const Vertex&) = delete; // bsdf may point into it
+    Vertex& operator=(const Vertex&) = delete;
+
+    const SurfacePoint point;
+    const Material& material;
+    const Frame frame; ///< about the shading normal: the space in which the BSDF works
+    const Vec3 wo;     ///< back along the ray, unit, in that space
+
+private:
+    std::optional<Bsdf> made_; // where a texture varies it
+
+public:
+    const Bsdf& bsdf;
 
     /// f(wo, wi)·|cos θᵢ| for wi in the world (unit); black where wi lies between the geometric and the shading
     /// horizon: light must not leak through the surface.
@@ -19,13 +30,18 @@ struct Vertex {
         const Vec3 local = frame.to_local(wi);
         return consistent(wi, local) ? eval(bsdf, wo, local) * abs_cos_theta(local) : Rgb();
     }
+    /// Where it gathers light: on the side from which it is seen, if it only reflects.
+    LightReceiver receiver() const {
+        if (std::holds_alternative<DielectricBsdf>(bsdf)) return {point.p, Vec3()};
+        return {point.p, wo.z < 0 ? -point.ng : point.ng};
+    }
     /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
     /// frame.
     bool consistent(Vec3 wi, Vec3 local) const { return dot(wi, point.ng) * local.z > 0; }
-};
 
-/// The vertex at a valid hit of a ray.
-Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+private:
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t material_index);
+};
 
 /// A ray that leaves the vertex towards w (world, unit), starting off the surface.
 inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {

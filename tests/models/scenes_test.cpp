@@ -139,6 +139,19 @@ TEST_SUITE("unit") {
         CHECK(std::abs(static_cast<double>(glass) - 0.05 * 480) < 20);
     }
 
+    TEST_CASE("lanterns.json has a thousand lights of very different strength") {
+        const Scene scene = load("lanterns.json");
+        REQUIRE(scene.lights.size() == 1000);
+        float weakest = kInfinity, strongest = 0;
+        for (const Light& light : scene.lights) {
+            const float power = light_power(light, 1);
+            weakest = min(weakest, power);
+            strongest = max(strongest, power);
+        }
+        CHECK(weakest > 0);
+        CHECK(strongest > 20 * weakest);
+    }
+
     TEST_CASE("furnace.json is white, closed and lit evenly") {
         const Scene scene = load("furnace.json");
         for (const char* name : {"sphere", "box"}) check_albedo(scene, name, Rgb(1));

@@ -62,18 +62,19 @@ TEST_SUITE("unit") {
         for (std::uint32_t i = 0; i < 20000; ++i) {
             sampler.start(0, 0, i);
             const Vec3 p(0.5f, 0, 0.5f);
+            const LightReceiver receiver{p, i % 2 == 0 ? Vec3(0, 1, 0) : Vec3()};
             const float choice = sampler.get_1d();
-            const auto arrival = sample_arrival(scene, lights, p, choice, sampler.get_2d());
+            const auto arrival = sample_arrival(scene, lights, receiver, choice, sampler.get_2d());
             if (!arrival) continue;
             if (arrival->light < 0) {
-                CHECK(arrival_pdf(scene.environment, lights, arrival->wi) ==
+                CHECK(arrival_pdf(scene.environment, lights, receiver, arrival->wi) ==
                       doctest::Approx(arrival->pdf).epsilon(1e-3));
                 continue;
             }
             const Ray ray{p, arrival->wi};
             const Hit hit = trace(prepared, ray);
             if (!hit.valid() || hit.t < arrival->distance * 0.999f) continue;
-            CHECK(arrival_pdf(scene, lights, p, surface_point(scene, ray, hit)) ==
+            CHECK(arrival_pdf(scene, lights, receiver, surface_point(scene, ray, hit)) ==
                   doctest::Approx(arrival->pdf).epsilon(2e-2)); // a sphere's density changes quickly near its rim
             ++compared;
         }

@@ -200,39 +200,6 @@ TEST_SUITE("unit") {
         CHECK_FALSE(sample_light(lamp(Quad{{}, {1, 0, 0}, {2, 0, 0}}, true), {0, 0, 2}, u).has_value());
         CHECK_FALSE(sample_light(lamp(Triangle{}, true), {0, 0, 2}, u).has_value());
     }
-
-    TEST_CASE("the choice among lights is half by power, half even, and hands back a fresh number") {
-        const std::vector<Light> lights{PointLight{{}, Rgb(1.0f)}, PointLight{{}, Rgb(0.0f)},
-                                        PointLight{{}, Rgb(3.0f)}};
-        const float environment = environment_power(ConstantEnvironment{Rgb(1.0f)}, 1);
-        CHECK(environment == doctest::Approx(4 * kPiDouble * kPiDouble));
-        const LightChooser chooser(lights, environment, 1);
-        CHECK(chooser.environment_index() == 3);
-        CHECK(chooser.probability(0) == doctest::Approx(0.5 / 3 + 0.5 / (4 + kPiDouble)));
-        CHECK(chooser.probability(1) == 0);
-        CHECK(chooser.probability(3) == doctest::Approx(0.5 / 3 + 0.5 * kPiDouble / (4 + kPiDouble)));
-        CHECK(chooser.probability(4) == 0);
-        double counts[4]{}, remapped[4]{};
-        for (int i = 0; i < 10'000; ++i) {
-            const auto choice = chooser.sample((static_cast<float>(i) + 0.5f) / 10'000);
-            REQUIRE(choice.has_value());
-            REQUIRE(choice->probability == chooser.probability(choice->index));
-            counts[choice->index] += 1e-4;
-            remapped[choice->index] += static_cast<double>(choice->remapped) * 1e-4;
-        }
-        for (const std::size_t i : {0u, 2u, 3u}) {
-            CHECK(counts[i] == doctest::Approx(chooser.probability(i)).epsilon(2e-3));
-            CHECK(remapped[i] / counts[i] == doctest::Approx(0.5).epsilon(2e-3));
-        }
-        CHECK(LightChooser({}, 0, 1).empty());
-        CHECK_FALSE(LightChooser({}, 0, 1).sample(0.5f).has_value());
-        CHECK(LightChooser({}, 0, 1).probability(0) == 0);
-        CHECK(LightChooser().empty());
-        CHECK(LightChooser({}, 5, 1).sample(0.5f)->index == 0);
-        const LightChooser huge({PointLight{{}, Rgb(std::numeric_limits<float>::max())}}, 1, 1);
-        CHECK(huge.probability(0) == doctest::Approx(0.75));
-        CHECK(huge.probability(1) == doctest::Approx(0.25)); // however dim beside it
-    }
 }
 
 TEST_SUITE("statistical") {

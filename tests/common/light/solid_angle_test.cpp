@@ -1,5 +1,6 @@
 // Spherical triangles, and lights sampled near and far at any slant.
 #include "common/light/solid_angle.h"
+#include "common/light/spherical_rectangle.h"
 #include "common/light/spherical_triangle.h"
 #include "common/sampling/hash.h"
 #include "compare/stress/chi_squared.h"
@@ -61,6 +62,30 @@ TEST_SUITE("unit") {
         CHECK(tested > 2500);
     }
 
+    TEST_CASE("spherical rectangles: the solid angle is that of two triangles, samples lie on the rectangle") {
+        for (std::uint64_t i = 0; i < 2000; ++i) {
+            const Vec3d x = normalize(vector(4 * i)), u = x * (0.1 + number(i)), corner = vector(4 * i + 1);
+            const Vec3d v = normalize(cross(x, vector(4 * i + 2))) * (0.1 + 2 * number(i + 5000));
+            if (std::abs(dot(corner, normalize(cross(u, v)))) < 1e-3) continue;
+            const SphericalRectangle rectangle(corner, u, v);
+            const auto triangle = [](Vec3d a, Vec3d b, Vec3d c) {
+                return SphericalTriangle{normalize(a), normalize(b), normalize(c)}.solid_angle();
+            };
+            const double expected = triangle(corner, corner + u, corner + u + v) + triangle(corner, corner + u + v, corner + v);
+            REQUIRE(rectangle.solid_angle() == doctest::Approx(expected).epsilon(1e-9));
+            for (const double a : {0.0, 0.3, static_cast<double>(kOneMinusEpsilon)})
+                for (const double b : {0.0, 0.7, static_cast<double>(kOneMinusEpsilon)}) {
+                    const Vec3d w = rectangle.sample({a, b}) - corner;
+                    const double along_u = dot(w, u) / dot(u, u), along_v = dot(w, v) / dot(v, v);
+                    REQUIRE((along_u > -1e-9 && along_u < 1 + 1e-9 && along_v > -1e-9 && along_v < 1 + 1e-9));
+                    REQUIRE(length(w - u * along_u - v * along_v) < 1e-9);
+                }
+        }
+        // The middle of a rectangle seen straight on is its middle, and a quarter of the numbers fills a quarter of it.
+        const SphericalRectangle straight({-1, -2, -3}, {2, 0, 0}, {0, 4, 0});
+        CHECK(length(straight.sample({0.5, 0.5}) - Vec3d(0, 0, -3)) < 1e-12);
+    }
+
     TEST_CASE(
         "lights at any place, near or far, edge-on or full: what is drawn is finite, in reach, with its own density") {
         int drawn = 0;
@@ -89,6 +114,32 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
+    TEST_CASE("directions are uniform over spherical rectangles") { // odds of a false alarm 1e-4 for all together
+        struct Case {
+            Vec3d corner, u, v;
+        };
+        const Case cases[] = {{{-0.5, -0.5, -1}, {1, 0, 0}, {0, 1, 0}},
+                              {{0.2, 0.1, 0.3}, {3, 0, 0}, {0, 0, 2}},
+                              {{-4, -0.1, -0.2}, {8, 0, 0}, {0, 5, 0}}};
+        for (const Case& c : cases) {
+            const SphericalRectangle rectangle(c.corner, c.u, c.v);
+            const Vec3d n = cross(c.u, c.v);
+            compare::DirectionTest setup;
+            setup.axis = Vec3(normalize(c.corner + (c.u + c.v) * 0.5));
+            setup.subdivisions = 20; // edges cut through cells
+            const auto result = compare::test_directions(
+                setup, [&](Vec2 u) { return Vec3(normalize(rectangle.sample(Vec2d(u)))); },
+                [&](Vec3 w) {
+                    const double t = dot(c.corner, n) / dot(Vec3d(w), n);
+                    const Vec3d q = Vec3d(w) * t - c.corner;
+                    const double a = dot(q, c.u) / dot(c.u, c.u), b = dot(q, c.v) / dot(c.v, c.v);
+                    return t > 0 && a >= 0 && a < 1 && b >= 0 && b < 1 ? 1 / rectangle.solid_angle() : 0.0;
+                });
+            CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.account);
+        }
+    }
+
     TEST_CASE("directions are uniform over spherical triangles") { // odds of a false alarm 1e-4 for all together
         const SphericalTriangle triangles[] = {
             {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},

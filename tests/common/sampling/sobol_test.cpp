@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -53,8 +54,8 @@ int faulty_elementary_intervals(const std::vector<Vec2>& points, int k) {
     return faults;
 }
 
-constexpr SamplerKind kAll[] = {SamplerKind::kSobol, SamplerKind::kStratified, SamplerKind::kIndependent,
-                                SamplerKind::kCenter};
+constexpr SamplerKind kAll[] = {SamplerKind::kSobol, SamplerKind::kBlueNoise, SamplerKind::kStratified,
+                                SamplerKind::kIndependent, SamplerKind::kCenter};
 
 } // namespace
 
@@ -90,8 +91,32 @@ TEST_SUITE("unit") {
                 }
     }
 
+    TEST_CASE("blue noise: aligned squares of pixels are nets together, one sample each or many") {
+        for (const int spp : {2, 8, 6})
+            for (const int size : {1, 2, 4, 16})
+                for (int replicate = 0; replicate < 2; ++replicate)
+                    for (const std::uint32_t dimension : {0u, 8u, 18u}) {
+                        CAPTURE(spp);
+                        CAPTURE(size);
+                        // Of a count that is no power of two the first samples of each pixel are nets of their own.
+                        const int samples = spp == 6 ? 2 : spp / 2;
+                        if (spp == 6 && size > 1) continue;
+                        std::vector<Vec2> points;
+                        Sampler s(SamplerKind::kBlueNoise, 4, spp);
+                        for (int y = 0; y < size; ++y)
+                            for (int x = 0; x < size; ++x)
+                                for (int i = 0; i < samples; ++i) {
+                                    s.start(x + 2 * size, y + size, static_cast<std::uint32_t>(2 * i + replicate));
+                                    s.set_dimension(dimension);
+                                    points.push_back(s.get_2d());
+                                }
+                        const int k = std::bit_width(points.size()) - 1;
+                        CHECK(faulty_elementary_intervals(points, k) == 0);
+                    }
+    }
+
     TEST_CASE("one dimension is stratified at every power of two") {
-        for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kStratified})
+        for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise, SamplerKind::kStratified})
             for (int replicate = 0; replicate < 2; ++replicate)
                 for (int n = 1; n <= 1024; n *= 2) {
                     Sampler sampler(kind, 1, 2 * n);
@@ -183,17 +208,36 @@ TEST_SUITE("unit") {
         CHECK(unit_float(0) == 0);
     }
 
+    TEST_CASE("a block of eight is four pairs, and ends after them") {
+        for (const SamplerKind kind : kAll)
+            for (const std::uint32_t dimension : {0u, 8u, 24u, 8u * 65u})
+                for (std::uint32_t index = 0; index < 50; ++index) {
+                    Sampler block(kind, 3, 16), pairs(kind, 3, 16);
+                    block.start(7, -2, index);
+                    pairs.start(7, -2, index);
+                    block.set_dimension(dimension);
+                    pairs.set_dimension(dimension);
+                    const auto numbers = block.get_block();
+                    for (std::size_t i = 0; i < numbers.size(); i += 2)
+                        REQUIRE(pairs.get_2d() == Vec2(numbers[i], numbers[i + 1]));
+                    REQUIRE(block.dimension() == pairs.dimension());
+                }
+    }
+
     TEST_CASE("center: the middle of pixel and lens, time 0, all else as Sobol") {
         Sampler center(SamplerKind::kCenter, 5, 16), sobol(SamplerKind::kSobol, 5, 16);
         center.start(4, 4, 9);
         sobol.start(4, 4, 9);
-        CHECK(center.get_centered_2d() == Vec2(0.5f, 0.5f));
-        CHECK(center.get_time() == 0);
-        sobol.get_centered_2d();
-        sobol.get_time();
+        const CameraNumbers middle = center.camera_numbers(), spread = sobol.camera_numbers();
+        CHECK(middle.pixel == Vec2(0.5f, 0.5f));
+        CHECK(middle.lens == Vec2(0.5f, 0.5f));
+        CHECK(middle.time == 0);
+        CHECK(spread.lens != Vec2(0.5f, 0.5f));
         CHECK(center.dimension() == sobol.dimension());
         CHECK(center.get_2d() == sobol.get_2d());
         CHECK(center.get_1d() == sobol.get_1d());
+        CHECK(center.pixel_numbers() == Vec2(0.5f, 0.5f));
+        CHECK(sobol.pixel_numbers() == spread.pixel); // whether or not lens and time are asked for
     }
 
     TEST_CASE("names") {

@@ -1,0 +1,172 @@
+#include "common/light/light_tree.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace duet {
+
+namespace {
+
+constexpr std::size_t kBins = 12;
+constexpr int kDepthOfHalving = 32; ///< from here on lists are halved, so that no way down is longer than 64
+
+/// The measure of the directions into which lights of a cone of normals send light (Conty Estevez and Kulla 2018, eq.
+/// 1, for emission up to 90° from the normal).
+float orientation_measure(float cos_normals) {
+    const float o = std::acos(clamp(cos_normals, -1.0f, 1.0f)), w = min(o + kPi / 2, kPi);
+    return 2 * kPi * (1 - std::cos(o)) +
+           kPi / 2 * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
+}
+float cost(const LightBounds& bounds) {
+    if (bounds.empty()) return 0;
+    // A flat or thin box's lights are still apart: half its area alone would call it free.
+    const Vec3 d = bounds.box.diagonal();
+    return bounds.intensity * orientation_measure(bounds.cos_normals) * (bounds.box.half_area() + length_squared(d));
+}
+
+/// The part of [0, 1) that u fell into, [from, from + size), stretched to [0, 1).
+float stretched(float u, float from, float size) {
+    return clamp((u - from) / size, 0.0f, kOneMinusEpsilon);
+}
+
+} // namespace
+
+LightTree::LightTree(const std::vector<Light>& lights) : places_(lights.size()) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (std::holds_alternative<SunLight>(lights[i])) continue;
+        const LightBounds bounds = light_bounds(lights[i]);
+        if (!bounds.empty()) lights_.push_back({bounds, i});
+    }
+    if (!lights_.empty()) build(0, static_cast<std::uint32_t>(lights_.size()), 0, 0);
+}
+
+// Makes the node of lights [first, last) and all below it; returns its index.
+std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uint64_t turns, int depth) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    LightBounds bounds;
+    for (std::uint32_t i = first; i < last; ++i) bounds.extend(lights_[i].bounds);
+    nodes_[index].bounds = bounds;
+    if (last - first <= kLeafLights) {
+        nodes_[index].first = first;
+        nodes_[index].count = last - first;
+        for (std::uint32_t i = first; i < last; ++i) places_[lights_[i].index] = {turns, i};
+        return index;
+    }
+    const std::uint32_t middle = split(first, last, bounds, depth);
+    build(first, middle, turns, depth + 1);
+    nodes_[index].first = build(middle, last, turns | std::uint64_t{1} << depth, depth + 1);
+    return index;
+}
+
+// Sorts lights [first, last) into two, at the place of least cost; returns where the second begins.
+std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const LightBounds& bounds, int depth) {
+    const auto begin = lights_.begin() + first, end = lights_.begin() + last;
+    Box3 centers;
+    for (auto light = begin; light != end; ++light) centers.extend(light->bounds.box.center());
+    const auto bin_of = [&](const Leaf& light, std::size_t axis) {
+        const float extent = centers.diagonal()[axis];
+        const float part = (light.bounds.box.center()[axis] - centers.low[axis]) / extent;
+        return std::min(static_cast<std::size_t>(part * static_cast<float>(kBins)), kBins - 1);
+    };
+    struct {
+        float cost = std::numeric_limits<float>::infinity();
+        std::size_t axis = 0, bin = 0;
+    } best;
+    const Vec3 extent = bounds.box.diagonal();
+    for (std::size_t axis = 0; axis < 3 && depth < kDepthOfHalving; ++axis) {
+        if (!(centers.diagonal()[axis] > 0)) continue;
+        std::array<LightBounds, kBins> bins, right;
+        for (auto light = begin; light != end; ++light) bins[bin_of(*light, axis)].extend(light->bounds);
+        for (std::size_t i = kBins - 1; i > 0; --i) {
+            right[i - 1] = i + 1 < kBins ? right[i] : LightBounds();
+            right[i - 1].extend(bins[i]);
+        }
+        const float stretch = max_component(extent) / max(extent[axis], max_component(extent) * 1e-6f);
+        LightBounds left;
+        for (std::size_t i = 0; i + 1 < kBins; ++i) {
+            left.extend(bins[i]);
+            const float both = stretch * (cost(left) + cost(right[i]));
+            if (!left.empty() && !right[i].empty() && both < best.cost) best = {both, axis, i};
+        }
+    }
+    if (!std::isfinite(best.cost)) { // all at one place, or deep down
+        const std::size_t axis = longest_axis(centers.diagonal());
+        const auto middle = begin + (end - begin) / 2;
+        std::nth_element(begin, middle, end, [&](const Leaf& a, const Leaf& b) {
+            const float ca = a.bounds.box.center()[axis], cb = b.bounds.box.center()[axis];
+            return ca != cb ? ca < cb : a.index < b.index;
+        });
+        return static_cast<std::uint32_t>(middle - lights_.begin());
+    }
+    const auto middle =
+        std::stable_partition(begin, end, [&](const Leaf& light) { return bin_of(light, best.axis) <= best.bin; });
+    return static_cast<std::uint32_t>(middle - lights_.begin());
+}
+
+float LightTree::irradiance(const LightReceiver& receiver) const {
+    return empty() ? 0.0f : irradiance_estimate(nodes_[0].bounds, receiver);
+}
+
+// The probability of an inner node's first child; negative where neither can light the receiver.
+float LightTree::first_share(const Node& node, const LightReceiver& receiver) const {
+    const float a = irradiance_estimate((&node)[1].bounds, receiver);
+    const float b = irradiance_estimate(nodes_[node.first].bounds, receiver);
+    return a + b > 0 ? a / (a + b) : -1.0f;
+}
+
+std::optional<LightChoice> LightTree::sample(const LightReceiver& receiver, float u) const {
+    if (empty()) return std::nullopt;
+    const Node* node = &nodes_[0];
+    float probability = 1;
+    while (node->count == 0) {
+        const float share = first_share(*node, receiver);
+        if (share < 0) return std::nullopt;
+        const bool first = u < share;
+        probability *= first ? share : 1 - share;
+        u = first ? stretched(u, 0, share) : stretched(u, share, 1 - share);
+        node = first ? node + 1 : &nodes_[node->first];
+    }
+    if (node->count == 1) return LightChoice{lights_[node->first].index, probability, u};
+    std::array<float, kLeafLights> weights;
+    float sum = 0;
+    for (std::uint32_t i = 0; i < node->count; ++i)
+        sum += weights[i] = irradiance_estimate(lights_[node->first + i].bounds, receiver);
+    if (!(sum > 0)) return std::nullopt;
+    float left = u * sum;
+    std::uint32_t i = 0, last = node->count; // `last`: the last that is possible, should rounding lead beyond it
+    for (; i < node->count; ++i) {
+        if (!(weights[i] > 0)) continue;
+        last = i;
+        if (left < weights[i]) break;
+        left -= weights[i];
+    }
+    const float weight = weights[last];
+    return LightChoice{lights_[node->first + last].index, probability * (weight / sum), stretched(left, 0, weight)};
+}
+
+float LightTree::probability(const LightReceiver& receiver, std::size_t index) const {
+    if (index >= places_.size() || places_[index].leaf_light == kNowhere) return 0;
+    const Place& place = places_[index];
+    const Node* node = &nodes_[0];
+    float probability = 1;
+    for (std::uint64_t turns = place.turns; node->count == 0; turns >>= 1) {
+        const float share = first_share(*node, receiver);
+        if (share < 0) return 0;
+        probability *= turns & 1 ? 1 - share : share;
+        node = turns & 1 ? &nodes_[node->first] : node + 1;
+    }
+    if (node->count == 1) return probability;
+    float sum = 0, own = 0;
+    for (std::uint32_t i = node->first; i < node->first + node->count; ++i) {
+        const float weight = irradiance_estimate(lights_[i].bounds, receiver);
+        sum += weight;
+        if (i == place.leaf_light) own = weight;
+    }
+    return sum > 0 ? probability * (own / sum) : 0.0f;
+}
+
+} // namespace duet

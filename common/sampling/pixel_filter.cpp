@@ -1,0 +1,66 @@
+#include "common/sampling/pixel_filter.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet {
+
+namespace {
+
+/// The integral from −r to x of the Blackman-Harris window of four terms over [−r, r], over that of all (Harris 1978,
+/// «On the Use of Windows for Harmonic Analysis», table I, −92 dB).
+double blackman_harris_below(double x, double r) {
+    constexpr double a0 = 0.35875, a1 = 0.48829, a2 = 0.14128, a3 = 0.01168;
+    const double t = (x + r) / (2 * r), turn = 2 * kPiDouble; // the window is a0 − a1 cos 2πt + a2 cos 4πt − a3 cos 6πt
+    return t + (-a1 * std::sin(turn * t) + a2 / 2 * std::sin(2 * turn * t) - a3 / 3 * std::sin(3 * turn * t)) / (turn * a0);
+}
+
+std::vector<double> blackman_harris_quantiles() {
+    constexpr double kRadius = 1.5;
+    constexpr std::size_t kSteps = 1024;
+    std::vector<double> quantiles(kSteps + 1);
+    for (std::size_t i = 0; i <= kSteps; ++i) {
+        const double wanted = static_cast<double>(i) / kSteps;
+        double low = -kRadius, high = kRadius; // halved to the last digit: 60 times
+        for (int step = 0; step < 60; ++step) {
+            const double middle = (low + high) / 2;
+            (blackman_harris_below(middle, kRadius) < wanted ? low : high) = middle;
+        }
+        quantiles[i] = (low + high) / 2;
+    }
+    // The ends, where the window vanishes, and the middle are known.
+    quantiles.front() = -kRadius;
+    quantiles.back() = kRadius;
+    quantiles[kSteps / 2] = 0;
+    return quantiles;
+}
+
+} // namespace
+
+FilterKind filter_kind(std::string_view name) {
+    if (name == "box") return FilterKind::kBox;
+    if (name == "blackman-harris") return FilterKind::kBlackmanHarris;
+    throw Error(message("unknown filter '", name, "': expected box or blackman-harris"));
+}
+
+std::string_view filter_name(FilterKind kind) { return kind == FilterKind::kBox ? "box" : "blackman-harris"; }
+
+PixelFilter::PixelFilter(FilterKind kind) {
+    if (kind == FilterKind::kBlackmanHarris) quantiles_ = blackman_harris_quantiles();
+}
+
+double PixelFilter::sample_axis(double u) const {
+    const double place = u * static_cast<double>(quantiles_.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(place), quantiles_.size() - 2);
+    return lerp(quantiles_[i], quantiles_[i + 1], place - static_cast<double>(i));
+}
+
+Vec2d PixelFilter::sample(Vec2 u) const {
+    const Vec2d exact(u);
+    if (quantiles_.empty()) return {exact.x - 0.5, exact.y - 0.5};
+    return {sample_axis(exact.x), sample_axis(exact.y)};
+}
+
+} // namespace duet
