@@ -2,6 +2,7 @@
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
+#include "raytrace/explain.h"
 #include "raytrace/merge.h"
 #include "raytrace/render.h"
 
@@ -31,11 +32,12 @@ void set_samples(const std::string& text, raytrace::Settings& settings) {
 
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "merge") return raytrace::run_merge(argc - 1, argv + 1);
-    std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples;
+    std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples, pixel;
     raytrace::Settings settings;
     bool no_environment = false;
     RenderProgram program;
     program.check = [&](const OutputOptions& output) {
+        if (!pixel.empty()) raytrace::parse_sample_name(pixel);
         if (film.empty()) return;
         if (output.frames > 0) throw Error("--film: keeps one picture, cannot go with --orbit");
         if (lower_case_ending(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
@@ -75,12 +77,15 @@ int main(int argc, char** argv) {
             ->check(CLI::NonNegativeNumber)
             ->needs(film_option);
         app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
+        app.add_option("--pixel", pixel,
+                       "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
+                       "needs no -o");
         app.add_option("--bvh", bvh,
                        "Quality of the hierarchies that rays search: default, or high (long to build; faster to search "
                        "where triangles are long or overlap; the same picture)");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
-    program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
+    const auto set_up = [&](const RenderSettings& common, std::optional<int> spp) {
         const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(limited ? 1 << 24 : 64);
@@ -94,6 +99,15 @@ int main(int argc, char** argv) {
         settings.filter = filter_kind(filter);
         settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
+    };
+    program.prints_text = [&] { return !pixel.empty(); };
+    program.text = [&](const Scene& scene, const View& view, const RenderSettings& common, std::optional<int> spp) {
+        set_up(common, spp);
+        return raytrace::explain(raytrace::prepare(scene, settings), view, settings,
+                                 raytrace::parse_sample_name(pixel));
+    };
+    program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
+        set_up(common, spp);
         return [prepared = raytrace::prepare(scene, settings), settings](const View& view, Control& control) {
             return raytrace::render(prepared, view, settings, control);
         };

@@ -27,8 +27,7 @@ void add_common_options(CLI::App& app, Options& options, const std::string& spp_
     app.add_option("SCENE", options.scene,
                    "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
         ->required();
-    app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
-        ->required();
+    app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
     app.add_option("--size", options.size, "Picture size WIDTHxHEIGHT (default: the scene's)");
     app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
     app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
@@ -59,6 +58,7 @@ Camera orbited(Camera camera, int frame, int frames) {
 }
 
 void check_output(const Options& options) {
+    if (options.output.empty()) throw Error("no output: expected -o and the picture's file (--help explains)");
     if (options.orbit > 0 && options.output.find("%04d") == std::string::npos)
         throw Error(
             message("--orbit: the output's name must hold %04d for the frame's number, found ", options.output));
@@ -81,7 +81,8 @@ void print_summary(const RenderContext& context, const Rendering& rendering, con
 }
 
 int render_all(const RenderProgram& program, const Options& options) {
-    check_output(options);
+    const bool prints = program.prints_text && program.prints_text();
+    if (!prints) check_output(options);
     if (program.check) program.check({options.output, options.orbit});
     RenderSettings settings;
     settings.threads = options.threads;
@@ -100,8 +101,12 @@ int render_all(const RenderProgram& program, const Options& options) {
     context.load_seconds = watch.lap();
     context.width = size.width > 0 ? size.width : scene.width;
     context.height = size.height > 0 ? size.height : scene.height;
-    const RenderFunction render =
-        program.prepare(scene, settings, options.spp > 0 ? std::optional(options.spp) : std::nullopt);
+    const std::optional<int> spp = options.spp > 0 ? std::optional(options.spp) : std::nullopt;
+    if (prints) {
+        std::cout << program.text(scene, View{scene.camera, context.width, context.height}, settings, spp);
+        return kExitOk;
+    }
+    const RenderFunction render = program.prepare(scene, settings, spp);
     context.prepare_seconds = watch.lap();
 
     const InterruptFlag interrupt;

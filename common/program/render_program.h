@@ -32,6 +32,9 @@ struct RenderProgram {
     std::string spp_help; ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
     std::function<void(CLI::App&)> add_options;
+    /// Where this says so, the program prints text() of the picture in place of rendering it; both may be empty.
+    std::function<bool()> prints_text;
+    std::function<std::string(const Scene&, const View&, const RenderSettings&, std::optional<int> spp)> text;
     /// Throws Error for options of its own that cannot be used, before anything is loaded; may be empty.
     std::function<void(const OutputOptions&)> check;
     /// Prepares the scene; `settings` are the common options, `spp` is empty where --spp was not given.

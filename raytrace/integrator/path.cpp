@@ -3,6 +3,7 @@
 // it is the naive path tracer, in which only chance finds the lights.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
 
@@ -20,6 +21,7 @@ struct Departure {
 // What becomes of the light that a path finds: in a picture it is added up, whatever way it came.
 class Sum {
 public:
+    static constexpr bool kTold = false; // whether it has a log that is told of all
     void start(const Bsdf&) {}
     void add(Rgb light, LightSource, int) { total_ += light; }
     void add_shadowed(Rgb, LightSource, int) {}
@@ -32,6 +34,7 @@ private:
 // Or it goes to the part it belongs to. `bounces` is the number of scatterings between the light and the camera.
 class Split {
 public:
+    static constexpr bool kTold = false;
     void start(const Bsdf& first) {
         diffuse_ = std::holds_alternative<DiffuseBsdf>(first);
         specular_ = is_specular(first);
@@ -54,26 +57,45 @@ private:
     bool diffuse_ = false, specular_ = false; // the first hit
 };
 
+// Or each step is told, too.
+class Told : public Sum {
+public:
+    static constexpr bool kTold = true;
+    explicit Told(PathLog& log) : log_(log) {}
+    PathLog& log() { return log_; }
+
+private:
+    PathLog& log_;
+};
+
 template <typename Sink> class Path {
 public:
-    Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts)
-        : plan_(plan), sampler_(sampler), counts_(counts) {}
+    Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
+        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink) {}
 
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Ray ray, Hit hit) {
         for (int depth = 0;; ++depth) {
             if (!hit.valid()) {
+                if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
                 add_environment(ray.direction, depth);
                 break;
             }
             const Vertex vertex(plan_, ray, hit);
+            if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
-            if (depth == plan_.max_depth) break;
+            if (depth == plan_.max_depth) {
+                tell_end("it is as long as it may be (--depth)");
+                break;
+            }
             const VertexNumbers u = vertex_numbers(sampler_, depth);
             const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
             if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-            if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) break; // nothing is left to find
+            if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) {
+                tell_end("nothing is left to find");
+                break;
+            }
             if (!scatter(vertex, u, ray)) break;
             if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
             hit = plan_.prepared.accelerator.closest(ray);
@@ -89,7 +111,9 @@ private:
         if (!departure_.certain)
             weight = mis_weight(departure_.pdf,
                                 arrival_pdf(*plan_.environment, *plan_.lights, departure_.receiver, w));
-        sink_.add(throughput_ * radiance(*plan_.environment, w) * weight, LightSource::kEnvironment, bounces);
+        const Rgb emission = radiance(*plan_.environment, w);
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, throughput_ * emission * weight);
+        sink_.add(throughput_ * emission * weight, LightSource::kEnvironment, bounces);
     }
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
@@ -100,23 +124,29 @@ private:
         if (!departure_.certain)
             weight = mis_weight(departure_.pdf,
                                 arrival_pdf(plan_.scene, *plan_.lights, departure_.receiver, vertex.point));
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, throughput_ * emission * weight);
         sink_.add(throughput_ * emission * weight, source_of(vertex.point), bounces);
     }
 
     void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
         const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
-        if (!arrival) return;
+        if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
         const Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
-        if (is_black(scattered) && !plan_.black_shadow_rays) return;
+        if (is_black(scattered) && !plan_.black_shadow_rays)
+            return tell_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
         ++counts_.shadow;
         if (!reaches(plan_, vertex, *arrival)) {
+            if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, false, 0, Rgb());
             sink_.add_shadowed(throughput_ * scattered / arrival->pdf, source, bounces + 1);
             return;
         }
         // The environment and all still emitters are found by BSDF samples, too.
         const float bsdf_pdf = arrival->delta ? 0 : pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi));
-        sink_.add(throughput_ * scattered * (mis_weight(arrival->pdf, bsdf_pdf) / arrival->pdf), source, bounces + 1);
+        const float weight = mis_weight(arrival->pdf, bsdf_pdf);
+        const Rgb light = throughput_ * scattered * (weight / arrival->pdf);
+        if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, true, weight, light);
+        sink_.add(light, source, bounces + 1);
     }
 
     // Asked for the sink that splits alone: a sum need not know.
@@ -129,10 +159,11 @@ private:
     // Chooses the next direction by the BSDF; false where the path ends.
     bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
         const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
-        if (!s || is_black(s->weight)) return false;
+        if (!s || is_black(s->weight)) return tell_end("the surface absorbs it");
         const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
-        if (!vertex.consistent(wi, s->wi)) return false;
+        if (!vertex.consistent(wi, s->wi)) return tell_end("its direction lies between the horizons of both normals");
         throughput_ *= s->weight;
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, throughput_);
         if (s->transmitted) note_refraction(vertex);
         departure_ = {vertex.receiver(), s->pdf, s->specular || plan_.lights == nullptr};
         ray = spawn_ray(vertex, wi);
@@ -153,9 +184,18 @@ private:
         constexpr float kDim = 0.25f;
         const float probability = max_component(throughput_) / (refraction_ * kDim);
         if (probability >= 1) return true;
+        if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
         if (!(u < probability)) return false;
         throughput_ *= 1 / probability;
         return true;
+    }
+
+    bool tell_end([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kTold) sink_.log().end(why);
+        return false;
+    }
+    void tell_no_light_sample([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kTold) sink_.log().no_light_sample(why);
     }
 
     const RenderPlan& plan_;
@@ -171,6 +211,11 @@ private:
 
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
     return Path<Sum>(plan, sampler, counts).trace(ray, hit);
+}
+
+Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
+    RayCounts counts;
+    return Path<Told>(plan, sampler, counts, Told(log)).trace(ray, hit);
 }
 
 LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
