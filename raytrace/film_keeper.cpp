@@ -63,6 +63,7 @@ std::vector<KeptFilm::Setting> film_settings(const Scene& scene, const View& vie
         {"sampler", std::string(sampler_name(settings.sampler))},
         {"filter", std::string(filter_name(settings.filter))},
         {"seed", std::to_string(settings.seed)},
+        {"adaptive", settings.adaptive ? "yes" : "no"},
     };
     if (depends_on_count(settings.sampler))
         all.push_back({"samples", std::to_string(settings.samples_per_pixel)});

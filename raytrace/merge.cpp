@@ -30,6 +30,7 @@ void add(Film& film, const Film& other) {
             to.count[r] += from.count[r];
         }
         to.invalid += from.invalid;
+        to.target = to.count[0] + to.count[1] + to.invalid;
     }
 }
 

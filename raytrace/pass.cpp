@@ -11,27 +11,6 @@
 
 namespace duet::raytrace {
 
-std::optional<SampleRange> next_pass(const Settings& settings, SampleRange range, double seconds, const Film& film) {
-    const auto asked = static_cast<std::uint32_t>(settings.samples_per_pixel);
-    const std::uint32_t done = range.last;
-    if (done >= asked) return std::nullopt;
-    const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
-    if (!limited) return SampleRange{done, std::min(done + 16, asked)};
-    // Even counts: both replicates grow alike.
-    const std::uint32_t count = std::min(std::clamp(done / 4 & ~1u, 2u, 32u), asked - done);
-    if (done > range.first && settings.time_limit > 0) {
-        const double expected = seconds / (done - range.first) * count;
-        if (seconds + expected / 2 > settings.time_limit) return std::nullopt;
-    }
-    // A first few samples that all miss the lights look converged: the estimate is asked from kMinForError samples on.
-    constexpr std::uint32_t kMinForError = 16;
-    if (settings.error_limit > 0 && done >= kMinForError) {
-        const double error = film.estimated_relmse();
-        if (error >= 0 && error < settings.error_limit) return std::nullopt;
-    }
-    return SampleRange{done, done + count};
-}
-
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
     const CameraNumbers u = plan.lens || plan.motion ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
     return camera.ray(Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), Vec2d(u.lens), static_cast<double>(u.time));
@@ -119,12 +98,13 @@ int even_bits(unsigned code) {
     return bits;
 }
 
-RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile, SampleRange range) {
+RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile) {
     CameraBatch batch(target, camera);
     for (unsigned code = 0; code < kTile * kTile; ++code) { // along a Z-curve: pixels near in order are near
         const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
         if (x >= tile.x1 || y >= tile.y1) continue;
-        for (std::uint32_t index = target.keeper.film().taken(x, y); index < range.last; ++index)
+        const Film& film = target.keeper.film();
+        for (std::uint32_t index = film.taken(x, y); index < film.pixels()(x, y).target; ++index)
             batch.add(x, y, target.settings.first_sample + index);
     }
     batch.finish();
@@ -133,7 +113,7 @@ RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const
 
 } // namespace
 
-bool render_pass(const PassTarget& target, SampleRange range, double begin, double end) {
+bool render_pass(const PassTarget& target, double begin, double end) {
     const Tiles tiles(target.view);
     const CameraModel camera(target.view);
     std::atomic<bool> complete = true;
@@ -145,7 +125,7 @@ bool render_pass(const PassTarget& target, SampleRange range, double begin, doub
             return;
         }
         RayCounts counts;
-        target.keeper.add([&] { counts = render_tile(target, camera, tiles[i], range); });
+        target.keeper.add([&] { counts = render_tile(target, camera, tiles[i]); });
         const std::lock_guard lock(mutex);
         target.counts += counts;
         target.control.report(lerp(begin, end, static_cast<double>(++finished) / static_cast<double>(tiles.count())));

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <optional>
 
 namespace {
 
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
     std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples, pixel;
     raytrace::Settings settings;
     bool no_environment = false;
+    std::optional<bool> adaptive;
     RenderProgram program;
     program.check = [&](const OutputOptions& output) {
         if (!pixel.empty()) raytrace::parse_sample_name(pixel);
@@ -69,6 +71,9 @@ int main(int argc, char** argv) {
             ->check(CLI::PositiveNumber);
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(CLI::PositiveNumber);
+        app.add_flag("--adaptive,!--no-adaptive", adaptive,
+                     "More samples where the error is, --spp in the mean (default with --time or --error, but for "
+                     "--samples and samplers that need to know the number)");
         auto* const film_option = app.add_option(
             "--film", film,
             "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
@@ -97,6 +102,7 @@ int main(int argc, char** argv) {
         settings.integrator = raytrace::integrator(integrator_name);
         settings.sampler = sampler_kind(sampler);
         settings.filter = filter_kind(filter);
+        settings.adaptive = adaptive.value_or(limited && samples.empty() && !depends_on_count(settings.sampler));
         settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
     };

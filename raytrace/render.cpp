@@ -4,8 +4,10 @@
 #include "common/system/stopwatch.h"
 #include "raytrace/film_keeper.h"
 #include "raytrace/pass.h"
+#include "raytrace/schedule.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace duet::raytrace {
 
@@ -22,18 +24,28 @@ void check(const View& view, const Settings& settings) {
     if (settings.first_sample > 0 && depends_on_count(settings.sampler))
         throw Error(message("samples of the ", sampler_name(settings.sampler),
                             " sampler depend on how many there are, and are not taken in parts: expected another"));
+    if (settings.adaptive && (settings.first_sample > 0 || depends_on_count(settings.sampler)))
+        throw Error("adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
+                    "samples do not depend on how many there are");
     if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
 }
 
 // The part of the work that is done after `samples`, as far as the limits let one know.
-double fraction_done(const Settings& settings, std::uint32_t samples, double seconds) {
+double fraction_done(const Settings& settings, double samples, double seconds) {
     const double by_count = samples / static_cast<double>(settings.samples_per_pixel);
     const double by_time = settings.time_limit > 0 ? seconds / settings.time_limit : 0;
     return std::min(std::max(by_count, by_time), 1.0);
 }
 
-// Two sums of three doubles, two counts and that of invalid samples, a pixel.
-std::int64_t film_bytes(const Film& film) { return std::int64_t{64} * film.width() * film.height(); }
+double all_promised(const Film& film) {
+    double sum = 0;
+    for (const Film::Pixel& pixel : film.pixels()) sum += pixel.target;
+    return sum;
+}
+
+std::int64_t film_bytes(const Film& film) {
+    return static_cast<std::int64_t>(sizeof(Film::Pixel)) * film.width() * film.height();
+}
 
 } // namespace
 
@@ -49,17 +61,20 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
 
     Rendering rendering;
     RenderStatistics& statistics = rendering.statistics;
-    std::uint32_t done = film.least_taken();
-    const std::uint32_t begun = done;
-    double progress = 0;
-    while (const auto range = next_pass(settings, {begun, done}, watch.seconds(), film)) {
-        const double after = done > begun ? watch.seconds() * (range->last - begun) / (done - begun) : 0;
-        const double next = std::max(progress, fraction_done(settings, range->last, after));
-        if (!render_pass(target, *range, progress, next)) {
+    const auto pixels = static_cast<double>(film.pixels().size());
+    const std::int64_t begun = film.all_taken();
+    double finished = film.least_taken(), progress = 0; // samples a pixel in the mean, of finished passes
+    for (;;) {
+        const Spent spent{watch.seconds(), film.all_taken() - begun};
+        if (film.complete() && !plan_pass(settings, spent, film)) break;
+        const double after = all_promised(film) - static_cast<double>(begun);
+        const double time = spent.samples > 0 ? spent.seconds * after / static_cast<double>(spent.samples) : 0;
+        const double next = std::max(progress, fraction_done(settings, all_promised(film) / pixels, time));
+        if (!render_pass(target, progress, next)) {
             statistics.interrupted = true;
             break;
         }
-        done = range->last;
+        finished = static_cast<double>(film.all_taken()) / pixels;
         progress = next;
         ++statistics.passes;
     }
@@ -71,7 +86,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
 
     rendering.radiance = film.image();
     aovs.finish(film, rendering);
-    statistics.samples_per_pixel = static_cast<int>(done);
+    statistics.samples_per_pixel = static_cast<int>(std::lround(finished));
     statistics.camera_rays = rays.camera;
     statistics.indirect_rays = rays.indirect;
     statistics.shadow_rays = rays.shadow;

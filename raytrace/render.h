@@ -45,6 +45,7 @@ struct Settings : RenderSettings {
     bool russian_roulette = true;
     BvhQuality bvh = BvhQuality::kDefault; ///< for prepare(): of the hierarchies; no bit of the picture depends on it
     bool environment = true; ///< as raster::Settings::environment
+    bool adaptive = false; ///< more samples where the error is; samples_per_pixel is their mean (raytrace/schedule.h)
     std::uint32_t first_sample = 0; ///< samples first_sample … first_sample + samples_per_pixel − 1: a shard of more
     std::filesystem::path film;     ///< keeps the film, and is continued where it exists (film_keeper.h); empty: none
     double film_interval = 60;      ///< seconds between two writings of it

@@ -48,6 +48,20 @@ std::uint32_t Film::least_taken() const {
     return least;
 }
 
+std::int64_t Film::all_taken() const {
+    std::int64_t sum = 0;
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) sum += taken(x, y);
+    return sum;
+}
+
+bool Film::complete() const {
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x)
+            if (taken(x, y) < pixels_(x, y).target) return false;
+    return true;
+}
+
 ImageRgb Film::image() const {
     ImageRgb image(width(), height());
     for (int y = 0; y < height(); ++y)

@@ -26,8 +26,11 @@ public:
     Rgbd mean(int x, int y) const;
     /// Samples that were added or dropped: the next one's number, where they are taken in order.
     std::uint32_t taken(int x, int y) const;
-    /// The fewest taken of any pixel.
+    /// The fewest taken of any pixel, and all of all pixels.
     std::uint32_t least_taken() const;
+    std::int64_t all_taken() const;
+    /// Whether each pixel has the samples it was promised.
+    bool complete() const;
     /// Estimated variance of that mean, by channel; infinity where a replicate has no sample.
     Rgbd variance(int x, int y) const;
     std::uint32_t samples(int x, int y) const;
@@ -46,6 +49,7 @@ public:
         std::array<Rgbd, kReplicates> sum{};
         std::array<std::uint32_t, kReplicates> count{};
         std::uint32_t invalid = 0;
+        std::uint32_t target = 0; ///< how many are to be taken by the end of the pass at hand
     };
     const Image<Pixel>& pixels() const { return pixels_; }
     Image<Pixel>& pixels() { return pixels_; }

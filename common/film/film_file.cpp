@@ -67,6 +67,7 @@ void write_film(const std::filesystem::path& path, const KeptFilm& kept) {
         channels.push_back(integers(count_name(r), film, [&](const Film::Pixel& pixel) { return pixel.count[r]; }));
     }
     channels.push_back(integers("invalid", film, [](const Film::Pixel& pixel) { return pixel.invalid; }));
+    channels.push_back(integers("target", film, [](const Film::Pixel& pixel) { return pixel.target; }));
     std::vector<ExrAttribute> attributes{{kPrefix + kFirstSample, std::to_string(kept.first_sample)}};
     for (const auto& [name, value] : kept.settings) attributes.push_back({kPrefix + name, value});
     write_exr(path, film.width(), film.height(), channels, attributes);
@@ -90,8 +91,11 @@ KeptFilm read_film(const std::filesystem::path& path) {
         const auto& count = channels[count_name(r)];
         for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].count[r] = count[i];
     }
-    const auto& invalid = channels["invalid"];
-    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].invalid = invalid[i];
+    const auto &invalid = channels["invalid"], &target = channels["target"];
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        pixels[i].invalid = invalid[i];
+        pixels[i].target = target[i];
+    }
     for (const auto& [name, value] : file.attributes) {
         if (!name.starts_with(kPrefix)) continue;
         const std::string setting = name.substr(kPrefix.size());

@@ -23,8 +23,8 @@ struct KeptFilm {
 };
 
 /// An EXR that any viewer shows: R, G and B are the means. Beside them lies all that the film keeps, exactly: each sum
-/// of doubles as two channels of 32-bit integers, sumN.C.high and sumN.C.low (N the replicate, C of R, G, B), countN and
-/// invalid; the settings are text attributes, `duet:film.NAME`. Whole or absent. Throws Error (exit code 1) where
+/// of doubles as two channels of 32-bit integers, sumN.C.high and sumN.C.low (N the replicate, C of R, G, B), countN,
+/// invalid and target; the settings are text attributes, `duet:film.NAME`. Whole or absent. Throws Error (exit code 1) where
 /// writing fails.
 void write_film(const std::filesystem::path& path, const KeptFilm& kept);
 

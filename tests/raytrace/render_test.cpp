@@ -80,28 +80,6 @@ TEST_SUITE("unit") {
         CHECK(plain.radiance.pixels() != rendered(scene, settings).radiance.pixels());
     }
 
-    TEST_CASE("passes grow, stop at the limits, and end at the samples asked for") {
-        Settings settings;
-        settings.samples_per_pixel = 100;
-        Film film(1, 1);
-        CHECK(next_pass(settings, {0, 96}, 0, film)->last == 100);
-        CHECK(!next_pass(settings, {0, 100}, 0, film));
-        settings.samples_per_pixel = 1000000;
-        settings.time_limit = 10;
-        CHECK(next_pass(settings, {0, 0}, 0, film)->last == 2);
-        CHECK(next_pass(settings, {0, 64}, 1, film)->last == 80);
-        CHECK(next_pass(settings, {0, 4096}, 1, film)->last == 4096 + 32);
-        CHECK(next_pass(settings, {0, 100}, 8.9, film));  // 24 more would end at 11.04: nearer to the limit than stopping
-        CHECK(!next_pass(settings, {0, 100}, 9.5, film)); // these would end at 11.78, farther beyond than this is before
-        settings.time_limit = 0;
-        settings.error_limit = 0.01;
-        film.add(0, 0, 0, Rgb(1.0f));
-        CHECK(next_pass(settings, {0, 1}, 0, film)); // the error is not known yet
-        film.add(0, 0, 1, Rgb(1.0f));
-        CHECK(next_pass(settings, {0, 2}, 0, film)); // two equal samples are no proof yet
-        CHECK(!next_pass(settings, {0, 16}, 0, film));
-    }
-
     TEST_CASE("a limit of time or error ends the render between passes") {
         const Scene scene = small_scene();
         Settings settings;

@@ -1,0 +1,31 @@
+// How many samples each pixel gets, pass by pass.
+#pragma once
+
+#include "common/film/film.h"
+#include "raytrace/render.h"
+
+namespace duet::raytrace {
+
+/// What a render has done itself; the film that it went on from is left out.
+struct Spent {
+    double seconds = 0;
+    std::int64_t samples = 0;
+};
+
+/// Tells each pixel of a complete film how many samples it is to have after the next pass (Film::Pixel::target); false
+/// where a limit is reached: the mean number of samples, the time, or the error. Without limits of time and error passes
+/// are of 16 samples a pixel; with them they start with 2, one for each replicate, and grow with what is done, so that
+/// the end comes near the limit. A pass that would end farther beyond the time limit than it begins before it is not
+/// begun.
+///
+/// With Settings::adaptive the passes from the 16th sample on are spread (see spread_samples).
+bool plan_pass(const Settings& settings, const Spent& spent, Film& film);
+
+/// Raises the targets by `samples` in all, so that the relative error after them is least, as far as the film tells: with
+/// an error of √(s/n) at n samples that is n ∝ √s. s is the variance of one sample over (mean² + 0.01), as estimated from
+/// the pixel's eight neighbours: what its own samples say would bias it, because pixels that look dark and quiet by
+/// chance would keep what they look like (Kirk and Arvo 1991, «Unbiased Sampling Techniques for Image Synthesis»). No
+/// pixel gets more than it has already, and none is left behind for good: s counts as a hundredth of the mean at least.
+void spread_samples(Film& film, std::int64_t samples);
+
+} // namespace duet::raytrace

@@ -1,0 +1,212 @@
+// How many samples pixels get: passes, limits, and samples spread to where the error is.
+#include "raytrace/schedule.h"
+
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+// The pixels' next number of samples, where all have the same; −1 where the limit is reached.
+int planned(const Settings& settings, std::uint32_t done, const Spent& spent = {}) {
+    Film film(1, 1);
+    for (std::uint32_t i = 0; i < done; ++i) film.add(0, 0, i & 1u, Rgb(i % 3 ? 1.0f : 2.0f));
+    return plan_pass(settings, spent, film) ? static_cast<int>(film.pixels()(0, 0).target) : -1;
+}
+
+// Samples of pixels whose spread is `spread` of the pixel, as many as they are to have.
+template <typename Spread> void take(Film& film, const Spread& spread, std::uint64_t seed) {
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x) {
+            std::mt19937_64 random(seed + static_cast<std::uint64_t>(y * film.width() + x) * 1000 + film.taken(x, y));
+            std::uniform_real_distribution<float> uniform(-1, 1);
+            for (std::uint32_t i = film.taken(x, y); i < film.pixels()(x, y).target; ++i)
+                film.add(x, y, i & 1u, Rgb(1 + spread(x, y) * uniform(random)));
+        }
+}
+
+// A lamp whose edges are most of the error, in a corner of a dim room.
+Scene lamp_scene() {
+    SceneBuilder builder;
+    const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f)}});
+    const std::uint32_t lamp = builder.material(Emissive{Rgb(10.0f)});
+    builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
+    builder.add(quad({-0.5f, 0.4f, 0.2f}, {0.6f, 0.1f, 0}, {0, 0.4f, 0}), lamp);
+    return builder.finish();
+}
+
+constexpr int kWidth = 32, kHeight = 24;
+
+Rendering rendered(const Scene& scene, const Settings& settings) {
+    Control control;
+    return render(prepare(scene, settings), View{scene.camera, kWidth, kHeight}, settings, control);
+}
+
+double relmse(const ImageRgb& picture, const ImageRgb& truth) {
+    double sum = 0;
+    for (std::size_t i = 0; i < picture.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += sqr(static_cast<double>(picture[i][c]) - static_cast<double>(truth[i][c])) /
+                   (sqr(static_cast<double>(truth[i][c])) + 0.01);
+    return sum / (3.0 * static_cast<double>(picture.size()));
+}
+
+ImageRgb reference(const Scene& scene) {
+    Settings settings;
+    settings.samples_per_pixel = 16384;
+    settings.seed = 4711;
+    return rendered(scene, settings).radiance;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("passes grow, stop at the limits, and end at the samples asked for") {
+        Settings settings;
+        settings.samples_per_pixel = 100;
+        CHECK(planned(settings, 0) == 16);
+        CHECK(planned(settings, 96) == 100);
+        CHECK(planned(settings, 100) == -1);
+        settings.samples_per_pixel = 1000000;
+        settings.time_limit = 10;
+        CHECK(planned(settings, 0) == 2);
+        CHECK(planned(settings, 64, {1, 64}) == 80);
+        CHECK(planned(settings, 4096, {1, 4096}) == 4096 + 32);
+        CHECK(planned(settings, 100, {8.9, 100}) == 124); // these would end at 11.04: nearer to the limit than stopping
+        CHECK(planned(settings, 100, {9.5, 100}) == -1);  // and these at 11.78, farther beyond than this is before
+        CHECK(planned(settings, 200, {8.9, 100}) == -1);  // 48 more, at the rate of this render's own samples
+        settings.time_limit = 0;
+        settings.error_limit = 1e6;
+        CHECK(planned(settings, 1) == 3); // the error is not known yet
+        CHECK(planned(settings, 2) == 4); // two samples are no proof yet
+        CHECK(planned(settings, 16) == -1);
+        settings.error_limit = 1e-12;
+        CHECK(planned(settings, 64) == 80); // grows no faster than by a quarter
+    }
+
+    TEST_CASE("samples are spread as the square root of the variance, in even numbers, and all are spent") {
+        Film film(40, 20);
+        const auto spread = [](int x, int) { return x < 20 ? 1.0f : 0.1f; };
+        std::int64_t sum = 0;
+        for (Film::Pixel& pixel : film.pixels()) pixel.target = 32;
+        take(film, spread, 1);
+        for (int pass = 0; pass < 12; ++pass) {
+            spread_samples(film, 40 * 20 * 16);
+            sum = 0;
+            for (int y = 0; y < 20; ++y)
+                for (int x = 0; x < 40; ++x) {
+                    const std::uint32_t more = film.pixels()(x, y).target - film.taken(x, y);
+                    CHECK(more % 2 == 0);
+                    CHECK(more <= 2 * film.taken(x, y)); // rounding of neighbours may add a pair
+                    sum += more;
+                }
+            CHECK(std::abs(sum - 40 * 20 * 16) <= 2);
+            take(film, spread, 2 + static_cast<std::uint64_t>(pass));
+        }
+        double left = 0, right = 0;
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 40; ++x) (x < 18 ? left : x >= 22 ? right : sum) += film.taken(x, y);
+        CHECK(left / right == doctest::Approx(10).epsilon(0.35)); // roughly: variances of two replicates scatter
+    }
+
+    TEST_CASE("no pixel's number depends on its own samples, and one alone gets as many as are asked") {
+        const auto planned_after = [](float value) {
+            Film film(9, 9);
+            for (Film::Pixel& pixel : film.pixels()) pixel.target = 32;
+            take(film, [](int x, int y) { return 0.1f * static_cast<float>(1 + x + y); }, 5);
+            film.pixels()(4, 4).sum[0] = Rgbd(static_cast<double>(value)); // as if its samples had been others
+            spread_samples(film, 81 * 8);
+            return film;
+        };
+        const Film quiet = planned_after(16.0f), loud = planned_after(400.0f);
+        // The sum over all is fixed: so compare what the pixel gets with its share.
+        const auto need = [](const Film& film, int x, int y) { return film.pixels()(x, y).target; };
+        CHECK(need(loud, 3, 4) > need(quiet, 3, 4));
+        CHECK(need(loud, 4, 4) <= need(quiet, 4, 4)); // less, as its neighbours take more
+        Settings settings;
+        settings.adaptive = true;
+        CHECK(planned(settings, 32) == 40);
+    }
+
+    TEST_CASE("an adaptive render has the samples asked for in the mean, the same bits for any threads, and goes on") {
+        const Scene scene = lamp_scene();
+        Settings settings;
+        settings.adaptive = true;
+        settings.samples_per_pixel = 64;
+        settings.aovs.samples = true;
+        settings.threads = 1;
+        const Rendering one = rendered(scene, settings);
+        settings.threads = 2;
+        const Rendering two = rendered(scene, settings);
+        CHECK(one.radiance.pixels() == two.radiance.pixels());
+        CHECK(one.samples.pixels() == two.samples.pixels());
+        std::int64_t sum = 0;
+        for (const std::uint32_t n : one.samples) sum += n;
+        CHECK(static_cast<double>(sum) / (kWidth * kHeight) == doctest::Approx(64).epsilon(0.01));
+        CHECK(*std::max_element(one.samples.begin(), one.samples.end()) > 128);
+        CHECK(*std::min_element(one.samples.begin(), one.samples.end()) < 48);
+    }
+}
+
+TEST_SUITE("statistical") {
+
+    TEST_CASE("adaptive samples: less error than the same number spread evenly, and no bias") {
+        const Scene scene = lamp_scene();
+        const ImageRgb truth = reference(scene);
+        constexpr int kSeeds = 24;
+        double even = 0, spread = 0;
+        Image<Rgbd> sum(kWidth, kHeight), squares(kWidth, kHeight);
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            Settings settings;
+            settings.samples_per_pixel = 64;
+            settings.seed = static_cast<std::uint64_t>(seed);
+            even += relmse(rendered(scene, settings).radiance, truth);
+            settings.adaptive = true;
+            const ImageRgb picture = rendered(scene, settings).radiance;
+            spread += relmse(picture, truth);
+            for (std::size_t i = 0; i < picture.size(); ++i) {
+                sum[i] += Rgbd(picture[i]);
+                squares[i] += Rgbd(picture[i]) * Rgbd(picture[i]);
+            }
+        }
+        MESSAGE("error of even over spread samples: ", even / spread);
+        CHECK(spread < 0.7 * even);
+        // The pixels' mean difference from the truth, in its standard errors: about normal. 5 of them: a false alarm in
+        // 2 million runs.
+        double difference = 0, variance = 0;
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            const double mean = sum[i].g / kSeeds;
+            difference += mean - static_cast<double>(truth[i].g);
+            variance += max(squares[i].g / kSeeds - sqr(mean), 0.0) / (kSeeds - 1);
+        }
+        CHECK(std::abs(difference) < 5 * std::sqrt(variance));
+    }
+
+    TEST_CASE("the error asked for is the error got") {
+        const Scene scene = lamp_scene();
+        const ImageRgb truth = reference(scene);
+        for (const double asked : {0.02, 0.002}) {
+            std::vector<double> got;
+            for (int seed = 0; seed < 20; ++seed) {
+                Settings settings;
+                settings.samples_per_pixel = 1 << 20;
+                settings.error_limit = asked;
+                settings.adaptive = true;
+                settings.seed = static_cast<std::uint64_t>(seed);
+                got.push_back(relmse(rendered(scene, settings).radiance, truth));
+            }
+            std::sort(got.begin(), got.end());
+            const double median = (got[9] + got[10]) / 2;
+            MESSAGE("asked ", asked, ", got ", median, " (", got.front(), " to ", got.back(), ")");
+            CHECK(median == doctest::Approx(asked).epsilon(0.2));
+        }
+    }
+}
