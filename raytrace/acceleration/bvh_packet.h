@@ -16,18 +16,18 @@ public:
     using Values = std::array<float, kSize>;
 
     RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) {
-        alignas(64) std::array<Values, 8> lanes; // of the origin and the direction three each, t_min, t_max
-        std::array<const float*, kSize> rows;
-        for (std::size_t i = 0; i < kSize; ++i) rows[i] = reinterpret_cast<const float*>(&rays[i]);
-        transpose_rows(rows, lanes);
-        const auto load = [&](std::size_t k) { return Batch::load_aligned(lanes[k].data()); };
-        const Vec3T<Batch> origin(load(0), load(1), load(2)), direction(load(3), load(4), load(5));
-        t_min_ = load(6);
-        t_max_ = load(7);
+        const auto columns = [&](std::size_t first) {
+            return load_columns<kSize>([&](std::size_t i) { return reinterpret_cast<const float*>(&rays[i]) + first; });
+        };
+        const auto [ox, oy, oz, dx] = columns(0);
+        const auto [dy, dz, t_min, t_max] = columns(4);
+        const Vec3T<Batch> origin(ox, oy, oz), direction(dx, dy, dz);
+        t_min_ = t_min;
+        t_max_ = t_max;
         coherent_ = set_axes(rays, origin, direction);
         if (!coherent_) return;
         shear_ = sheared(origin, direction);
-        set_slabs(origin, direction, bounds);
+        set_slabs(rays[0].origin, origin, direction, bounds);
     }
 
     /// Whether all rays run into the same octant along the same main axis, and can be traced. Nothing else may be asked
@@ -106,30 +106,39 @@ private:
         return shear;
     }
 
-    // As SlabRay does for one.
-    void set_slabs(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
-        const Batch relative(SlabRay::relative_error());
-        std::array<Batch, 3> extent;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            extent[axis] = xsimd::max(xsimd::abs(Batch(bounds.low[axis]) - origin[axis]), xsimd::abs(Batch(bounds.high[axis]) - origin[axis]));
-        const Batch largest = xsimd::max(xsimd::max(extent[0], extent[1]), extent[2]);
+    // As SlabRay does for one, with the widest error of all origins.
+    void set_slabs(Vec3 first, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
+        const Box3 origins = extent_of(first, origin);
+        const Vec3 extents = max(abs(bounds.low - origins.high), abs(bounds.high - origins.low)),
+                   sizes = max(abs(origins.low), abs(origins.high));
+        const float largest = max_component(extents);
+        Vec3 ahead, behind;
         const Batch smallest = Batch(SlabRay::kSmallest) * xsimd::abs(direction[shear_.kz]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Batch error = (extent[axis] + extent[axis] + largest + xsimd::abs(origin[axis])) * relative +
-                                Batch(std::numeric_limits<float>::min());
-            const Batch sign(backwards_[axis] ? -1.0f : 1.0f);
-            const Batch away = error * sign;
-            const Batch least = SlabRay::least_divisor(extent[axis] + xsimd::abs(origin[axis]));
-            const Batch reciprocal = sign / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
-            const Batch near_origin = origin[axis] + away, far_origin = origin[axis] - away;
-            scale_[axis] = reciprocal;
-            near_offset_[axis] = -near_origin * reciprocal;
-            far_offset_[axis] = -far_origin * reciprocal;
-            const float low = lowest(reciprocal), high = highest(reciprocal);
-            near_interval_[axis] = {low, high, backwards_[axis] ? lowest(near_origin) : highest(near_origin)};
-            far_interval_[axis] = {low, high, backwards_[axis] ? highest(far_origin) : lowest(far_origin)};
+            const float error = (2 * extents[axis] + largest + sizes[axis]) * SlabRay::relative_error() +
+                                std::numeric_limits<float>::min();
+            const float sign = backwards_[axis] ? -1.0f : 1.0f, away = error * sign;
+            const Batch least(SlabRay::least_divisor(extents[axis] + sizes[axis]));
+            scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
+            near_offset_[axis] = -(origin[axis] + Batch(away)) * scale_[axis];
+            far_offset_[axis] = -(origin[axis] - Batch(away)) * scale_[axis];
+            ahead[axis] = (backwards_[axis] ? origins.low[axis] : origins.high[axis]) + away;
+            behind[axis] = (backwards_[axis] ? origins.high[axis] : origins.low[axis]) - away;
         }
-        first_ = lowest(t_min_);
+        const Lanes low(lowest_of_each(std::array{scale_[0], scale_[1], scale_[2], t_min_})),
+            minus_high(lowest_of_each(std::array{-scale_[0], -scale_[1], -scale_[2], t_min_}));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            near_interval_[axis] = {low[axis], -minus_high[axis], ahead[axis]};
+            far_interval_[axis] = {low[axis], -minus_high[axis], behind[axis]};
+        }
+        first_ = low[3];
+    }
+    // The box of the rays' origins: mostly they are all one.
+    static Box3 extent_of(Vec3 first, const Vec3T<Batch>& origin) {
+        const auto same = (origin.x == Batch(first.x)) & (origin.y == Batch(first.y)) & (origin.z == Batch(first.z));
+        if (lane_bits(same) == (1u << kSize) - 1) return {first, first};
+        return {{lowest(origin.x), lowest(origin.y), lowest(origin.z)},
+                {highest(origin.x), highest(origin.y), highest(origin.z)}};
     }
 
     bool coherent_;
@@ -151,7 +160,12 @@ public:
     PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, const Instance& instance)
         : bvh_(bvh), packet_(packet), rays_(rays), instance_(instance) {
         object_.fill(kNoObject);
-        set_ends(xsimd::min(packet.t_max(), Batch(std::numeric_limits<float>::max()))); // what overflowed is no distance
+        primitive_.fill(0);
+        u_.fill(0);
+        v_.fill(0);
+        xsimd::min(packet.t_max(), Batch(std::numeric_limits<float>::max())) // what overflowed is no distance
+            .store_aligned(t_.data());
+        last_ = highest(ends());
     }
 
     void run(std::span<Hit, kSize> hits) {
@@ -159,7 +173,7 @@ public:
             for (const BvhRef leaf : bvh_.list) test_leaf(leaf, kAll);
         else
             traverse();
-        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray] = object_[ray] == kNoObject ? Hit{} : best(ray);
+        store_hits(hits);
     }
 
 private:
@@ -230,7 +244,8 @@ private:
                 set_best(ray, hit);
             }
         }
-        last_ = highest(ends());
+        if (nearer_) last_ = highest(ends());
+        nearer_ = false;
     }
 
     template <std::size_t kCorners> void test(const PolygonBlock<kCorners>& block, unsigned active) {
@@ -275,6 +290,7 @@ private:
 
     // The hits become these rays' best ones.
     void take(unsigned rays, const CandidateTest<Batch>& test, std::uint32_t object, std::uint32_t primitive) {
+        nearer_ = true;
         store_lanes(test.t(), rays, t_.data());
         store_lanes(test.u(), rays, u_.data());
         store_lanes(test.v(), rays, v_.data());
@@ -307,11 +323,17 @@ private:
         u_[ray] = hit.u;
         v_[ray] = hit.v;
         t_[ray] = hit.t;
+        nearer_ = true;
     }
     Batch ends() const { return Batch::load_aligned(t_.data()); }
-    void set_ends(Batch t) {
-        t.store_aligned(t_.data());
-        last_ = highest(t);
+
+    void store_hits(std::span<Hit, kSize> hits) const {
+        static_assert(offsetof(Hit, object) == 0 && offsetof(Hit, primitive) == 4 && offsetof(Hit, u) == 8 &&
+                      offsetof(Hit, v) == 12);
+        const auto bits = [](const auto& values) { return Batch::load_aligned(reinterpret_cast<const float*>(values.data())); };
+        store_columns<kSize>(std::array{bits(object_), bits(primitive_), bits(u_), bits(v_)},
+                             [&](std::size_t ray) { return reinterpret_cast<float*>(&hits[ray]); });
+        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray].t = object_[ray] == kNoObject ? kInfinity : t_[ray];
     }
 
     const Bvh& bvh_;
@@ -320,7 +342,8 @@ private:
     const Instance& instance_;
     alignas(sizeof(Batch)) RayPacket::Values t_, u_, v_; // of the best hits so far; t: of the rays' ends, where there is none
     alignas(sizeof(Batch)) std::array<std::uint32_t, kSize> object_, primitive_;
-    float last_; // the greatest t
+    float last_;          // the greatest t
+    bool nearer_ = false; // whether one has got less since
     std::size_t size_ = 0;
     // Each step down leaves at most kWidth children waiting.
     std::array<Waiting, BvhNode::kWidth * Bvh::kMaxDepth + 1> stack_;

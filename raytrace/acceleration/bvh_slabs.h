@@ -25,7 +25,7 @@ public:
     static constexpr float kSmallest = 1e-12f;
     /// And no product of a reciprocal with a coordinate is infinite: the fused form would take it for a plane.
     template <typename B> static B least_divisor(B coordinates) {
-        return xsimd::max(coordinates * B(0x1p-120f), B(0x1p-125f));
+        return max(coordinates * B(0x1p-120f), B(0x1p-125f));
     }
 
     SlabRay(const Ray& ray, const Box3& bounds) {
