@@ -26,6 +26,11 @@ template <typename T> struct Shear {
     T sx, sy, sz;
 };
 
+/// A vertex as seen from the ray's origin: the difference of the two.
+template <typename Vertex> struct Relative {
+    Vertex vertex;
+};
+
 /// A ray prepared for watertight tests.
 struct ShearedRay {
     Vec3 origin, direction;
@@ -65,9 +70,12 @@ template <typename T> struct TriangleTest {
     /// A vertex relative to the ray's origin and sheared, which makes the test one of the origin in a 2D triangle.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Vertex& p) {
-        const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
-                z = T(p[ray.kz]) - T(ray.origin.z);
-        return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
+        return shear(ray, {T(p[ray.kx]) - T(ray.origin.x), T(p[ray.ky]) - T(ray.origin.y),
+                           T(p[ray.kz]) - T(ray.origin.z)});
+    }
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Relative<Vertex>& p) {
+        return shear(ray, {T(p.vertex[ray.kx]), T(p.vertex[ray.ky]), T(p.vertex[ray.kz])});
     }
     /// The same edge gives the same numbers in both of its triangles, but for the sign: no ray slips between.
     [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
@@ -106,6 +114,11 @@ template <typename T> struct TriangleTest {
         const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
         const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
         return width * abs(inv_det) * spread > T(limit);
+    }
+
+private:
+    template <typename S> [[gnu::always_inline]] static Vec3T<T> shear(const Shear<S>& ray, const Vec3T<T>& d) {
+        return Vec3T<T>(d.x - T(ray.sx) * d.z, d.y - T(ray.sy) * d.z, T(ray.sz) * d.z);
     }
 };
 

@@ -92,6 +92,24 @@ inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
 #endif
 }
 
+/// The one number in the lower half of the lanes, the other in the upper half.
+template <std::size_t N> FloatBatch<N> halves(float low, float high) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (N == 16) return _mm512_mask_broadcastss_ps(_mm512_set1_ps(low), 0xFF00, _mm_set_ss(high));
+#endif
+    alignas(sizeof(FloatBatch<N>)) std::array<float, N> lanes;
+    for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
+    return FloatBatch<N>::load_aligned(lanes.data());
+}
+/// As many floats as fill the lanes once, or half as many twice.
+template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<float, M>& lanes) {
+    static_assert(M == N || 2 * M == N);
+    if constexpr (M == N) return FloatBatch<N>::load_aligned(lanes.data());
+#if XSIMD_WITH_AVX512F
+    if constexpr (M == 8) return _mm512_broadcast_f32x8(_mm256_load_ps(lanes.data()));
+#endif
+}
+
 /// A batch of floats to pick from.
 template <typename Batch> struct Lanes {
     alignas(sizeof(Batch)) std::array<float, sizeof(Batch) / sizeof(float)> values;
