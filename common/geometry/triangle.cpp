@@ -42,10 +42,10 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     if (!(det != 0)) return std::nullopt;
     const float inv_det = 1 / det;
     TriangleHit hit{test.distance(inv_det), e1 * inv_det, e2 * inv_det};
-    if (test.is_needle(inv_det)) hit = needle_hit(ray, a, b, c, hit);
+    if (test.is_needle(inv_det, ray.shear.speed)) hit = needle_hit(ray, a, b, c, hit);
     // Within its error of the ray's origin (or out of range) t says nothing: is this the surface the ray has just left,
     // or one that touches it?
-    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det));
+    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det, ray.shear.speed));
     if (uncertain && !sabotaged(Guard::kPlaneDistance)) hit.t = plane_distance(ray, a, b, c);
     if (!(hit.t > ray.t_min && hit.t <= ray.t_max)) return std::nullopt;
     return hit;

@@ -66,7 +66,7 @@ public:
     /// One ray's part of the shear.
     Shear<float> shear(std::size_t lane) const {
         return {shear_.kx, shear_.ky, shear_.kz, {lanes_[0][lane], lanes_[1][lane], lanes_[2][lane]},
-                lanes_[3][lane], lanes_[4][lane], lanes_[5][lane]};
+                lanes_[3][lane], lanes_[4][lane], lanes_[5][lane], lanes_[6][lane]};
     }
 
 private:
@@ -100,9 +100,11 @@ private:
         const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
         const std::size_t kx = backwards_[kz] ? after : next, ky = backwards_[kz] ? next : after;
         const Shear<Batch> shear{kx, ky, kz, {origin[kx], origin[ky], origin[kz]},
-                                 direction[kx] / direction[kz], direction[ky] / direction[kz], Batch(1.0f) / direction[kz]};
-        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx, shear.sy, shear.sz};
-        for (std::size_t k = 0; k < 6; ++k) values[k].store_aligned(lanes_[k].data());
+                                 direction[kx] / direction[kz], direction[ky] / direction[kz], Batch(1.0f) / direction[kz],
+                                 xsimd::abs(direction[kz])};
+        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx,
+                                shear.sy,       shear.sz,       shear.speed};
+        for (std::size_t k = 0; k < std::size(values); ++k) values[k].store_aligned(lanes_[k].data());
         return shear;
     }
 
@@ -135,7 +137,7 @@ private:
     bool coherent_;
     std::array<bool, 3> backwards_;
     Shear<Batch> shear_;
-    alignas(64) std::array<Values, 6> lanes_; // the shear's, to be picked from
+    alignas(64) std::array<Values, 7> lanes_; // the shear's, to be picked from
     Batch t_min_, t_max_;
     float first_;
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
