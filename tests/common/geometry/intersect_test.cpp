@@ -126,6 +126,31 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a triangle seen almost edge-on is hit where it is, not far beside it in its plane") {
+        Random random;
+        int hits = 0;
+        double worst = 0;
+        for (int trial = 0; trial < 200000; ++trial) {
+            const Vec3 origin = random.vector() * 3.0f, a = random.vector();
+            const Vec3 along = normalize(a - origin), aside = normalize(cross(along, random.vector()));
+            const Vec3 off = cross(along, aside) * (1e-5f * random.uniform());
+            const Vec3 b = a + (along + aside * random.uniform() + off) * 0.03f, c = a + (along - aside + off) * 0.02f;
+            const ShearedRay ray(towards(origin, a));
+            const auto hit = intersect_triangle(ray, a, b, c);
+            if (!hit) continue;
+            ++hits;
+            const Vec3d d(ray.direction);
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            for (const Vec3& p : {a, b, c}) {
+                const double t = dot(Vec3d(p) - Vec3d(origin), d) / dot(d, d);
+                low = min(low, t), high = max(high, t);
+            }
+            worst = max(worst, max(low - static_cast<double>(hit->t), static_cast<double>(hit->t) - high));
+        }
+        CHECK(hits > 1000);
+        CHECK(worst < 4e-6); // of distances up to 5, some roundings
+    }
+
     TEST_CASE("degenerate triangles and rays are missed, not hit at NaN") {
         const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
         const Ray down{{0.2f, 0.2f, 1}, {0, 0, -1}};
