@@ -20,7 +20,7 @@ struct KernelsOptions {
     int threads = 0;                                  ///< of the rows for many threads; 0: all
     int repeats = 7;
     double seconds = 0.15;               ///< a measurement's length
-    std::int64_t watertight = 1'000'000; ///< rays aimed from within closed meshes; 0: none
+    std::int64_t watertight = 1'000'000; ///< rays aimed from within closed scenes; 0: none
     std::uint64_t seed = 0;
     std::string stats; ///< a file for the rows as JSON, "-" for standard output, empty: none
     bool quiet = false;
