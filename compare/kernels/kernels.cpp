@@ -84,6 +84,7 @@ json report_json(const KernelsOptions& options, const MeasureKernels& settings,
     return {{"program", "compare kernels"},
             {"version", DUET_VERSION},
             {"peer", peer ? json(embree_version()) : json(nullptr)},
+            {"bvh", options.bvh},
             {"width", options.size.width},
             {"height", options.size.height},
             {"threads", settings.threads},
@@ -100,6 +101,7 @@ int kernels(const KernelsOptions& options) {
     MeasureKernels settings;
     settings.works = chosen_works(options.works);
     settings.peers = chosen_peers(options.peers);
+    settings.quality = raytrace::bvh_quality(options.bvh);
     settings.size = options.size;
     settings.threads = options.threads > 0 ? options.threads : available_threads();
     settings.repeats = options.repeats;

@@ -16,6 +16,7 @@ struct KernelsOptions {
     std::vector<std::string> scenes{"alone", "room"}; ///< of bare meshes; a scene file is always alone
     std::vector<std::string> works;                   ///< of kWorks; empty: all
     std::vector<std::string> peers;                   ///< Embree's qualities (name_of), or "none"; empty: all
+    std::string bvh = "default";                      ///< the quality of our hierarchy
     PictureSize size{1920, 1080};                     ///< one camera ray a pixel
     int threads = 0;                                  ///< of the rows for many threads; 0: all
     int repeats = 7;

@@ -33,6 +33,7 @@ Subcommand add_kernels(CLI::App& app) {
                      "Embree's settings: medium, high (build quality), medium-robust, high-robust, or none (default: "
                      "all four)")
         ->delimiter(',');
+    kernels->add_option("--bvh", options.bvh, "Quality of our hierarchy, as of raytrace: default or high (default: default)");
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
     kernels
         ->add_option("--threads", options.threads,

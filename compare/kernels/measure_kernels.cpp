@@ -87,7 +87,7 @@ private:
         const Control control = steps_.next();
         const Timed ours = [&] {
             const Stopwatch watch;
-            const raytrace::Accelerator built(*scene_.scene, threads);
+            const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
             return watch.seconds();
         };
         std::optional<EmbreeDevice> device;
@@ -107,7 +107,7 @@ private:
     }
 
     void build_all() {
-        accelerator_.emplace(*scene_.scene, settings_.threads);
+        accelerator_.emplace(*scene_.scene, settings_.threads, settings_.quality);
         if (settings_.peers.empty()) {
             if (wanted("build")) table_.rows.push_back(memory_row());
             return;
