@@ -30,8 +30,8 @@ Subcommand add_kernels(CLI::App& app) {
         ->delimiter(',');
     kernels
         ->add_option("--peers", options.peers,
-                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, or none (default: "
-                     "all four)")
+                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is AVX-512 "
+                     "medium-avx2 and high-avx2, or none (default: all)")
         ->delimiter(',');
     kernels->add_option("--bvh", options.bvh, "Quality of our hierarchy, as of raytrace: default or high (default: default)");
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");

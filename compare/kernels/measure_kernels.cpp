@@ -35,6 +35,19 @@ private:
     double share_, done_ = 0;
 };
 
+/// Embree's devices that the settings ask for.
+class Devices {
+public:
+    Devices(const std::vector<EmbreeQuality>& qualities, const Scene& scene, int threads) {
+        for (const EmbreeQuality& quality : qualities)
+            if (auto& device = quality.avx2 ? avx2_ : widest_; !device) device.emplace(scene, threads, quality.avx2);
+    }
+    const EmbreeDevice& of(EmbreeQuality quality) const { return quality.avx2 ? *avx2_ : *widest_; }
+
+private:
+    std::optional<EmbreeDevice> widest_, avx2_;
+};
+
 /// Rays, the question they ask, and all who answer.
 struct Work {
     std::string name;
@@ -90,13 +103,12 @@ private:
             const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
             return watch.seconds();
         };
-        std::optional<EmbreeDevice> device;
-        if (!settings_.peers.empty()) device.emplace(*scene_.scene, threads);
+        const Devices devices(settings_.peers, *scene_.scene, threads);
         std::vector<Timed> peers;
         for (const EmbreeQuality& quality : settings_.peers)
-            peers.push_back([&device, quality] {
+            peers.push_back([&devices, quality] {
                 const Stopwatch watch;
-                const EmbreeScene built(*device, quality);
+                const EmbreeScene built(devices.of(quality), quality);
                 return watch.seconds();
             });
         const Interleaved found = interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
@@ -112,9 +124,9 @@ private:
             if (wanted("build")) table_.rows.push_back(memory_row());
             return;
         }
-        device_.emplace(*scene_.scene, settings_.threads);
+        devices_.emplace(settings_.peers, *scene_.scene, settings_.threads);
         for (const EmbreeQuality& quality : settings_.peers) {
-            embree_.push_back(std::make_unique<EmbreeScene>(*device_, quality));
+            embree_.push_back(std::make_unique<EmbreeScene>(devices_->of(quality), quality));
             if (!wanted("build")) continue;
             KernelRow row = memory_row();
             row.peer_name = full_name(name_of(quality));
@@ -273,7 +285,7 @@ private:
     Steps steps_;
     KernelTable table_;
     std::optional<raytrace::Accelerator> accelerator_;
-    std::optional<EmbreeDevice> device_;
+    std::optional<Devices> devices_;
     std::vector<std::unique_ptr<EmbreeScene>> embree_;
     std::vector<Work> works_;
 };

@@ -18,7 +18,7 @@
 namespace duet::compare {
 
 std::string name_of(EmbreeQuality quality) {
-    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "");
+    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "") + (quality.avx2 ? "-avx2" : "");
 }
 
 #if defined(DUET_EMBREE)
@@ -259,9 +259,10 @@ std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene, std::
 
 } // namespace
 
-EmbreeDevice::EmbreeDevice(const Scene& scene, int threads) : handle_(std::make_shared<Handle>()) {
+EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_(std::make_shared<Handle>()) {
     // simd512: AVX-512 wherever the processor has it, whatever clock frequency Embree thinks it costs there.
-    handle_->device = rtcNewDevice(message("threads=", threads, ",frequency_level=simd512").c_str());
+    const char* const instructions = avx2 ? "isa=avx2" : "frequency_level=simd512";
+    handle_->device = rtcNewDevice(message("threads=", threads, ",", instructions).c_str());
     fail_on_error(handle_->device);
     rtcSetDeviceMemoryMonitorFunction(
         handle_->device,
@@ -357,6 +358,15 @@ EmbreeScene::~EmbreeScene() = default;
 
 std::int64_t EmbreeScene::memory_bytes() const { return built_->bytes; }
 
+std::vector<EmbreeQuality> embree_qualities() {
+    std::vector<EmbreeQuality> all{{false, false}, {true, false}, {false, true}, {true, true}};
+    RTCDevice device = rtcNewDevice("threads=1");
+    const bool avx512 = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    rtcReleaseDevice(device);
+    if (avx512) all.insert(all.end(), {{false, false, true}, {true, false, true}});
+    return all;
+}
+
 std::vector<EmbreeForm> embree_bulk_forms() {
 #if DUET_EMBREE == 3
     return {EmbreeForm::kPackets16, EmbreeForm::kPackets8, EmbreeForm::kStreamM, EmbreeForm::kStreamNp};
@@ -411,7 +421,8 @@ Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
 // Without Embree nobody gets as far as this: the version is empty.
 std::string embree_version() { return {}; }
 struct EmbreeDevice::Handle {};
-EmbreeDevice::EmbreeDevice(const Scene&, int) { throw Error("this program was built without Embree", 1); }
+std::vector<EmbreeQuality> embree_qualities() { return {}; }
+EmbreeDevice::EmbreeDevice(const Scene&, int, bool) { throw Error("this program was built without Embree", 1); }
 struct EmbreeScene::Built {};
 EmbreeScene::EmbreeScene(const EmbreeDevice&, EmbreeQuality) {
     throw Error("this program was built without Embree", 1);

@@ -309,32 +309,32 @@ TEST_SUITE("unit") {
         const KernelScene scene = lump(Arrangement::kRoom, 4);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
         const Judge judge(*scene.scene);
-        const EmbreeDevice device(*scene.scene, 1);
+        const EmbreeDevice widest(*scene.scene, 1), avx2(*scene.scene, 1, true);
         const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kZCurve, 1);
         const auto bounce = bounce_rays(scene, accelerator, camera, 0, 1);
         const ShadowRays shadow = shadow_rays(scene, accelerator, camera, 0, 1);
         std::vector<EmbreeForm> forms = embree_bulk_forms();
         forms.push_back(EmbreeForm::kSingle);
-        for (const bool robust : {false, true})
-            for (const bool high : {false, true}) {
-                const EmbreeScene embree(device, {high, robust});
-                CHECK(embree.memory_bytes() > 20 * std::ssize(scene.triangles().triangles));
-                CHECK(embree.memory_bytes() < 400 * std::ssize(scene.triangles().triangles));
-                for (const std::vector<Ray>& rays : {camera, bounce}) {
-                    const auto ours = all_answers(our_closest(accelerator, rays), rays.size(), 1);
-                    for (const EmbreeForm form : forms)
-                        for (const bool coherent : {false, true}) {
-                            const auto theirs = all_answers(embree.closest(rays, form, coherent), rays.size(), 1);
-                            const Mismatches found = compare_answers(judge, {rays, {}}, ours, theirs, 1);
-                            CHECK(found.unexplained == 0);
-                            CHECK(found.ours.edge == 0);
-                            CHECK(found.differ() < 100);
-                        }
-                }
-                const auto ours = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
-                const auto theirs = all_answers(embree.occluded(shadow.rays), shadow.rays.size(), 1);
-                CHECK(compare_answers(judge, {shadow.rays, shadow.ends}, ours, theirs, 1).unexplained == 0);
+        for (const EmbreeQuality quality : embree_qualities()) {
+            CAPTURE(name_of(quality));
+            const EmbreeScene embree(quality.avx2 ? avx2 : widest, quality);
+            CHECK(embree.memory_bytes() > 20 * std::ssize(scene.triangles().triangles));
+            CHECK(embree.memory_bytes() < 400 * std::ssize(scene.triangles().triangles));
+            for (const std::vector<Ray>& rays : {camera, bounce}) {
+                const auto ours = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+                for (const EmbreeForm form : forms)
+                    for (const bool coherent : {false, true}) {
+                        const auto theirs = all_answers(embree.closest(rays, form, coherent), rays.size(), 1);
+                        const Mismatches found = compare_answers(judge, {rays, {}}, ours, theirs, 1);
+                        CHECK(found.unexplained == 0);
+                        CHECK(found.ours.edge == 0);
+                        CHECK(found.differ() < 100);
+                    }
             }
+            const auto ours = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
+            const auto theirs = all_answers(embree.occluded(shadow.rays), shadow.rays.size(), 1);
+            CHECK(compare_answers(judge, {shadow.rays, shadow.ends}, ours, theirs, 1).unexplained == 0);
+        }
     }
 
     TEST_CASE("Embree's instances are ours" * doctest::skip(embree_version().empty())) {
