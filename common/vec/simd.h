@@ -124,13 +124,15 @@ template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsig
     if constexpr (sizeof(batch) == 64) return _mm512_mask_store_ps(to, static_cast<__mmask16>(lanes), batch);
 #endif
     const Lanes values(batch);
-    for (; lanes != 0; lanes &= lanes - 1) to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
+    for (; lanes != 0; lanes &= lanes - 1)
+        to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
 }
 /// The same of one value.
 template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, std::array<std::uint32_t, N>& to) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
-        return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes), _mm512_set1_epi32(static_cast<int>(value)));
+        return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes),
+                                        _mm512_set1_epi32(static_cast<int>(value)));
 #endif
     for (; lanes != 0; lanes &= lanes - 1) to[static_cast<std::size_t>(std::countr_zero(lanes))] = value;
 }
@@ -161,9 +163,9 @@ template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
     const auto four = [&](std::size_t i) { return _mm_loadu_ps(at(i)); };
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
-        return _mm512_insertf32x4(_mm512_insertf32x4(_mm512_insertf32x4(_mm512_castps128_ps512(four(0)), four(1), 1),
-                                                     four(2), 2),
-                                  four(3), 3);
+        return _mm512_insertf32x4(
+            _mm512_insertf32x4(_mm512_insertf32x4(_mm512_castps128_ps512(four(0)), four(1), 1), four(2), 2), four(3),
+            3);
 #endif
 #if XSIMD_WITH_AVX
     if constexpr (N == 8) return _mm256_insertf128_ps(_mm256_castps128_ps256(four(0)), four(1), 1);
@@ -206,8 +208,7 @@ template <std::size_t N, typename Row> std::array<FloatBatch<N>, 4> load_columns
 /// And back.
 template <std::size_t N, typename Row> void store_columns(const std::array<FloatBatch<N>, 4>& columns, const Row& row) {
     const std::array<FloatBatch<N>, 4> rows = detail::transpose_fours(columns);
-    for (std::size_t k = 0; k < 4; ++k)
-        detail::scatter_fours(rows[k], [&](std::size_t i) { return row(4 * i + k); });
+    for (std::size_t k = 0; k < 4; ++k) detail::scatter_fours(rows[k], [&](std::size_t i) { return row(4 * i + k); });
 }
 
 /// The least of each batch's lanes, side by side: cheaper than one by one. Of NaN any may come out.

@@ -51,7 +51,8 @@ public:
         };
         const auto near_bound = [&](std::size_t axis) { return bound(near_interval_[axis], near_plane_[axis], false); };
         const auto far_bound = [&](std::size_t axis) { return bound(far_interval_[axis], far_plane_[axis], true); };
-        const Boxes near = xsimd::max(xsimd::max(near_bound(0), near_bound(1)), xsimd::max(near_bound(2), Boxes(first_)));
+        const Boxes near =
+            xsimd::max(xsimd::max(near_bound(0), near_bound(1)), xsimd::max(near_bound(2), Boxes(first_)));
         const Boxes far = xsimd::min(xsimd::min(far_bound(0), far_bound(1)), xsimd::min(far_bound(2), Boxes(end)));
         return {near, lane_bits(near <= far)};
     }
@@ -77,7 +78,7 @@ public:
     /// What some of the rays' shears are, each for its share of the lanes.
     template <std::size_t N> Shear<Batch> shears(const std::array<std::size_t, N>& rays) const {
         const auto pick = [&](std::size_t k) { return share(lanes_[k], rays); };
-        return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5)};
+        return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5), pick(6)};
     }
     static Batch share(const Values& values, const std::array<std::size_t, 1>& rays) { return Batch(values[rays[0]]); }
     static Batch share(const Values& values, const std::array<std::size_t, 2>& rays) {
@@ -116,10 +117,17 @@ private:
     Shear<Batch> sheared(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
         const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
         const std::size_t kx = backwards_[kz] ? after : next, ky = backwards_[kz] ? next : after;
-        const Shear<Batch> shear{kx, ky, kz, {origin[kx], origin[ky], origin[kz]},
-                                 direction[kx] / direction[kz], direction[ky] / direction[kz], Batch(1.0f) / direction[kz]};
-        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx, shear.sy, shear.sz};
-        for (std::size_t k = 0; k < 6; ++k) values[k].store_aligned(lanes_[k].data());
+        const Shear<Batch> shear{kx,
+                                 ky,
+                                 kz,
+                                 {origin[kx], origin[ky], origin[kz]},
+                                 direction[kx] / direction[kz],
+                                 direction[ky] / direction[kz],
+                                 Batch(1.0f) / direction[kz],
+                                 xsimd::abs(direction[kz])};
+        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx,
+                                shear.sy,       shear.sz,       shear.speed};
+        for (std::size_t k = 0; k < std::size(values); ++k) values[k].store_aligned(lanes_[k].data());
         return shear;
     }
 
@@ -165,7 +173,7 @@ private:
     std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
     std::optional<Vec3> origin_;
     Shear<Batch> shear_;
-    alignas(64) std::array<Values, 6> lanes_; // the shear's, to be picked from
+    alignas(64) std::array<Values, 7> lanes_; // the shear's, to be picked from
     Batch t_min_, t_max_;
     float first_;
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
@@ -421,7 +429,9 @@ private:
     void store_hits(std::span<Hit, kSize> hits) const {
         static_assert(offsetof(Hit, object) == 0 && offsetof(Hit, primitive) == 4 && offsetof(Hit, u) == 8 &&
                       offsetof(Hit, v) == 12);
-        const auto bits = [](const auto& values) { return Batch::load_aligned(reinterpret_cast<const float*>(values.data())); };
+        const auto bits = [](const auto& values) {
+            return Batch::load_aligned(reinterpret_cast<const float*>(values.data()));
+        };
         store_columns<kSize>(std::array{bits(object_), bits(primitive_), bits(u_), bits(v_)},
                              [&](std::size_t ray) { return reinterpret_cast<float*>(&hits[ray]); });
         for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray].t = object_[ray] == kNoObject ? kInfinity : t_[ray];
@@ -431,7 +441,8 @@ private:
     const RayPacket& packet_;
     std::span<const Ray, kSize> rays_;
     const Instance& instance_;
-    alignas(sizeof(Batch)) RayPacket::Values t_, u_, v_; // of the best hits so far; t: of the rays' ends, where there is none
+    alignas(sizeof(Batch)) RayPacket::Values t_, u_,
+        v_; // of the best hits so far; t: of the rays' ends, where there is none
     alignas(sizeof(Batch)) std::array<std::uint32_t, kSize> object_, primitive_;
     float last_;          // the greatest t
     bool nearer_ = false; // whether one has got less since
