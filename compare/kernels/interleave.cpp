@@ -74,7 +74,7 @@ Portion portion_of(std::size_t rays, double rate, double seconds) {
 }
 
 double trace_seconds(const Tracer& tracer, const Portion& portion, int threads, std::vector<AnswerBlock>& answers) {
-    const Stopwatch watch;
+    const WorkWatch watch(threads);
     for (int pass = 0; pass < portion.passes; ++pass)
         parallel_for(portion.groups.size(), threads, [&](std::size_t i) {
             const std::size_t first = portion.groups[i] * Portion::kGroup;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "common/system/control.h"
+#include "common/system/stopwatch.h"
 #include "compare/kernels/tracer.h"
 
+#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +20,21 @@ Range range_of(std::vector<double> values);
 
 /// Does the work once and returns the seconds it took.
 using Timed = std::function<double()>;
+
+/// Measures work that `threads` threads do: of one thread its CPU time, which other programs on the machine disturb much
+/// less; of several the time that passes.
+class WorkWatch {
+public:
+    explicit WorkWatch(int threads) : alone_(threads == 1), begin_(std::clock()) {}
+    double seconds() const {
+        return alone_ ? static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC : watch_.seconds();
+    }
+
+private:
+    bool alone_;
+    std::clock_t begin_; ///< of the process, whose other threads sleep
+    Stopwatch watch_;
+};
 
 struct Versus {
     Range ratio;                 ///< peer's seconds / ours, of neighbours in time: above 1 ours is ahead
@@ -50,7 +67,7 @@ struct Portion {
 /// For the set of `rays` that a tracer traces at `rate` rays a second.
 Portion portion_of(std::size_t rays, double rate, double seconds);
 
-/// Seconds that the tracer takes for the portion on `threads` threads. `answers` has a block for each of the set's.
+/// Seconds (WorkWatch) that the tracer takes for the portion on `threads` threads. `answers` has a block for each of the set's.
 double trace_seconds(const Tracer& tracer, const Portion& portion, int threads, std::vector<AnswerBlock>& answers);
 
 } // namespace duet::compare

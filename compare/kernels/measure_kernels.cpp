@@ -1,7 +1,6 @@
 #include "compare/kernels/measure_kernels.h"
 
 #include "common/system/parallel.h"
-#include "common/system/stopwatch.h"
 #include "compare/kernels/kernels.h"
 #include "compare/kernels/ray_sets.h"
 #include "compare/kernels/watertight.h"
@@ -99,15 +98,15 @@ private:
     void measure_builds(int threads) {
         const Control control = steps_.next();
         const Timed ours = [&] {
-            const Stopwatch watch;
+            const WorkWatch watch(threads);
             const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
             return watch.seconds();
         };
         const Devices devices(settings_.peers, *scene_.scene, threads);
         std::vector<Timed> peers;
         for (const EmbreeQuality& quality : settings_.peers)
-            peers.push_back([&devices, quality] {
-                const Stopwatch watch;
+            peers.push_back([&devices, quality, threads] {
+                const WorkWatch watch(threads);
                 const EmbreeScene built(devices.of(quality), quality);
                 return watch.seconds();
             });
