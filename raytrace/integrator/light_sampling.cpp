@@ -47,6 +47,9 @@ bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arriva
                 std::get_if<SurfaceLight>(&plan.scene.lights[static_cast<std::size_t>(arrival.light)])) {
             end.object = light->object;
             end.primitive = light->primitive;
+            // Mostly nothing lies between, nor just behind the light: then its exact distance does not matter.
+            end.t = arrival.distance * 1.001f;
+            if (!plan.prepared.accelerator.occluded(ray, end)) return true;
             end.t = distance_along(ray, *light, arrival.distance);
         }
     }

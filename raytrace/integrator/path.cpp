@@ -165,8 +165,16 @@ private:
         throughput_ *= s->weight;
         if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, throughput_);
         if (s->transmitted) note_refraction(vertex);
-        departure_ = {vertex.receiver(), s->pdf, s->specular || plan_.lights == nullptr};
-        ray = spawn_ray(vertex, wi);
+        // Each number is written where it is read from next: a whole ray copied right after it was put together would
+        // wait for its parts.
+        departure_.certain = s->specular || plan_.lights == nullptr;
+        if (!departure_.certain) {
+            departure_.receiver = vertex.receiver();
+            departure_.pdf = s->pdf;
+        }
+        ray.origin = offset_origin(vertex.point, wi);
+        ray.direction = wi;
+        ray.t_min = 0;
         return true;
     }
 

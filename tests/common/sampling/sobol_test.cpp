@@ -110,7 +110,7 @@ TEST_SUITE("unit") {
                                     s.set_dimension(dimension);
                                     points.push_back(s.get_2d());
                                 }
-                        const int k = std::bit_width(points.size()) - 1;
+                        const int k = static_cast<int>(std::bit_width(points.size())) - 1;
                         CHECK(faulty_elementary_intervals(points, k) == 0);
                     }
     }
