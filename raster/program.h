@@ -1,0 +1,124 @@
+// A shader of raster/shader.h becomes a Program: whole strips of one mesh in batches, all else sample by sample, by the
+// same functions.
+#pragma once
+
+#include "raster/cover.h"
+#include "raster/one_sample.h"
+#include "raster/solve.h"
+
+namespace duet::raster {
+
+template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
+public:
+    ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
+        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader) {}
+
+    void shade(const StripPlace& place, StripColors& colors) override {
+        solver_.load(place.ids);
+        if (solver_.seen() == 0) return;
+        place_ = &place;
+        if (solver_.on_mesh() == solver_.seen()) {
+            solver_.solve_all(place);
+            shade_together(place, colors);
+            return;
+        }
+        for (std::size_t i = 0; i < kStrip; ++i) {
+            if (!(solver_.seen() >> i & 1)) continue;
+            const Rgb c = shade_one(data_, geometry_, view_, shader_, solver_.id(i), place.position(i),
+                                    place.nearness != nullptr ? place.nearness + i : nullptr);
+            colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
+        }
+    }
+
+private:
+    using Many = VaryingsOf<S, Floats>;
+
+    void shade_together(const StripPlace& place, StripColors& colors) {
+        const Pinhole& pinhole = view_.pinhole;
+        const Vec2d first = place.offsets != nullptr ? Vec2d(place.x, place.y) : place.offset.position(place.x, place.y);
+        const Vec3 start(pinhole.direction + pinhole.direction_dx * first.x + pinhole.direction_dy * first.y),
+            step_x(pinhole.direction_dx), step_y(pinhole.direction_dy);
+        const Vec3 eye(pinhole.origin + pinhole.origin_dx * first.x + pinhole.origin_dy * first.y),
+            eye_x(pinhole.origin_dx), eye_y(pinhole.origin_dy);
+        StripOf<float> own_x, own_y; // in the pixel
+        if (place.offsets != nullptr)
+            for (std::size_t i = 0; i < kStrip; ++i) {
+                own_x[i] = static_cast<float>((*place.offsets)[i].x) / kSubPixels;
+                own_y[i] = static_cast<float>((*place.offsets)[i].y) / kSubPixels;
+            }
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+            Floats across = load(kColumns<float>, i), down = load(kRows<float>, i);
+            if (place.offsets != nullptr) {
+                across += load(own_x, i);
+                down += load(own_y, i);
+            }
+            const auto ray = [&](Vec3 from, Vec3 x, Vec3 y) {
+                return spread<Floats>(from) + spread<Floats>(x) * across + spread<Floats>(y) * down;
+            };
+            const Floats depth = narrowed(load(solver_.depth, i), load(solver_.depth, i + Doubles::size));
+            const FragmentOf<S, Floats> fragment{derivatives(i),
+                                                 varyings<S, Floats>(gather(solver_.at, i)),
+                                                 strips::vector(solver_.ng, 0, i),
+                                                 ray(eye, eye_x, eye_y),
+                                                 ray(start, step_x, step_y),
+                                                 depth,
+                                                 place.nearness != nullptr
+                                                     ? Floats::load_aligned(place.nearness + i)
+                                                     : min(Floats(static_cast<float>(pinhole.near)) / depth, Floats(1.0f)),
+                                                 solver_.object(),
+                                                 *this,
+                                                 i};
+            const RgbT<Floats> c = shader_.template fragment<Floats>(fragment);
+            store(colors.r, i, c.r);
+            store(colors.g, i, c.g);
+            store(colors.b, i, c.b);
+        }
+    }
+
+    template <std::size_t N> static std::array<Floats, N> gather(const std::array<StripOf<float>, N>& from, std::size_t i) {
+        std::array<Floats, N> result;
+        for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
+        return result;
+    }
+    auto derivatives(std::size_t i) const {
+        if constexpr (wants_derivatives<S>())
+            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(solver_.dx, i)),
+                                                 varyings<S, Floats>(gather(solver_.dy, i))};
+        else
+            return ScreenDerivatives<Many, false>{};
+    }
+
+    Rgb base_color(std::size_t sample) const override {
+        if (!(solver_.seen() >> sample & 1)) return {};
+        const Rayd exact = view_.pinhole.ray(place_->position(sample));
+        const double distance = solver_.depth[sample] * exact.t_min / view_.pinhole.near;
+        const Hit hit{.object = solver_.object().object,
+                      .primitive = static_cast<std::uint32_t>(solver_.index(sample)),
+                      .u = static_cast<float>(solver_.b1[sample]),
+                      .v = static_cast<float>(solver_.b2[sample]),
+                      .t = static_cast<float>(distance)};
+        return hit_color(data_.scene, rounded(exact, view_.time), hit);
+    }
+
+    const PreparedData& data_;
+    const Geometry& geometry_;
+    const PassView& view_;
+    const S& shader_;
+    StripSolver<S> solver_;
+    const StripPlace* place_ = nullptr; ///< of the strip at hand
+};
+
+/// A shader, kept by value.
+template <Shader S> class ProgramOf final : public Program {
+public:
+    explicit ProgramOf(S shader) : shader_(std::move(shader)) {}
+    std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
+                                          const PixelRect& tile) const override {
+        return std::make_unique<ShadedStrips<S>>(data, geometry, view, tile, shader_);
+    }
+
+private:
+    S shader_;
+};
+
+} // namespace duet::raster
