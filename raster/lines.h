@@ -8,9 +8,9 @@
 namespace duet::raster {
 
 /// Marks the pixels of the line between two points of the sub-pixel grid, for samples of one place in their pixels. Of a
-/// line that runs along x rather than along y (or as much): in each column of samples that lies from its left end on and
-/// before its right end, the pixel whose sample is nearest to it, the lower of two. So a line that goes on as another
-/// marks no column twice. The midpoint algorithm (Bresenham 1965, «Algorithm for Computer Control of a Digital Plotter»;
+/// line that runs along x rather than along y (or as much): in each column of samples from its left end on and before its
+/// right end, the pixel whose sample is nearest to it; of two the one with the lower number. So a line that goes on as
+/// another marks no column twice. The midpoint algorithm (Bresenham 1965, «Algorithm for Computer Control of a Digital Plotter»;
 /// tinyrenderer, lesson 1) with ends that need not be pixels' centres, exact in integers for coordinates below 2^25.
 void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8_t>& marks);
 

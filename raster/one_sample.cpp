@@ -70,11 +70,6 @@ std::uint32_t object_of(const Geometry& geometry, std::uint32_t id) {
     return run.sphere ? geometry.spheres[run.object].object : geometry.triangles.objects[run.object].object;
 }
 
-Rgb hit_color(const Scene& scene, const Ray& ray, const Hit& hit) {
-    const SurfacePoint surface = surface_point(scene, ray, hit);
-    return base_color(scene.materials[surface.material], scene.textures, surface);
-}
-
 SampleCorners sample_corners(const PreparedData& data, const Geometry& geometry, const PassView& view, std::uint32_t id,
                              Vec2d pixel, const ObjectView& object) {
     SampleCorners sample;

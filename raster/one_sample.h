@@ -6,9 +6,6 @@
 
 namespace duet::raster {
 
-/// The base colour where a camera ray hits.
-Rgb hit_color(const Scene& scene, const Ray& ray, const Hit& hit);
-
 /// The corners of what a sample sees, and the weights that make it of them: their derivatives by the sample's place,
 /// too. Of a sphere three of its points: where the sample sees it, and where the next to the right and below do, if they
 /// looked at its tangent plane.

@@ -16,7 +16,6 @@ public:
     void shade(const StripPlace& place, StripColors& colors) override {
         solver_.load(place.ids);
         if (solver_.seen() == 0) return;
-        place_ = &place;
         if (solver_.on_mesh() == solver_.seen()) {
             solver_.solve_all(place);
             shade_together(place, colors);
@@ -88,16 +87,25 @@ private:
             return ScreenDerivatives<Many, false>{};
     }
 
+    /// As surface_point() has it, but for what base colours don't depend on.
     Rgb base_color(std::size_t sample) const override {
         if (!(solver_.seen() >> sample & 1)) return {};
-        const Rayd exact = view_.pinhole.ray(place_->position(sample));
-        const double distance = solver_.depth[sample] * exact.t_min / view_.pinhole.near;
-        const Hit hit{.object = solver_.object().object,
-                      .primitive = static_cast<std::uint32_t>(solver_.index(sample)),
-                      .u = static_cast<float>(solver_.b1[sample]),
-                      .v = static_cast<float>(solver_.b2[sample]),
-                      .t = static_cast<float>(distance)};
-        return hit_color(data_.scene, rounded(exact, view_.time), hit);
+        const Mesh& mesh = *solver_.one_mesh();
+        const double u = solver_.b1[sample], v = solver_.b2[sample];
+        const auto& corners = mesh.triangles[solver_.index(sample)];
+        SurfacePoint point;
+        point.object = solver_.object().object;
+        point.primitive = static_cast<std::uint32_t>(solver_.index(sample));
+        point.material = material_index(data_.scene, point.object, point.primitive);
+        point.time = view_.time;
+        const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
+        point.p_object = Vec3(a + (b - a) * u + (c - a) * v);
+        point.uv = Vec2(static_cast<float>(u), static_cast<float>(v));
+        if (!mesh.uvs.empty()) {
+            const auto uv = [&](std::size_t k) { return Vec2d(mesh.uvs[corners[k]]); };
+            point.uv = Vec2(uv(0) * (1 - u - v) + uv(1) * u + uv(2) * v);
+        }
+        return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
     }
 
     const PreparedData& data_;
@@ -105,7 +113,6 @@ private:
     const PassView& view_;
     const S& shader_;
     StripSolver<S> solver_;
-    const StripPlace* place_ = nullptr; ///< of the strip at hand
 };
 
 /// A shader, kept by value.
