@@ -56,16 +56,15 @@ private:
     void strip(int x, int y) {
         const std::uint32_t place = tile_.place(x, y);
         const bool drawn = tile_.drawn(place / kBlockSamples);
-        const std::uint32_t seen = drawn ? samples_seen(tile_.ids() + place) : 0;
         std::array<Rgba8, kStrip> codes;
-        if (seen == 0 && background_) {
-            codes.fill(*background_);
-        } else if (shader_ != nullptr) {
-            shade_together(x, y, seen, codes);
-        } else {
+        if (shader_ == nullptr && !(background_ && (!drawn || samples_seen(tile_.ids() + place) == 0))) {
             shade_one_by_one(x, y);
             return;
         }
+        if (shader_ == nullptr || !drawn)
+            codes.fill(*background_);
+        else
+            shade_together(x, y, codes);
         for (int row = 0; row < std::min(kStripRows, tile_.rect().y1 - y); ++row) {
             const auto from = codes.begin() + row * static_cast<int>(kStripWidth);
             const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - x);
@@ -76,13 +75,14 @@ private:
         }
     }
 
-    void shade_together(int x, int y, std::uint32_t seen, std::array<Rgba8, kStrip>& codes) {
+    void shade_together(int x, int y, std::array<Rgba8, kStrip>& codes) {
         StripColors colors;
-        shader_->shade(strip_place(tile_, x, y), colors);
+        const std::uint32_t seen = shader_->shade(strip_place(tile_, x, y), colors);
+        if (seen == 0) return codes.fill(*background_); // a program has one
         encode_strip(colors, codes);
         if (seen != (1u << kStrip) - 1)
             for (std::size_t i = 0; i < kStrip; ++i)
-                if (!(seen >> i & 1)) codes[i] = *background_; // a program has one
+                if (!(seen >> i & 1)) codes[i] = *background_;
     }
 
     void shade_one_by_one(int x0, int y0) {

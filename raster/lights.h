@@ -11,11 +11,9 @@ template <typename T> struct IncidentT {
     RgbT<T> irradiance; ///< on a surface that faces it; nothing occludes it
 };
 
-/// Light at a point of the world. A surface light counts as a distant one of the same irradiance in its centre's
+/// Light at a point of the world, of any but a sun. A surface light counts as a distant one of the same irradiance in its centre's
 /// direction.
 template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
-    if (const auto* sun = std::get_if<SunLight>(&light))
-        return {spread<T>(-sun->direction), spread<T>(sun->irradiance)};
     const auto from = [&](Vec3 position, Rgb intensity) -> IncidentT<T> {
         const Vec3T<T> way = spread<T>(position) - p;
         const T squared = dot(way, way);
@@ -44,6 +42,19 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
         }
         return {{load(wi.x, 0), load(wi.y, 0), load(wi.z, 0)},
                 {load(irradiance.r, 0), load(irradiance.g, 0), load(irradiance.b, 0)}};
+    }
+}
+
+/// use(IncidentT<T>) for each light, at the point of the world that place() returns; suns, which shine everywhere alike,
+/// don't ask for it.
+template <typename Place, typename Use>
+void for_each_incident(std::span<const Light> lights, const Place& place, const Use& use) {
+    using T = decltype(place().x);
+    for (const Light& light : lights) {
+        if (const auto* sun = std::get_if<SunLight>(&light))
+            use(IncidentT<T>{spread<T>(-sun->direction), spread<T>(sun->irradiance)});
+        else
+            use(incident<T>(light, place()));
     }
 }
 

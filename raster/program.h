@@ -13,13 +13,13 @@ public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
         : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader) {}
 
-    void shade(const StripPlace& place, StripColors& colors) override {
+    std::uint32_t shade(const StripPlace& place, StripColors& colors) override {
         solver_.load(place.ids);
-        if (solver_.seen() == 0) return;
+        if (solver_.seen() == 0) return 0;
         if (solver_.on_mesh() == solver_.seen()) {
             solver_.solve_all(place);
             shade_together(place, colors);
-            return;
+            return solver_.seen();
         }
         for (std::size_t i = 0; i < kStrip; ++i) {
             if (!(solver_.seen() >> i & 1)) continue;
@@ -27,6 +27,7 @@ public:
                                     place.nearness != nullptr ? place.nearness + i : nullptr);
             colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
         }
+        return solver_.seen();
     }
 
 private:
@@ -39,17 +40,11 @@ private:
             step_x(pinhole.direction_dx), step_y(pinhole.direction_dy);
         const Vec3 eye(pinhole.origin + pinhole.origin_dx * first.x + pinhole.origin_dy * first.y),
             eye_x(pinhole.origin_dx), eye_y(pinhole.origin_dy);
-        StripOf<float> own_x, own_y; // in the pixel
-        if (place.offsets != nullptr)
-            for (std::size_t i = 0; i < kStrip; ++i) {
-                own_x[i] = static_cast<float>((*place.offsets)[i].x) / kSubPixels;
-                own_y[i] = static_cast<float>((*place.offsets)[i].y) / kSubPixels;
-            }
         for (std::size_t i = 0; i < kStrip; i += Floats::size) {
             Floats across = load(kColumns<float>, i), down = load(kRows<float>, i);
             if (place.offsets != nullptr) {
-                across += load(own_x, i);
-                down += load(own_y, i);
+                across += in_pixel(*place.offsets, i, &SampleOffset::x);
+                down += in_pixel(*place.offsets, i, &SampleOffset::y);
             }
             const auto ray = [&](Vec3 from, Vec3 x, Vec3 y) {
                 return spread<Floats>(from) + spread<Floats>(x) * across + spread<Floats>(y) * down;
@@ -74,6 +69,11 @@ private:
         }
     }
 
+    static Floats in_pixel(const std::array<SampleOffset, kStrip>& offsets, std::size_t first, std::int32_t SampleOffset::*axis) {
+        StripOf<float> own;
+        for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
+        return load(own, 0);
+    }
     template <std::size_t N> static std::array<Floats, N> gather(const std::array<StripOf<float>, N>& from, std::size_t i) {
         std::array<Floats, N> result;
         for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);

@@ -93,12 +93,11 @@ void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depth
     for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows)
         for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) {
             StripColors colors;
-            shader->shade(strip_place(depths, x0, y0), colors);
+            const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), colors);
             for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
                 for (int x = x0; x < std::min(x0 + kColumns, rect.x1); ++x) {
                     const auto i = static_cast<std::size_t>((y - y0) * kColumns + x - x0);
-                    const bool seen = depths.id(x, y) != kNoTriangle;
-                    picture.add(x, y, seen ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb());
+                    picture.add(x, y, seen >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb());
                 }
         }
 }
@@ -139,8 +138,7 @@ void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& ti
             tile.strip(layer, x0, y0, strip);
             if (strip.place.ids == nullptr) continue;
             StripColors colors;
-            shader->shade(strip.place, colors);
-            const std::uint32_t first = tile.place(x0, y0), seen = samples_seen(strip.place.ids);
+            const std::uint32_t seen = shader->shade(strip.place, colors), first = tile.place(x0, y0);
             for (std::uint32_t i = 0; i < kStrip; ++i)
                 if (const int count = tile.layer(layer).count(first + i); count > 0) {
                     const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);

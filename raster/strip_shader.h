@@ -26,8 +26,8 @@ struct StripPlace {
 class StripShader {
 public:
     virtual ~StripShader() = default;
-    /// Colours of those samples that see something; the others have any.
-    virtual void shade(const StripPlace& place, StripColors& colors) = 0;
+    /// Colours of those samples that see something, and a bit for each of them; the others have any.
+    virtual std::uint32_t shade(const StripPlace& place, StripColors& colors) = 0;
 };
 
 /// A shader, ready for any tile.

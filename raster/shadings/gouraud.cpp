@@ -12,10 +12,10 @@ struct GouraudShader {
 
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const {
         const Vec3T<T> p = v.world_p();
-        return phong(std::span(v.object.data.scene.lights), [&] { return p; }, v.world_n(), v.object.to_viewer(p));
+        return phong_light(std::span(v.object.data.scene.lights), [&] { return p; }, v.world_n(), v.object.to_viewer(p));
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        return phong(f.base_color(), f.at, f.object.data.ambient);
+        return phong(f.at, f.object.data.ambient, f.base_color());
     }
 };
 

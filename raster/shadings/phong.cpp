@@ -14,9 +14,8 @@ struct PhongShader {
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         const PreparedData& data = f.object.data;
-        const PhongLight<T> light =
-            phong(std::span(data.scene.lights), [&] { return f.p(); }, f.normal(f.at.n), f.wo());
-        return phong(f.base_color(), light, data.ambient);
+        return phong(std::span(data.scene.lights), data.ambient, f.base_color(), [&] { return f.p(); }, f.normal(f.at.n),
+                     f.wo());
     }
 };
 

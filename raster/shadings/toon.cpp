@@ -35,8 +35,7 @@ struct ToonShader {
         };
         const Vec3T<T> along = turn(f.dx.n), down = turn(f.dy.n);
         PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
-        for (const Light& light : f.object.data.scene.lights) {
-            const IncidentT<T> arriving = incident(light, f.p());
+        for_each_incident(std::span(f.object.data.scene.lights), [&] { return f.p(); }, [&](const IncidentT<T>& arriving) {
             const auto width = [&](Vec3T<T> towards) { return abs(dot(along, towards)) + abs(dot(down, towards)); };
             T band(0);
             const T cosine = dot(n, arriving.wi), cosine_width = width(arriving.wi);
@@ -45,8 +44,8 @@ struct ToonShader {
             const T spot = beyond(dot(reflect(arriving.wi, n), wo), kSpot, T(2) * width(wo));
             sum.irradiance += arriving.irradiance * band;
             sum.highlights += arriving.irradiance * (band * spot * T(0.5f * kPhongSpecular));
-        }
-        return phong(f.base_color(), sum, f.object.data.ambient);
+        });
+        return phong(sum, f.object.data.ambient, f.base_color());
     }
 };
 
