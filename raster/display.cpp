@@ -54,17 +54,17 @@ private:
     static constexpr int kStripRows = DepthTile::kStripRows;
 
     void strip(int x, int y) {
-        const std::uint32_t place = tile_.place(x, y);
-        const bool drawn = tile_.drawn(place / kBlockSamples);
+        const StripPlace place = strip_place(tile_, x, y);
+        const bool drawn = tile_.drawn(static_cast<std::size_t>(place.ids - tile_.ids()) / kBlockSamples);
         std::array<Rgba8, kStrip> codes;
-        if (shader_ == nullptr && !(background_ && (!drawn || samples_seen(tile_.ids() + place) == 0))) {
-            shade_one_by_one(x, y);
-            return;
-        }
-        if (shader_ == nullptr || !drawn)
+        if (!drawn && background_)
+            codes.fill(*background_);
+        else if (shader_ != nullptr)
+            shade_together(place, codes);
+        else if (background_ && samples_seen(place.ids) == 0)
             codes.fill(*background_);
         else
-            shade_together(x, y, codes);
+            return shade_one_by_one(x, y);
         for (int row = 0; row < std::min(kStripRows, tile_.rect().y1 - y); ++row) {
             const auto from = codes.begin() + row * static_cast<int>(kStripWidth);
             const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - x);
@@ -75,9 +75,9 @@ private:
         }
     }
 
-    void shade_together(int x, int y, std::array<Rgba8, kStrip>& codes) {
+    void shade_together(const StripPlace& place, std::array<Rgba8, kStrip>& codes) {
         StripColors colors;
-        const std::uint32_t seen = shader_->shade(strip_place(tile_, x, y), colors);
+        const std::uint32_t seen = shader_->shade(place, colors);
         if (seen == 0) return codes.fill(*background_); // a program has one
         encode_strip(colors, codes);
         if (seen != (1u << kStrip) - 1)

@@ -11,7 +11,9 @@ namespace duet::raster {
 template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
 public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
-        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader) {}
+        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader),
+          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
+          eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile) {}
 
     std::uint32_t shade(const StripPlace& place, StripColors& colors) override {
         solver_.load(place.ids);
@@ -33,32 +35,40 @@ public:
 private:
     using Many = VaryingsOf<S, Floats>;
 
+    /// A vector that is linear in the pixel, counted from the tile's corner: rounded once a tile, to floats whose errors
+    /// are of their last place.
+    struct Linear {
+        Vec3 start, step_x, step_y;
+        int x0, y0;
+
+        Linear(Vec3d start_, Vec3d dx, Vec3d dy, const PixelRect& tile)
+            : start(start_ + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0)), step_x(dx), step_y(dy),
+              x0(tile.x0), y0(tile.y0) {}
+        Vec3T<Floats> at(const Floats& x, const Floats& y) const {
+            return spread<Floats>(start) + spread<Floats>(step_x) * x + spread<Floats>(step_y) * y;
+        }
+    };
+
     void shade_together(const StripPlace& place, StripColors& colors) {
-        const Pinhole& pinhole = view_.pinhole;
-        const Vec2d first = place.offsets != nullptr ? Vec2d(place.x, place.y) : place.offset.position(place.x, place.y);
-        const Vec3 start(pinhole.direction + pinhole.direction_dx * first.x + pinhole.direction_dy * first.y),
-            step_x(pinhole.direction_dx), step_y(pinhole.direction_dy);
-        const Vec3 eye(pinhole.origin + pinhole.origin_dx * first.x + pinhole.origin_dy * first.y),
-            eye_x(pinhole.origin_dx), eye_y(pinhole.origin_dy);
+        const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
+        const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
+            top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
         for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            Floats across = load(kColumns<float>, i), down = load(kRows<float>, i);
+            Floats x = left + load(kColumns<float>, i), y = top + load(kRows<float>, i);
             if (place.offsets != nullptr) {
-                across += in_pixel(*place.offsets, i, &SampleOffset::x);
-                down += in_pixel(*place.offsets, i, &SampleOffset::y);
+                x += in_pixel(*place.offsets, i, &SampleOffset::x);
+                y += in_pixel(*place.offsets, i, &SampleOffset::y);
             }
-            const auto ray = [&](Vec3 from, Vec3 x, Vec3 y) {
-                return spread<Floats>(from) + spread<Floats>(x) * across + spread<Floats>(y) * down;
-            };
             const Floats depth = narrowed(load(solver_.depth, i), load(solver_.depth, i + Doubles::size));
             const FragmentOf<S, Floats> fragment{derivatives(i),
                                                  varyings<S, Floats>(gather(solver_.at, i)),
                                                  strips::vector(solver_.ng, 0, i),
-                                                 ray(eye, eye_x, eye_y),
-                                                 ray(start, step_x, step_y),
+                                                 eyes_.at(x, y),
+                                                 ways_.at(x, y),
                                                  depth,
                                                  place.nearness != nullptr
                                                      ? Floats::load_aligned(place.nearness + i)
-                                                     : min(Floats(static_cast<float>(pinhole.near)) / depth, Floats(1.0f)),
+                                                     : min(Floats(static_cast<float>(view_.pinhole.near)) / depth, Floats(1.0f)),
                                                  solver_.object(),
                                                  *this,
                                                  i};
@@ -113,6 +123,7 @@ private:
     const PassView& view_;
     const S& shader_;
     StripSolver<S> solver_;
+    Linear ways_, eyes_; ///< camera rays
 };
 
 /// A shader, kept by value.

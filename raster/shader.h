@@ -154,6 +154,14 @@ template <typename S> constexpr bool wants_derivatives() {
     else
         return false;
 }
+/// Whether a shader's vertex function reads texture coordinates; `static constexpr bool kTextureCoordinates = false;`
+/// promises that it does not, and saves gathering them.
+template <typename S> constexpr bool wants_texture_coordinates() {
+    if constexpr (requires { S::kTextureCoordinates; })
+        return S::kTextureCoordinates;
+    else
+        return true;
+}
 template <typename S, typename T> using VaryingsOf = typename S::template Varyings<T>;
 template <typename S, typename T> using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>()>;
 

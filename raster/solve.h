@@ -70,6 +70,7 @@ private:
 
 /// What has nothing to interpolate: for who wants barycentrics and depths alone.
 struct NoVaryings {
+    static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {};
     template <typename T> Varyings<T> vertex(const VertexInput<T>&) const { return {}; }
 };
@@ -170,7 +171,7 @@ void StripSolver<S>::gather_vertices(std::array<std::array<StripOf<float>, 8>, 3
                 four.x.store_aligned(corners[k][first].at(i));
                 four.y.store_aligned(corners[k][first + 1].at(i));
                 four.z.store_aligned(corners[k][first + 2].at(i));
-                four.w.store_aligned(corners[k][first + 3].at(i));
+                if constexpr (wants_texture_coordinates<S>()) four.w.store_aligned(corners[k][first + 3].at(i));
             }
 }
 
@@ -233,7 +234,10 @@ template <VertexShader S> void StripSolver<S>::set_up_each() {
         for (std::size_t k = 0; k < 3; ++k) {
             p[k] = strips::vector(corners[k], 0, i);
             n[k] = strips::vector(corners[k], 4, i);
-            uv[k] = {raster::load(corners[k][3], i), raster::load(corners[k][7], i)};
+            if constexpr (wants_texture_coordinates<S>())
+                uv[k] = {raster::load(corners[k][3], i), raster::load(corners[k][7], i)};
+            else
+                uv[k] = {Floats(0.0f), Floats(0.0f)};
         }
         set_up_varyings(p, n, uv, raster::load(side, i), Keep{lanes_, i});
     }
@@ -280,14 +284,15 @@ void StripSolver<S>::solve_lanes(const Planes& planes, const Positions& position
                 store(b2, k, second_b[half]);
                 store(depth, k, depth_here);
             } else {
-                const auto mask = widened(chosen.at(k)) > zero;
-                store(b1, k, xsimd::select(mask, first_b[half], raster::load(b1, k)));
-                store(b2, k, xsimd::select(mask, second_b[half], raster::load(b2, k)));
-                store(depth, k, xsimd::select(mask, depth_here, raster::load(depth, k)));
+                const auto here = widened(chosen.at(k)) > zero;
+                store(b1, k, xsimd::select(here, first_b[half], raster::load(b1, k)));
+                store(b2, k, xsimd::select(here, second_b[half], raster::load(b2, k)));
+                store(depth, k, xsimd::select(here, depth_here, raster::load(depth, k)));
             }
         }
+        const auto mask = xsimd::bool_cast(raster::load(chosen, i) != Ints(0));
         const auto keep = [&](StripOf<float>& to, const Floats& v) {
-            store(to, i, only ? v : xsimd::select(xsimd::bool_cast(raster::load(chosen, i) != Ints(0)), v, raster::load(to, i)));
+            store(to, i, only ? v : xsimd::select(mask, v, raster::load(to, i)));
         };
         const Floats u = narrowed(first_b[0], first_b[1]), v = narrowed(second_b[0], second_b[1]);
         for (std::size_t c = 0; c < kCount; ++c)

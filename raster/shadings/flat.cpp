@@ -9,6 +9,7 @@ namespace duet::raster {
 namespace {
 
 struct FlatShader {
+    static constexpr bool kTextureCoordinates = false;
     template <typename T> using Varyings = PhongLight<T>;
 
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const {

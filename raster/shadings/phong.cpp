@@ -8,6 +8,7 @@ namespace duet::raster {
 namespace {
 
 struct PhongShader {
+    static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {
         Vec3T<T> n;
     };

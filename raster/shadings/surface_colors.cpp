@@ -7,6 +7,7 @@ namespace {
 
 /// (n + 1)/2, see direction_color.
 struct NormalShader {
+    static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {
         Vec3T<T> n;
     };

@@ -15,6 +15,7 @@ template <typename T> T beyond(T x, float border, T width) {
 }
 
 struct ToonShader {
+    static constexpr bool kTextureCoordinates = false;
     static constexpr bool kDerivatives = true;
     template <typename T> struct Varyings {
         Vec3T<T> n;

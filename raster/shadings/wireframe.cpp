@@ -9,6 +9,7 @@ namespace duet::raster {
 namespace {
 
 struct WireframeShader {
+    static constexpr bool kTextureCoordinates = false;
     static constexpr bool kDerivatives = true;
     template <typename T> struct Varyings {
         Vec3T<T> edges;
