@@ -64,52 +64,91 @@ Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t
     return make_hit(object, primitive, whole.piece, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
 }
 
-HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view) : rect_(tile.rect()) {
-    const auto count = static_cast<std::size_t>(rect_.width()) * static_cast<std::size_t>(rect_.height());
-    rays_.reserve(count);
-    distance_per_depth_.reserve(count);
-    nearness_.reserve(count);
-    const Pinhole& pinhole = view.pinhole;
-    for (int y = rect_.y0; y < rect_.y1; ++y)
-        for (int x = rect_.x0; x < rect_.x1; ++x) {
-            const Rayd exact = pinhole.ray(tile.offset().position(x, y));
-            rays_.push_back(rounded(exact, view.time));
-            distance_per_depth_.push_back(exact.t_min / pinhole.near);
-            nearness_.push_back(tile.nearness(x, y));
-        }
-    hits_.assign(count, Hit{});
+Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, Vec2d pixel) {
     const Triangles& triangles = geometry.triangles;
-    StripSolver solver(triangles, view, rect_);
-    for (std::size_t place = 0; place < kTileSamples; place += kStrip) {
-        const int x0 = rect_.x0 + place_x(place), y0 = rect_.y0 + place_y(place);
-        if (!tile.drawn(place / kBlockSamples) || x0 >= rect_.x1 || y0 >= rect_.y1) continue;
-        solver.load(tile.ids() + place);
-        if (solver.seen() == 0) continue;
-        solver.solve(x0, y0, tile.offset());
+    const Run& run = triangles.run_of(id);
+    const Rayd exact = view.pinhole.ray(pixel);
+    if (run.sphere) {
+        const DrawSphere& sphere = geometry.spheres[run.object];
+        const Ray ray = rounded(exact, view.time);
+        return {.object = sphere.object, .primitive = 0, .t = sphere.intersect(ray).value_or(sphere.nearest(ray))};
+    }
+    const std::uint32_t index = Triangles::index(run, id);
+    const WholeTriangle whole = triangles.whole(run, index);
+    return hit_triangle(whole, triangles.objects[run.object].object,
+                        whole.piece == Piece::kTriangle ? index : index / 2, pixel, exact.t_min / view.pinhole.near,
+                        view.pinhole.near);
+}
+
+/// Fills in the rays and hits of strips.
+class HitTile::Filler {
+public:
+    Filler(HitTile& tile, const Geometry& geometry, const PassView& view)
+        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_) {}
+
+    void fill(const StripPlace& place) {
+        const bool seen = samples_seen(place.ids) != 0;
+        if (seen) {
+            solver_.load(place.ids);
+            solver_.solve(place);
+        }
         for (std::size_t i = 0; i < kStrip; ++i) {
-            const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
-            if (!(solver.seen() >> i & 1) || x >= rect_.x1 || y >= rect_.y1) continue;
-            const std::size_t at = index(x, y);
-            const Run& run = solver.run(i);
-            if (run.sphere) {
-                const DrawSphere& sphere = geometry.spheres[run.object];
-                hits_[at] = {.object = sphere.object, .primitive = 0, .t = *sphere.intersect(rays_[at])};
-                continue;
-            }
-            const std::uint32_t triangle = Triangles::index(run, solver.id(i)),
-                                object = triangles.objects[run.object].object;
-            if (solver.inside() >> i & 1) {
-                const double depth = std::max(solver.depth[i], pinhole.near);
-                hits_[at] = make_hit(object, triangle, Piece::kTriangle, solver.b1[i], solver.b2[i],
-                                     depth * distance_per_depth_[at]);
-                continue;
-            }
-            const WholeTriangle whole = triangles.whole(run, triangle);
-            const std::uint32_t primitive = whole.piece == Piece::kTriangle ? triangle : triangle / 2;
-            hits_[at] = hit_triangle(whole, object, primitive, tile.offset().position(x, y), distance_per_depth_[at],
-                                     pinhole.near);
+            const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
+            if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
+            const std::size_t at = tile_.index(x, y);
+            const Rayd exact = view_.pinhole.ray(place.position(i));
+            tile_.rays_[at] = rounded(exact, view_.time);
+            tile_.distance_per_depth_[at] = exact.t_min / view_.pinhole.near;
+            if (!seen || !(solver_.seen() >> i & 1)) continue;
+            tile_.hits_[at] = hit(i, place, at);
+            tile_.nearness_[at] = place.nearness != nullptr
+                                      ? place.nearness[i]
+                                      : static_cast<float>(min(exact.t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
         }
     }
+
+private:
+    Hit hit(std::size_t i, const StripPlace& place, std::size_t at) const {
+        const Triangles& triangles = geometry_.triangles;
+        if (!(solver_.inside() >> i & 1)) return find_hit(geometry_, view_, solver_.id(i), place.position(i));
+        const Run& run = solver_.run(i);
+        const double depth = std::max(solver_.depth[i], view_.pinhole.near);
+        return make_hit(triangles.objects[run.object].object, Triangles::index(run, solver_.id(i)), Piece::kTriangle,
+                        solver_.b1[i], solver_.b2[i], depth * tile_.distance_per_depth_[at]);
+    }
+
+    HitTile& tile_;
+    const Geometry& geometry_;
+    const PassView& view_;
+    NoVaryings nothing_;
+    StripSolver<NoVaryings> solver_;
+};
+
+void HitTile::make_room() {
+    const auto count = static_cast<std::size_t>(rect_.width()) * static_cast<std::size_t>(rect_.height());
+    rays_.resize(count);
+    distance_per_depth_.resize(count);
+    nearness_.resize(count);
+    hits_.resize(count);
+}
+
+HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view) : rect_(tile.rect()) {
+    make_room();
+    Filler filler(*this, geometry, view);
+    for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kStripRows)
+        for (int x = rect_.x0; x < rect_.x1; x += static_cast<int>(kStripWidth)) filler.fill(strip_place(tile, x, y));
+}
+
+HitTile::HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view)
+    : rect_(tile.rect()) {
+    make_room();
+    Filler filler(*this, geometry, view);
+    LayeredTile::Strip strip;
+    for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kStripRows)
+        for (int x = rect_.x0; x < rect_.x1; x += static_cast<int>(kStripWidth)) {
+            tile.strip(layer, x, y, strip);
+            if (strip.place.ids != nullptr) filler.fill(strip.place);
+        }
 }
 
 } // namespace duet::raster

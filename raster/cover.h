@@ -3,6 +3,7 @@
 
 #include "raster/depth_tile.h"
 #include "raster/geometry.h"
+#include "raster/multisample.h"
 
 #include "common/geometry/hit.h"
 
@@ -22,11 +23,16 @@ void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, 
 Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
                  double distance_per_depth, double near);
 
+/// The same of anything that has a number. A sphere that the ray misses is hit where it passes nearest.
+Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, Vec2d pixel);
+
 /// One sample a pixel of a tile: the camera rays through the samples, and the visibility buffer: an image of Hits.
 class HitTile {
 public:
     /// Looks up what was drawn into `tile`.
     HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view);
+    /// What is in one layer of the samples of `tile`; no other pixel has a ray.
+    HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
@@ -37,6 +43,8 @@ public:
     float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
 private:
+    class Filler;
+    void make_room();
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y - rect_.y0) * static_cast<std::size_t>(rect_.width()) +
                static_cast<std::size_t>(x - rect_.x0);

@@ -1,7 +1,7 @@
 #include "raster/direct.h"
 
 #include "common/light/lambert.h"
-#include "raster/phong.h"
+#include "raster/lights.h"
 
 #include <array>
 #include <cmath>
@@ -59,15 +59,13 @@ Vec3 center(const Quad& q) { return q.corner + (q.u + q.v) * 0.5f; }
 Vec3 center(const Sphere& s) { return s.center; }
 
 /// Light as from one direction: what a delta light gives.
-struct Incident {
-    Vec3 wi;
-    Rgb irradiance; ///< on a surface that faces it
-};
+using Incident = IncidentT<float>;
 std::optional<Incident> delta_light(const Light& light, Vec3 p) {
     const std::optional<LightSample> sample = sample_light(light, p, kMiddle);
     if (!sample) return std::nullopt;
     return Incident{sample->wi, sample->radiance};
 }
+
 std::optional<Incident> from_center(const SurfaceLight& light, Vec3 p) {
     const Vec3 way = std::visit([](const auto& shape) { return center(shape); }, light.shape) - p;
     if (!(length_squared(way) > 0)) return std::nullopt;
@@ -121,15 +119,8 @@ Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const Sha
     return sum;
 }
 
-Rgb phong_light(std::span<const Light> lights, Rgb ambient, Rgb base_color, const ShadingPoint& point, Vec3 to_viewer) {
-    Rgb sum = ambient * base_color;
-    for (const Light& light : lights) {
-        const auto* surface = std::get_if<SurfaceLight>(&light);
-        if (surface != nullptr && is_own(*surface, point.surface)) continue;
-        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(light, point.surface.p);
-        if (incident) sum += phong(base_color, point.ns, to_viewer, incident->wi, incident->irradiance);
-    }
-    return sum;
+Incident as_distant(const SurfaceLight& light, Vec3 p) {
+    return from_center(light, p).value_or(Incident{Vec3(0, 0, 1), Rgb()});
 }
 
 } // namespace duet::raster

@@ -34,8 +34,9 @@ Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
 Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point);
 Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point);
 
-/// Phong's model (raster/phong.h) under the lights and an ambient radiance from all around. A surface light counts as a
-/// distant one of the same irradiance at its centre.
-Rgb phong_light(std::span<const Light> lights, Rgb ambient, Rgb base_color, const ShadingPoint& point, Vec3 to_viewer);
+/// A surface light as a distant one in its centre's direction, and its irradiance at p on a surface facing that way;
+/// black in the centre itself.
+template <typename T> struct IncidentT;
+IncidentT<float> as_distant(const SurfaceLight& light, Vec3 p);
 
 } // namespace duet::raster

@@ -1,9 +1,8 @@
 #include "raster/display.h"
 
 #include "raster/encode_strip.h"
-#include "raster/phong_strip.h"
 #include "raster/shade.h"
-#include "raster/solve.h"
+#include "raster/strip_samples.h"
 
 #include "common/image/srgb.h"
 #include "common/system/parallel.h"
@@ -36,13 +35,14 @@ void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
     }
 }
 
-/// A tile's pixels, strip by strip: those that Phong's fast way takes by it, the others one at a time.
+/// A tile's pixels, strip by strip: by the program, or one at a time.
 class TileDisplay {
 public:
-    TileDisplay(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
-                const DepthTile& tile, Image<Rgba8>& picture)
+    TileDisplay(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
+                const PassView& view, const DepthTile& tile, Image<Rgba8>& picture)
         : data_(data), settings_(settings), geometry_(geometry), view_(view), tile_(tile), picture_(picture),
-          solver_(geometry.triangles, view, tile.rect()), phong_(data, view), background_(one_background(data, settings)) {}
+          shader_(program != nullptr ? program->for_tile(data, geometry, view, tile.rect()) : nullptr),
+          background_(one_background(data, settings)) {}
 
     void run() {
         const PixelRect& rect = tile_.rect();
@@ -54,17 +54,17 @@ private:
     static constexpr int kStripRows = DepthTile::kStripRows;
 
     void strip(int x, int y) {
-        const std::uint32_t place = tile_.place(x, y);
-        const bool drawn = tile_.drawn(place / kBlockSamples);
-        if (drawn) solver_.load(tile_.ids() + place);
-        const std::uint32_t seen = drawn ? solver_.seen() : 0;
+        const StripPlace place = strip_place(tile_, x, y);
+        const bool drawn = tile_.drawn(static_cast<std::size_t>(place.ids - tile_.ids()) / kBlockSamples);
         std::array<Rgba8, kStrip> codes;
-        if (seen == 0 && background_) {
+        if (!drawn && background_)
             codes.fill(*background_);
-        } else if (!(background_ && shade_together(x, y, seen, codes))) {
-            shade_one_by_one(x, y);
-            return;
-        }
+        else if (shader_ != nullptr)
+            shade_together(place, codes);
+        else if (background_ && samples_seen(place.ids) == 0)
+            codes.fill(*background_);
+        else
+            return shade_one_by_one(x, y);
         for (int row = 0; row < std::min(kStripRows, tile_.rect().y1 - y); ++row) {
             const auto from = codes.begin() + row * static_cast<int>(kStripWidth);
             const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - x);
@@ -75,16 +75,14 @@ private:
         }
     }
 
-    bool shade_together(int x, int y, std::uint32_t seen, std::array<Rgba8, kStrip>& codes) {
-        if (settings_.shading != Shading::kPhong || !phong_.usable()) return false;
-        solver_.solve_all(x, y, tile_.offset());
+    void shade_together(const StripPlace& place, std::array<Rgba8, kStrip>& codes) {
         StripColors colors;
-        if (!phong_.shade(solver_, x, y, tile_.offset(), colors)) return false;
+        const std::uint32_t seen = shader_->shade(place, colors);
+        if (seen == 0) return codes.fill(*background_); // a program has one
         encode_strip(colors, codes);
         if (seen != (1u << kStrip) - 1)
             for (std::size_t i = 0; i < kStrip; ++i)
                 if (!(seen >> i & 1)) codes[i] = *background_;
-        return true;
     }
 
     void shade_one_by_one(int x0, int y0) {
@@ -107,23 +105,22 @@ private:
     const PassView& view_;
     const DepthTile& tile_;
     Image<Rgba8>& picture_;
-    StripSolver solver_;
-    PhongStrips phong_;
+    std::unique_ptr<StripShader> shader_;
     std::optional<HitTile> hits_; ///< where one is needed
     std::optional<Rgba8> background_;
 };
 
 } // namespace
 
-void display_tile(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
-                  const PixelRect& rect, std::size_t index, Image<Rgba8>& picture) {
+void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
+                  const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture) {
     if (const auto background = constant_background(data, settings); background && is_empty(geometry, index)) {
         fill(rect, encoded(srgb_encoder(), *background), picture);
         return;
     }
     DepthTile tile;
     cover(geometry, view, view.samples.front(), rect, index, tile);
-    TileDisplay(data, settings, geometry, view, tile, picture).run();
+    TileDisplay(data, settings, program, geometry, view, tile, picture).run();
 }
 
 void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,

@@ -7,9 +7,9 @@
 
 namespace duet::raster {
 
-/// Draws a tile and shades, encodes and keeps its pixels.
-void display_tile(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
-                  const PixelRect& rect, std::size_t index, Image<Rgba8>& picture);
+/// Draws a tile and shades, encodes and keeps its pixels; `program` is null for Shading::kLit.
+void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
+                  const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture);
 
 /// Draws a tile and keeps its depths, as near / depth.
 void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,

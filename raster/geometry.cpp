@@ -122,6 +122,7 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
         return settings.skips.frustum ? in_frustum(data, objects, view, result.culled) : objects;
     };
     const std::vector<std::uint32_t> polygonal = visible(data.polygonal);
+    result.triangles.prepared = &data;
     result.triangles.scene = &data.scene;
     result.triangles.vertices = &data.vertices;
     transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,

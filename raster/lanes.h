@@ -13,6 +13,7 @@
 #endif
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -102,14 +103,17 @@ inline Floats inverse_sqrt(const Floats& x) {
     return y * (Floats(1.5f) - Floats(0.5f) * x * y * y);
 }
 
-/// Four points of four numbers each, turned to batches of one coordinate; the fourth is left out.
+/// The same of one number.
+inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
+
+/// Four times four numbers, turned to batches of the first of each, the second, the third, the fourth.
 using Quads = xsimd::make_sized_batch_t<float, 4>;
 struct Transposed {
-    Quads x, y, z;
+    Quads x, y, z, w;
 };
 inline Transposed transposed(const Quads& a, const Quads& b, const Quads& c, const Quads& d) {
     const Quads low_ac = zip_lo(a, c), low_bd = zip_lo(b, d), high_ac = zip_hi(a, c), high_bd = zip_hi(b, d);
-    return {zip_lo(low_ac, low_bd), zip_hi(low_ac, low_bd), zip_lo(high_ac, high_bd)};
+    return {zip_lo(low_ac, low_bd), zip_hi(low_ac, low_bd), zip_lo(high_ac, high_bd), zip_hi(high_ac, high_bd)};
 }
 
 /// A bit for each lane that holds true, lane 0 the lowest.

@@ -1,7 +1,9 @@
 // Phong's model: diffuse light, and a highlight about the mirror direction.
 #pragma once
 
-#include "common/image/rgb.h"
+#include "raster/lights.h"
+
+#include <span>
 
 namespace duet::raster {
 
@@ -13,15 +15,49 @@ inline constexpr int kPhongSquarings = 5;
 inline constexpr float kPhongDiffuse = kInvPi;
 inline constexpr float kPhongSpecular = 0.04f * ((1 << kPhongSquarings) + 2) * kInvPi / 2;
 
-/// Radiance towards wo that a surface reflects of light from wi, whose irradiance on a surface facing it is `light`.
-/// n, wo and wi are unit; light from behind (n·wi <= 0) gives none.
-template <typename T> RgbT<T> phong(RgbT<T> base, Vec3T<T> n, Vec3T<T> wo, Vec3T<T> wi, RgbT<T> light) {
-    const T cosine = max(dot(n, wi), T(0));
-    T lobe = max(dot(reflect(wi, n), wo), T(0));
-    for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
-    const T specular = T(kPhongSpecular) * lobe;
+/// What becomes of light from wi: the cosine at which it arrives, and the part of the rest that the highlight sends on
+/// towards wo, by solid angle. n, wo and wi are unit; light from behind (n·wi <= 0) gives none.
+template <typename T> struct PhongFactors {
+    T cosine, lobe;
+
+    PhongFactors(Vec3T<T> n, Vec3T<T> wo, Vec3T<T> wi) : cosine(max(dot(n, wi), T(0))) {
+        lobe = max(dot(reflect(wi, n), wo), T(0));
+        for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
+        lobe = lobe * T(kPhongSpecular);
+    }
+};
+
+/// Radiance of a surface of a base colour under all lights, `ambient` being the radiance from all around; place() is its
+/// point in the world.
+template <typename T, typename Place>
+RgbT<T> phong(std::span<const Light> lights, Rgb ambient, RgbT<T> base, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+    RgbT<T> sum = base * spread<T>(ambient);
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
-    return light * RgbT<T>(diffuse.r + specular, diffuse.g + specular, diffuse.b + specular) * cosine;
+    for_each_incident(lights, place, [&](const IncidentT<T>& light) {
+        const PhongFactors<T> f(n, wo, light.wi);
+        sum += light.irradiance * RgbT<T>(diffuse.r + f.lobe, diffuse.g + f.lobe, diffuse.b + f.lobe) * f.cosine;
+    });
+    return sum;
+}
+
+/// The same in two parts, before the base colour is known: for who works it out elsewhere than the sample.
+template <typename T> struct PhongLight {
+    RgbT<T> irradiance; ///< W/m², cosine and all
+    RgbT<T> highlights; ///< radiance
+};
+template <typename T, typename Place>
+PhongLight<T> phong_light(std::span<const Light> lights, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+    PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
+    for_each_incident(lights, place, [&](const IncidentT<T>& light) {
+        const PhongFactors<T> f(n, wo, light.wi);
+        const RgbT<T> arriving = light.irradiance * f.cosine;
+        sum.irradiance += arriving;
+        sum.highlights += arriving * f.lobe;
+    });
+    return sum;
+}
+template <typename T> RgbT<T> phong(const PhongLight<T>& light, Rgb ambient, RgbT<T> base) {
+    return base * (light.irradiance * T(kPhongDiffuse) + spread<T>(ambient)) + light.highlights;
 }
 
 } // namespace duet::raster

@@ -11,11 +11,11 @@ bool needs_hit_counts(const AovSet& aovs) { return aovs.depth || aovs.normal || 
 
 } // namespace
 
-Picture::Picture(const View& view, const Settings& settings) : settings_(settings) {
+Picture::Picture(const View& view, const Settings& settings, bool many) : settings_(settings) {
     const int w = view.width, h = view.height;
     const AovSet& aovs = settings.aovs;
     rendering_.radiance = ImageRgb(w, h);
-    if (settings.samples_per_pixel > 1) sums_ = Image<Rgbd>(w, h);
+    if (many) sums_ = Image<Rgbd>(w, h);
     added_ = Image<std::uint32_t>(w, h, 0);
     valid_ = Image<std::uint32_t>(w, h, 0);
     if (needs_hit_counts(aovs)) {
@@ -28,18 +28,18 @@ Picture::Picture(const View& view, const Settings& settings) : settings_(setting
     if (aovs.hit) rendering_.hit = Image<Hit>(w, h);
 }
 
-void Picture::add(const HitTile& tile, int x, int y, const Shaded& shaded) {
-    if (settings_.aovs.any()) add_auxiliary(tile, x, y, shaded);
-    ++added_(x, y);
-    if (!is_valid(shaded.radiance)) {
-        invalid_.fetch_add(1, std::memory_order_relaxed);
+void Picture::add(int x, int y, Rgb radiance, int count) {
+    const auto samples = static_cast<std::uint32_t>(count);
+    added_(x, y) += samples;
+    if (!is_valid(radiance)) {
+        invalid_.fetch_add(count, std::memory_order_relaxed);
         return;
     }
-    ++valid_(x, y);
+    valid_(x, y) += samples;
     if (sums_.empty())
-        rendering_.radiance(x, y) = shaded.radiance;
+        rendering_.radiance(x, y) = radiance;
     else
-        sums_(x, y) += Rgbd(shaded.radiance);
+        sums_(x, y) += Rgbd(radiance) * static_cast<double>(count);
 }
 
 void Picture::add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded) {

@@ -13,18 +13,19 @@ namespace duet::raster {
 /// different tiles at once; a pixel's samples come in order, so the sums are the same for any number of threads.
 class Picture {
 public:
-    Picture(const View& view, const Settings& settings);
+    /// `many`: samples a pixel may be added; else one at most.
+    Picture(const View& view, const Settings& settings, bool many);
 
-    /// One sample of one pixel: what the tile sees there, and how it was shaded. A radiance that is NaN, infinite or
-    /// negative is dropped and counted.
-    void add(const HitTile& tile, int x, int y, const Shaded& shaded);
+    /// One sample of one pixel, or `count` that are alike: what each adds to the auxiliary pictures, then their radiance.
+    /// One that is NaN, infinite or negative is dropped and counted.
+    void add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded);
+    void add(int x, int y, Rgb radiance, int count = 1);
 
     /// Divides sums by counts. Pixels without a sample are black.
     Rendering finish(int threads);
     std::size_t memory_bytes() const;
 
 private:
-    void add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded);
     void finish_pixel(int x, int y);
 
     Settings settings_;

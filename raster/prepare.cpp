@@ -48,6 +48,7 @@ std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene) {
         for (std::size_t i = 0; i < result[s].size(); ++i) {
             result[s][i].p = mesh->positions[i];
             if (!mesh->normals.empty()) result[s][i].n = mesh->normals[i];
+            if (!mesh->uvs.empty()) result[s][i].u = mesh->uvs[i].x, result[s][i].v = mesh->uvs[i].y;
         }
     }
     return result;

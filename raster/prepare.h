@@ -21,9 +21,9 @@ struct PreparedObject {
 /// A mesh's vertex as shading wants it: whole in half a line of the cache.
 struct alignas(32) PackedVertex {
     Vec3 p;
-    float unused_p = 0;
-    Vec3 n; ///< (0, 0, 0) where the mesh has none
-    float unused_n = 0;
+    float u = 0; ///< with v: texture coordinates; 0 where the mesh has none
+    Vec3 n;      ///< (0, 0, 0) where the mesh has none
+    float v = 0;
 };
 /// Of each shape of the scene; of those that are no meshes: none.
 std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);

@@ -3,17 +3,27 @@
 #include "raster/account.h"
 #include "raster/cover.h"
 #include "raster/display.h"
+#include "raster/edges.h"
 #include "raster/geometry.h"
+#include "raster/lines.h"
+#include "raster/multisample.h"
 #include "raster/picture.h"
 #include "raster/shade.h"
+#include "raster/shadings/shadings.h"
+#include "raster/strip_samples.h"
 
 #include "common/image/srgb.h"
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
 
+#include <algorithm>
+#include <optional>
+
 namespace duet::raster {
 namespace {
+
+bool draws_edges(const Settings& settings) { return settings.edges || settings.shading == Shading::kEdges; }
 
 void check(const View& view, const Settings& settings) {
     if (view.width < 1 || view.height < 1 || view.width > kMaxPictureSide || view.height > kMaxPictureSide)
@@ -21,12 +31,20 @@ void check(const View& view, const Settings& settings) {
                             " pixels a side"));
     if (settings.samples_per_pixel < 1)
         throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
+    if (settings.multisamples > 0 && settings.samples_per_pixel > 1)
+        throw Error(message("multisampling with ", settings.samples_per_pixel,
+                            " samples a pixel: expected 1 (sample shading takes each for itself)"));
+    if (settings.multisamples > 0 && draws_edges(settings))
+        throw Error("edges with multisampling: expected several samples a pixel instead");
 }
 
 std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraModel& camera,
                        const Settings& settings) {
+    if (settings.multisamples > 0) return {Pass{.samples = multisample_pattern(settings.multisamples)}};
     const bool shutter = view.camera.shutter_close != view.camera.shutter_open;
-    return plan_passes(settings.samples_per_pixel, settings.seed, camera.has_lens() || !settings.skips.lens,
+    // Edges look at one sample of every pixel at a time.
+    return plan_passes(settings.samples_per_pixel, settings.seed,
+                       camera.has_lens() || !settings.skips.lens || draws_edges(settings),
                        (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
 
@@ -34,6 +52,7 @@ std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraM
 struct Frame {
     const PreparedData& data;
     const Settings& settings;
+    const Program* program; ///< null for Shading::kLit
     TileGrid grid;
     Geometry& geometry;
     Account& account;
@@ -41,15 +60,19 @@ struct Frame {
     Control& control;
 };
 
+PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& pass) {
+    const Pinhole pinhole = camera.through(pass.lens);
+    return {.pinhole = pinhole,
+            .time = static_cast<float>(camera.time(pass.time)),
+            .viewport = viewport_of(view, pinhole),
+            .samples = pass.samples};
+}
+
 /// One pass: its geometry, then each tile, which render_tile(view, index) makes.
 template <typename RenderTile>
 void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
-    const Pinhole pinhole = camera.through(pass.lens);
-    const PassView pass_view{.pinhole = pinhole,
-                             .time = static_cast<float>(camera.time(pass.time)),
-                             .viewport = viewport_of(view, pinhole),
-                             .samples = pass.samples};
+    const PassView pass_view = pass_view_of(camera, view, pass);
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
     const Stopwatch watch;
@@ -62,6 +85,84 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
     frame.account.tiles += watch.seconds();
 }
 
+/// Samples of a tile by a program.
+void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
+    const PixelRect& rect = depths.rect();
+    const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
+    constexpr int kColumns = kStripWidth, kRows = DepthTile::kStripRows;
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows)
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) {
+            StripColors colors;
+            const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), colors);
+            for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
+                for (int x = x0; x < std::min(x0 + kColumns, rect.x1); ++x) {
+                    const auto i = static_cast<std::size_t>((y - y0) * kColumns + x - x0);
+                    picture.add(x, y, seen >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb());
+                }
+        }
+}
+
+/// Samples of a tile one by one: all of Shading::kLit, and auxiliary pictures of any shading.
+void shade_samples(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
+    const HitTile tile(depths, frame.geometry, view);
+    const PixelRect& rect = depths.rect();
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            const Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
+            if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
+            if (frame.program == nullptr) picture.add(x, y, shaded.radiance);
+        }
+}
+
+/// One layer of a tile, each primitive once a pixel, as often as it has samples there.
+void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& tile, std::size_t layer, Picture& picture) {
+    const PixelRect& rect = tile.rect();
+    const auto for_each = [&](const auto& visit) { // pixels that the layer has
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                if (const int count = tile.layer(layer).count(tile.place(x, y)); count > 0) visit(x, y, count);
+    };
+    if (frame.program == nullptr || frame.settings.aovs.any()) {
+        const HitTile hits(tile, layer, frame.geometry, view);
+        for_each([&](int x, int y, int count) {
+            const Shaded shaded = shade(frame.data, frame.settings, hits, x, y);
+            for (int i = 0; i < count && frame.settings.aovs.any(); ++i) picture.add_auxiliary(hits, x, y, shaded);
+            if (frame.program == nullptr) picture.add(x, y, shaded.radiance, count);
+        });
+    }
+    if (frame.program == nullptr) return;
+    const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
+    LayeredTile::Strip strip;
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {
+            tile.strip(layer, x0, y0, strip);
+            if (strip.place.ids == nullptr) continue;
+            StripColors colors;
+            const std::uint32_t seen = shader->shade(strip.place, colors), first = tile.place(x0, y0);
+            for (std::uint32_t i = 0; i < kStrip; ++i)
+                if (const int count = tile.layer(layer).count(first + i); count > 0) {
+                    const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
+                    if (x < rect.x1 && y < rect.y1)
+                        picture.add(x, y, seen >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb(), count);
+                }
+        }
+}
+
+/// One tile of a picture by multisampling: all samples are covered, then shaded as far as they differ.
+void render_layers(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
+    const PixelRect rect = frame.grid.tile(index);
+    Stopwatch watch;
+    LayeredTile tile(rect, static_cast<int>(view.samples.size()));
+    DepthTile depths;
+    for (const SampleOffset offset : view.samples) {
+        cover(frame.geometry, view, offset, rect, index, depths);
+        tile.add(depths);
+    }
+    frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+    for (std::size_t layer = 0; layer < tile.layers(); ++layer) shade_layer(frame, view, tile, layer, picture);
+    frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+}
+
 /// One tile of a picture: each of its samples a pixel is covered, then shaded.
 void render_tile(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
     const PixelRect rect = frame.grid.tile(index);
@@ -69,28 +170,89 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
     for (const SampleOffset offset : view.samples) {
         Stopwatch watch;
         cover(frame.geometry, view, offset, rect, index, depths);
-        const HitTile tile(depths, frame.geometry, view);
         frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                picture.add(tile, x, y, shade(frame.data, frame.settings, tile, x, y));
+        if (frame.program == nullptr || frame.settings.aovs.any()) shade_samples(frame, view, depths, picture);
+        if (frame.program != nullptr) shade_tile(frame, view, depths, picture);
         frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
+}
+
+/// What is drawn over a picture: of each pass, how much of each pixel it covers.
+class Overlay {
+public:
+    Overlay(const Frame& frame, const View& view) : frame_(frame), sums_(view.width, view.height, 0.0f) {}
+
+    void add_lines(const PassView& view) {
+        for (const SampleOffset offset : view.samples) {
+            Image<std::uint8_t> marks(sums_.width(), sums_.height(), 0);
+            draw_lines(frame_.data, view, offset, frame_.settings.threads, marks);
+            for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += marks[i];
+            ++samples_;
+        }
+    }
+    void add_edges(const SeenPicture& seen) {
+        parallel_for(static_cast<std::size_t>(sums_.height()), frame_.settings.threads, [&](std::size_t row) {
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < sums_.width(); ++x) sums_(x, y) += ink(seen, x, y);
+        });
+        ++samples_;
+    }
+    /// White lines on black; ink on paper; or ink on the picture.
+    void put(ImageRgb& picture) const {
+        if (samples_ == 0) return;
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+            const float covered = sums_[i] / static_cast<float>(samples_);
+            picture[i] = frame_.settings.shading == Shading::kLines   ? Rgb(covered)
+                         : frame_.settings.shading == Shading::kEdges ? Rgb(1 - covered)
+                                                                      : picture[i] * (1 - covered);
+        }
+    }
+
+private:
+    const Frame& frame_;
+    ImageFloat sums_;
+    int samples_ = 0;
+};
+
+/// A pass with a single sample a pixel, and ink where what it sees changes.
+void render_inked(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass, Picture& picture,
+                  Overlay& overlay) {
+    SeenPicture seen(view.width, view.height);
+    const std::unique_ptr<Program> normals = program(Shading::kNormal);
+    render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
+        render_tile(frame, pass_view, i, picture);
+        DepthTile depths;
+        cover(frame.geometry, pass_view, pass_view.samples.front(), frame.grid.tile(i), i, depths);
+        seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
+    });
+    if (!frame.control.stopped()) overlay.add_edges(seen);
 }
 
 /// A pass a lens point or moment, all added up.
 Rendering render_picture(const Frame& frame, const CameraModel& camera, const View& view,
                          const std::vector<Pass>& passes) {
-    Picture picture(view, frame.settings);
+    const bool lines = frame.settings.shading == Shading::kLines, edges = draws_edges(frame.settings);
+    Picture picture(view, frame.settings, passes.size() > 1 || passes.front().samples.size() > 1);
+    std::optional<Overlay> overlay;
+    if (lines || edges) overlay.emplace(frame, view);
     for (const Pass& pass : passes) {
         if (frame.control.stopped()) break;
+        if (edges) {
+            render_inked(frame, camera, view, pass, picture, *overlay);
+            continue;
+        }
+        if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-            render_tile(frame, pass_view, i, picture);
+            if (frame.settings.multisamples > 0 && !frame.settings.sample_shading)
+                render_layers(frame, pass_view, i, picture);
+            else
+                render_tile(frame, pass_view, i, picture);
         });
     }
     const Stopwatch watch;
     frame.account.picture_bytes = picture.memory_bytes();
     Rendering result = picture.finish(frame.settings.threads);
+    if (overlay) overlay->put(result.radiance);
     frame.account.resolve = watch.seconds();
     return result;
 }
@@ -114,26 +276,31 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
         if (depths_only)
             keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
         else
-            display_tile(frame.data, frame.settings, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
+            display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
     });
 }
 
 } // namespace
 
-void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
+namespace {
+
+void render_with(const Prepared& prepared, const View& view, const Settings& settings, const Program* program,
+                 Control& control, Rendering& result) {
     check(view, settings);
     const PreparedData& data = prepared.data();
     const CameraModel camera(view);
     Settings used = settings;
-    if (settings.output == Output::kNearness) used.samples_per_pixel = 1;
+    if (settings.output == Output::kNearness) used.samples_per_pixel = 1, used.multisamples = 0, used.edges = false;
     const std::vector<Pass> passes = plan(data, view, camera, used);
     const TileGrid grid{{0, 0, view.width, view.height}};
     Account account;
     Progress progress(control, grid.size() * passes.size());
     GeometryLoan geometry(*data.geometries);
-    const Frame frame{data, used, grid, *geometry, account, progress, control};
+    const Frame frame{data, used, program, grid, *geometry, account, progress, control};
 
-    if (settings.output != Output::kRadiance && used.samples_per_pixel == 1) {
+    const bool overlaid = draws_edges(used) || used.shading == Shading::kLines;
+    const bool one_sample = passes.size() == 1 && passes.front().samples.size() == 1;
+    if (used.output == Output::kNearness || (used.output == Output::kSrgb8 && one_sample && !overlaid)) {
         render_display(frame, camera, view, passes.front(), result);
         result.statistics = {};
     } else {
@@ -141,6 +308,20 @@ void render(const Prepared& prepared, const View& view, const Settings& settings
         if (settings.output == Output::kSrgb8) encode(result.radiance, settings.threads, result.srgb);
     }
     fill_statistics(result.statistics, data, used, account, passes, grid);
+}
+
+} // namespace
+
+void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
+    const std::unique_ptr<Program> built_in = program(settings.shading);
+    render_with(prepared, view, settings, built_in.get(), control, result);
+}
+
+void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program, Control& control,
+            Rendering& result) {
+    Settings other = settings; // what Shading::kLit alone has: light of the environment behind all
+    if (other.shading == Shading::kLit) other.shading = Shading::kAlbedo;
+    render_with(prepared, view, other, &program, control, result);
 }
 
 Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {

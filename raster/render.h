@@ -14,14 +14,22 @@
 namespace duet::raster {
 
 enum class Shading {
-    kLit,    ///< materials and lights: direct light in closed form where there is one, environment irradiance
-    kNormal, ///< the shading normal as a colour: (n + 1)/2
-    kAlbedo, ///< base colours
-    kDepth,  ///< near / depth
-    kPhong,  ///< Phong's model: highlights and diffuse light of the scene's lights, the environment's mean for ambient
+    kLit,       ///< materials and lights: direct light in closed form where there is one, environment irradiance
+    kPhong,     ///< Phong's model: highlights and diffuse light of the scene's lights, the environment's mean for ambient
+    kGouraud,   ///< the same, worked out at vertices and interpolated
+    kFlat,      ///< the same, once a triangle
+    kToon,      ///< the same, in bands
+    kWireframe, ///< edges, hidden ones removed
+    kLines,     ///< edges as lines of single pixels, white on black, and nothing hides another
+    kEdges,     ///< ink on paper: Settings::edges alone
+    kNormal,    ///< the shading normal as a colour: (n + 1)/2
+    kAlbedo,    ///< base colours
+    kDepth,     ///< near / depth
 };
-/// "lit", "normal", "albedo", "depth", "phong"; throws Error for another name.
+/// "lit", "phong" …, as shading_names() lists them; throws Error for another name.
 Shading shading(std::string_view name);
+/// "lit, phong … or depth".
+std::string shading_names();
 
 /// The parts of Shading::kLit (LightParts in raster/split.h): one that is left out is not computed.
 struct PartSet {
@@ -39,12 +47,18 @@ struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
     Output output = Output::kRadiance; ///< others: of the first sample a pixel, without auxiliary pictures
     bool front_faces_only = false;     ///< draw no back faces of any mesh or quad, as real-time renderers do
+    /// Multisampling (raster/multisample.h): 2, 4, 8 or 16 samples a pixel for coverage and depth, shaded once a primitive;
+    /// 0: none. Together with samples_per_pixel = 1 only; through the lens's centre, as the shutter opens.
+    int multisamples = 0;
+    bool sample_shading = false; ///< with it: shade each of its samples, which is supersampling by its pattern
+    bool edges = false; ///< ink lines over the picture where depth, normals or objects change (raster/edges.h)
     PartSet parts; ///< all, but for a look at one, and for its price
     bool environment =
         true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
 };
 
 struct PreparedData; // raster/prepare.h
+class Program;       // raster/strip_shader.h
 
 /// What one scene needs for any number of views. Refers to the scene, which must outlive it.
 class Prepared {
@@ -65,5 +79,8 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
 /// The same into an earlier rendering: pictures of the right size are drawn over. So that who draws frame after frame
 /// takes memory once.
 void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result);
+/// The same by a program in place of Settings::shading. draw() (raster/draw.h) makes one of a shader.
+void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program, Control& control,
+            Rendering& result);
 
 } // namespace duet::raster

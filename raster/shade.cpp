@@ -106,23 +106,8 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     const ShadingPoint point(surface, -ray.direction);
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
-    switch (settings.shading) {
-    case Shading::kLit:
+    if (settings.shading == Shading::kLit)
         result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction).sum();
-        break;
-    case Shading::kNormal:
-        result.radiance = direction_color(point.ns);
-        break;
-    case Shading::kAlbedo:
-        result.radiance = color();
-        break;
-    case Shading::kPhong:
-        result.radiance = phong_light(scene.lights, data.ambient, color(), point, -ray.direction);
-        break;
-    case Shading::kDepth:
-        result.radiance = Rgb(tile.nearness(x, y));
-        break;
-    }
     return result;
 }
 

@@ -15,7 +15,8 @@ struct Shaded {
     Rgb albedo;
 };
 
-/// Shades one sample of a tile. Where nothing is hit, radiance is the environment's, or black where that is off or the
+/// Shades one sample of a tile as Shading::kLit; of another shading, whose colours come from its Program, it makes the
+/// rest, with no radiance. Where nothing is hit, radiance is the environment's, or black where that is off or the
 /// shading shows none. The albedo is filled in where the settings ask for it.
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
 

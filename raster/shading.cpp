@@ -1,20 +1,47 @@
 #include "common/system/error.h"
-#include "raster/render.h"
+#include "raster/shadings/shadings.h"
 
 #include <array>
-#include <utility>
 
 namespace duet::raster {
+namespace {
+
+struct Known {
+    std::string_view name;
+    Shading shading;
+    std::unique_ptr<Program> (*program)();
+};
+constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
+                          Known{"phong", Shading::kPhong, phong_program},
+                          Known{"gouraud", Shading::kGouraud, gouraud_program},
+                          Known{"flat", Shading::kFlat, flat_program},
+                          Known{"toon", Shading::kToon, toon_program},
+                          Known{"wireframe", Shading::kWireframe, wireframe_program},
+                          Known{"lines", Shading::kLines, depth_program}, // none of its colours are kept, as of the next
+                          Known{"edges", Shading::kEdges, depth_program},
+                          Known{"normal", Shading::kNormal, normal_program},
+                          Known{"albedo", Shading::kAlbedo, albedo_program},
+                          Known{"depth", Shading::kDepth, depth_program}};
+
+} // namespace
+
+std::string shading_names() {
+    std::string names;
+    for (const Known& known : kAll)
+        names += (known.name == kAll.front().name ? "" : known.name == kAll.back().name ? " or " : ", ") + std::string(known.name);
+    return names;
+}
 
 Shading shading(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, Shading>, 5> kNames{{{"lit", Shading::kLit},
-                                                                          {"normal", Shading::kNormal},
-                                                                          {"albedo", Shading::kAlbedo},
-                                                                          {"depth", Shading::kDepth},
-                                                                          {"phong", Shading::kPhong}}};
-    for (const auto& [known, value] : kNames)
-        if (known == name) return value;
-    throw Error(message("shading: found ", name, ", expected lit, normal, albedo, depth or phong"));
+    for (const Known& known : kAll)
+        if (known.name == name) return known.shading;
+    throw Error(message("shading: found ", name, ", expected ", shading_names()));
+}
+
+std::unique_ptr<Program> program(Shading shading) {
+    for (const Known& known : kAll)
+        if (known.shading == shading && known.program != nullptr) return known.program();
+    return nullptr;
 }
 
 } // namespace duet::raster

@@ -73,6 +73,11 @@ std::pair<int, int> pixel_range(const Interval& extremes, int size) {
 
 } // namespace
 
+float DrawSphere::nearest(const Ray& ray) const {
+    const Ray local = identity ? ray : to_object_space(ray, to_world, to_object);
+    return dot(sphere.center - local.origin, local.direction) / length_squared(local.direction);
+}
+
 std::optional<float> DrawSphere::intersect(const Ray& ray) const {
     if (identity) return intersect_sphere(ray, sphere);
     return intersect_sphere(to_object_space(ray, to_world, to_object), sphere);

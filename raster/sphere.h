@@ -21,6 +21,8 @@ struct DrawSphere {
 
     /// Where a camera ray meets it: intersect_sphere in its object's space, as the ray tracer does it.
     std::optional<float> intersect(const Ray& ray) const;
+    /// Where the ray passes its centre, as the sphere's own space measures it.
+    float nearest(const Ray& ray) const;
 };
 
 /// The pixels that may see the part beyond the near plane of an affinely mapped sphere: conservative by a pixel, empty

@@ -32,7 +32,8 @@ public:
 
 /// Numbers are in the order of (object, primitive), so that the lower number is the one that wins a tie.
 struct Triangles : WholeTriangles {
-    const Scene* scene = nullptr;
+    const PreparedData* prepared = nullptr;
+    const Scene* scene = nullptr; ///< PreparedData::scene
     const std::vector<std::vector<PackedVertex>>* vertices = nullptr; ///< PreparedData::vertices
     std::vector<TransformedObject> objects; ///< of triangles and quads
     std::vector<Run> runs;

@@ -1,5 +1,6 @@
 #include "compare/frames/frame_scene.h"
 
+#include "common/image/image_file.h"
 #include "common/scene/obj/load_obj.h"
 
 #include <algorithm>
@@ -8,14 +9,20 @@ namespace duet::compare {
 
 const char* name(FrameView view) { return view == FrameView::kWhole ? "whole" : "close"; }
 
-Scene frame_scene(const std::filesystem::path& mesh) {
+Scene frame_scene(const std::filesystem::path& mesh, const std::filesystem::path& texture) {
     ObjFile file = load_obj(mesh, {MeshNormals::kAuto, false});
     Scene scene;
     scene.path = mesh;
     scene.files = file.files;
     scene.shapes.emplace_back(std::move(file.mesh));
     scene.materials = {Diffuse{{Rgb(0.7f, 0.65f, 0.6f)}}};
-    scene.material_names = {"grey"};
+    scene.material_names = {"surface"};
+    if (!texture.empty()) {
+        scene.files.push_back(texture);
+        scene.textures.images = {read_image(texture)};
+        scene.textures.textures = {ImageTexture{}};
+        scene.materials = {Diffuse{RgbSlot{Rgb(1.0f), 0}}};
+    }
     Object object;
     object.name = mesh.stem().string();
     object.materials = {0};

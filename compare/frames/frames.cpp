@@ -153,7 +153,7 @@ int frames(const FramesOptions& options) {
         ProgressBar bar("frames", options.quiet);
         const double share = 1.0 / static_cast<double>(options.meshes.size());
         for (std::size_t i = 0; i < options.meshes.size(); ++i) {
-            const Scene scene = frame_scene(options.meshes[i]);
+            const Scene scene = frame_scene(options.meshes[i], options.texture);
             MeshRows mesh{options.meshes[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
             if (!measure_mesh(options, threads, mesh, scene, bar, static_cast<double>(i) * share, share, interrupt))
                 return kExitInterrupted;

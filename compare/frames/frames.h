@@ -11,6 +11,7 @@ namespace duet::compare {
 
 struct FramesOptions {
     std::vector<std::filesystem::path> meshes;
+    std::filesystem::path texture; ///< base colour of all meshes; empty: grey. The peer knows none
     std::vector<FrameView> views{FrameView::kWhole, FrameView::kClose};
     std::vector<FrameWork> works{FrameWork::kPhong, FrameWork::kDepth};
     std::vector<int> threads; ///< empty: 1, and all processors

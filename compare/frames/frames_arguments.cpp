@@ -33,6 +33,9 @@ Subcommand add_frames(CLI::App& app) {
         ->check(CLI::Range(1, 10000));
     frames->add_flag("--processor-time", options.settings.processor_time,
                      "Count the seconds of all processors instead of the clock's: on a machine that others use, too");
+    frames->add_option("--texture", options.texture,
+                       "A picture for base colour, by the meshes' texture coordinates (default: grey); the rasterizer alone is "
+                       "measured with it");
     frames->add_flag("--no-peer", *no_peer, "Measure the rasterizer alone");
     frames->add_option("-o,--output", options.folder, "A folder for the pictures of both");
     frames->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
@@ -49,7 +52,7 @@ Subcommand add_frames(CLI::App& app) {
                     all->settings.width = parsed.width;
                     all->settings.height = parsed.height;
                 }
-                all->settings.peer = !*no_peer;
+                all->settings.peer = !*no_peer && all->texture.empty();
                 return compare::frames(*all);
             }};
 }

@@ -1,7 +1,7 @@
 // Pictures for displays and shadow maps: the fast ways against the naive ones.
 #include "raster/cover.h"
 #include "raster/encode_strip.h"
-#include "tests/raster/scenes.h"
+#include "tests/raster/varied_scene.h"
 
 #include "common/image/srgb.h"
 
@@ -17,44 +17,30 @@ using namespace duet::test;
 
 namespace {
 
-Mesh smooth_torus(int around, int across) {
-    Mesh mesh = torus(around, across);
-    for (int i = 0; i < around; ++i)
-        for (int k = 0; k < across; ++k) {
-            const double u = 2 * kPiDouble * i / around, v = 2 * kPiDouble * k / across;
-            mesh.normals.push_back(Vec3(Vec3d(std::cos(u) * std::cos(v), std::sin(v), -std::sin(u) * std::cos(v))));
-        }
-    return mesh;
-}
-
-/// Meshes with and without normals, placed once, mirrored and stretched; a sphere and a quad.
-Scene varied(int around) {
-    Scene scene;
-    add(scene, smooth_torus(around, around / 2), Mat4(), Diffuse{{Rgb(0.8f, 0.5f, 0.3f)}});
-    add_instance(scene, 0, Mat4(translation(Vec3(1.2f, 0.9f, -0.5f)) * scaling(Vec3(-0.5f, 0.5f, 0.7f))));
-    add(scene, torus(20, 10), Mat4(translation(Vec3(-1.3f, 0.4f, 0.5f))), Diffuse{{Rgb(0.2f, 0.5f, 0.9f)}});
-    add(scene, Sphere{Vec3(0, 0.3f, 1.2f), 0.4f}, Mat4(), Diffuse{{Rgb(0.6f)}});
-    add(scene, QuadList{{Quad{Vec3(-4, -0.5f, 3), Vec3(8, 0, 0), Vec3(0, 0, -9)}}}, Mat4(), Diffuse{{Rgb(0.5f)}});
-    scene.lights = {SunLight{normalize(Vec3(0.4f, -1, -0.5f)), Rgb(2, 1.9f, 1.7f)},
-                    PointLight{Vec3(-1, 3, 2), Rgb(4, 3, 5)}};
-    scene.environment = ConstantEnvironment{Rgb(0.1f, 0.12f, 0.15f)};
-    finish_scene(scene);
-    return scene;
-}
-
-View perspective() { return {look({1.5, 2.2, 4.2}, {0, 0, 0}, 45), 331, 237}; }
-View orthographic() {
-    View view = perspective();
-    view.camera.projection = Camera::Projection::kOrthographic;
-    view.camera.height = 4;
-    return view;
-}
-
 raster::Settings phong(raster::Output output) {
     raster::Settings settings;
     settings.shading = raster::Shading::kPhong;
     settings.output = output;
     return settings;
+}
+
+/// Phong's model at a pixel's centre from its hit alone, by the shared surface point and the path tracer's lights.
+Rgb naive_phong(const Scene& scene, const View& view, const Hit& hit, int x, int y) {
+    if (!hit.valid()) return {};
+    const Rayd exact = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+    const Ray ray{.origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
+    const SurfacePoint point = surface_point(scene, ray, hit);
+    const Vec3 wo = -ray.direction, n = dot(point.ng, wo) < 0 ? -point.ns : point.ns;
+    const Rgb base = base_color(scene.materials[point.material], scene.textures, point);
+    Rgb sum = base * mean_radiance(scene.environment);
+    for (const Light& light : scene.lights) {
+        const auto arriving = sample_light(light, point.p, {0.5f, 0.5f});
+        if (!arriving) continue;
+        const float cosine = std::max(dot(n, arriving->wi), 0.0f), mirror = std::max(dot(reflect(arriving->wi, n), wo), 0.0f);
+        const float lobe = 0.04f * 34 * std::pow(mirror, 32.0f) / (2 * kPi);
+        sum += arriving->radiance * cosine * (base * (1 / kPi) + Rgb(lobe));
+    }
+    return sum;
 }
 
 int largest_difference(Rgba8 a, Rgba8 b) {
@@ -104,21 +90,28 @@ TEST_SUITE("unit") {
         CHECK(encode_all(0.5f)[7] == Rgba8{188, 188, 188, 255});
     }
 
-    TEST_CASE("Phong's fast way shows what the naive one shows") {
+    TEST_CASE("Phong's shading side by side is Phong's model at each hit") {
         for (const int around : {12, 60, 400}) // triangles of many pixels, of some, and of less than one
             for (const View& view : {perspective(), orthographic()}) {
-                const Scene scene = varied(around);
-                const Rendering naive = render(scene, view, phong(raster::Output::kRadiance));
-                const Rendering fast = render(scene, view, phong(raster::Output::kSrgb8));
-                REQUIRE(fast.srgb.width() == view.width);
-                int different = 0, worst = 0;
-                for (std::size_t i = 0; i < naive.radiance.size(); ++i) {
-                    const Rgb c = naive.radiance[i];
-                    const Rgba8 wanted{srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b), 255};
-                    different += fast.srgb[i] != wanted;
-                    worst = std::max(worst, largest_difference(fast.srgb[i], wanted));
-                }
+                const Scene scene = varied_scene(around);
+                raster::Settings settings = phong(raster::Output::kRadiance);
+                settings.aovs.hit = true;
+                const Rendering picture = render(scene, view, settings);
+                const Rendering encoded = render(scene, view, phong(raster::Output::kSrgb8));
+                REQUIRE(encoded.srgb.width() == view.width);
+                int different = 0, worst = 0, not_encoded = 0;
+                for (int y = 0; y < view.height; ++y)
+                    for (int x = 0; x < view.width; ++x) {
+                        const auto code = [](Rgb c) {
+                            return Rgba8{srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b), 255};
+                        };
+                        const Rgba8 wanted = code(naive_phong(scene, view, picture.hit(x, y), x, y));
+                        not_encoded += encoded.srgb(x, y) != code(picture.radiance(x, y));
+                        different += encoded.srgb(x, y) != wanted;
+                        worst = std::max(worst, largest_difference(encoded.srgb(x, y), wanted));
+                    }
                 CAPTURE(around);
+                CHECK(not_encoded == 0);    // of a display's picture and of one of floats
                 CHECK(worst <= 1);          // float against double, where a value lies at a change of code
                 CHECK(different <= 80);     // of 78447 pixels
             }
@@ -126,7 +119,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a depth-only picture has the very nearness that shading sees") {
         for (const View& view : {perspective(), orthographic()}) {
-            const Scene scene = varied(90);
+            const Scene scene = varied_scene(90);
             raster::Settings settings = phong(raster::Output::kNearness);
             const Rendering depths = render(scene, view, settings);
             settings.output = raster::Output::kRadiance;
@@ -143,7 +136,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("pictures are the same for any number of threads, and drawn over an earlier one") {
-        const Scene scene = varied(120);
+        const Scene scene = varied_scene(120);
         const View view = perspective();
         for (const raster::Output output : {raster::Output::kSrgb8, raster::Output::kNearness}) {
             raster::Settings settings = phong(output);
@@ -185,7 +178,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("hits found side by side are those found one by one") {
-        const Scene scene = varied(200);
+        const Scene scene = varied_scene(200);
         for (const View& view : {perspective(), orthographic()}) {
             const raster::Settings settings;
             const raster::Prepared prepared = raster::prepare(scene, settings);

@@ -1,0 +1,75 @@
+#include "raster/edges.h"
+
+#include "raster/one_sample.h"
+#include "raster/strip_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+
+void SeenPicture::add(const DepthTile& tile, const Geometry& geometry, StripShader& normals) {
+    const PixelRect& r = tile.rect();
+    StripColors colors;
+    for (int y0 = r.y0; y0 < r.y1; y0 += DepthTile::kStripRows)
+        for (int x0 = r.x0; x0 < r.x1; x0 += static_cast<int>(kStripWidth)) {
+            const StripPlace place = strip_place(tile, x0, y0);
+            normals.shade(place, colors);
+            for (std::size_t i = 0; i < kStrip; ++i) {
+                const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
+                if (x >= r.x1 || y >= r.y1) continue;
+                const auto id = static_cast<std::uint32_t>(place.ids[i]);
+                const bool any = id != kNoTriangle;
+                nearness(x, y) = any ? place.nearness[i] : 0;
+                normal(x, y) = any ? Vec3(colors.r[i], colors.g[i], colors.b[i]) : Vec3();
+                object(x, y) = any ? object_of(geometry, id) : kNoObject;
+            }
+        }
+}
+
+namespace {
+
+/// From 0 at `low` to 1 at `high`.
+float ramp(float x, float low, float high) { return std::clamp((x - low) / (high - low), 0.0f, 1.0f); }
+
+/// Pixels beyond the border repeat those on it.
+struct Around {
+    int width, height, x, y;
+
+    template <typename Pixel> const Pixel& at(const Image<Pixel>& image, int dx, int dy) const {
+        return image(std::clamp(x + dx, 0, width - 1), std::clamp(y + dy, 0, height - 1));
+    }
+};
+
+/// Sobel's two operators, by which a straight edge between two even sides yields the difference between them: |∇| / 4.
+float sobel(const Image<Vec3>& image, const Around& around) {
+    Vec3 across, down;
+    for (int k = -1; k <= 1; ++k) {
+        const float weight = (k == 0 ? 2.0f : 1.0f) / 4;
+        across += (around.at(image, 1, k) - around.at(image, -1, k)) * weight;
+        down += (around.at(image, k, 1) - around.at(image, k, -1)) * weight;
+    }
+    return std::sqrt(dot(across, across) + dot(down, down));
+}
+
+/// The larger of both second differences.
+float second_difference(const ImageFloat& image, const Around& around) {
+    const float twice = 2 * around.at(image, 0, 0);
+    return std::max(std::abs(around.at(image, -1, 0) + around.at(image, 1, 0) - twice),
+                    std::abs(around.at(image, 0, -1) + around.at(image, 0, 1) - twice));
+}
+
+} // namespace
+
+float ink(const SeenPicture& seen, int x, int y) {
+    const Around around{seen.nearness.width(), seen.nearness.height(), x, y};
+    const std::uint32_t own = seen.object(x, y);
+    for (const auto& [dx, dy] : {std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)})
+        if (around.at(seen.object, dx, dy) != own) return 1;
+    if (own == kNoObject) return 0;
+    const float step = second_difference(seen.nearness, around) / seen.nearness(x, y);
+    const float crease = 2 * sobel(seen.normal, around); // the normals are halved
+    return std::max(ramp(step, 0.02f, 0.04f), ramp(crease, 0.5f, 0.8f));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,142 @@
+// A shader of raster/shader.h becomes a Program: whole strips of one mesh in batches, all else sample by sample, by the
+// same functions.
+#pragma once
+
+#include "raster/cover.h"
+#include "raster/one_sample.h"
+#include "raster/solve.h"
+
+namespace duet::raster {
+
+template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
+public:
+    ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
+        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader),
+          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
+          eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile) {}
+
+    std::uint32_t shade(const StripPlace& place, StripColors& colors) override {
+        solver_.load(place.ids);
+        if (solver_.seen() == 0) return 0;
+        if (solver_.on_mesh() == solver_.seen()) {
+            solver_.solve_all(place);
+            shade_together(place, colors);
+            return solver_.seen();
+        }
+        for (std::size_t i = 0; i < kStrip; ++i) {
+            if (!(solver_.seen() >> i & 1)) continue;
+            const Rgb c = shade_one(data_, geometry_, view_, shader_, solver_.id(i), place.position(i),
+                                    place.nearness != nullptr ? place.nearness + i : nullptr);
+            colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
+        }
+        return solver_.seen();
+    }
+
+private:
+    using Many = VaryingsOf<S, Floats>;
+
+    /// A vector that is linear in the pixel, counted from the tile's corner: rounded once a tile, to floats whose errors
+    /// are of their last place.
+    struct Linear {
+        Vec3 start, step_x, step_y;
+        int x0, y0;
+
+        Linear(Vec3d start_, Vec3d dx, Vec3d dy, const PixelRect& tile)
+            : start(start_ + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0)), step_x(dx), step_y(dy),
+              x0(tile.x0), y0(tile.y0) {}
+        Vec3T<Floats> at(const Floats& x, const Floats& y) const {
+            return spread<Floats>(start) + spread<Floats>(step_x) * x + spread<Floats>(step_y) * y;
+        }
+    };
+
+    void shade_together(const StripPlace& place, StripColors& colors) {
+        const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
+        const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
+            top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+            Floats x = left + load(kColumns<float>, i), y = top + load(kRows<float>, i);
+            if (place.offsets != nullptr) {
+                x += in_pixel(*place.offsets, i, &SampleOffset::x);
+                y += in_pixel(*place.offsets, i, &SampleOffset::y);
+            }
+            const Floats depth = narrowed(load(solver_.depth, i), load(solver_.depth, i + Doubles::size));
+            const FragmentOf<S, Floats> fragment{derivatives(i),
+                                                 varyings<S, Floats>(gather(solver_.at, i)),
+                                                 strips::vector(solver_.ng, 0, i),
+                                                 eyes_.at(x, y),
+                                                 ways_.at(x, y),
+                                                 depth,
+                                                 place.nearness != nullptr
+                                                     ? Floats::load_aligned(place.nearness + i)
+                                                     : min(Floats(static_cast<float>(view_.pinhole.near)) / depth, Floats(1.0f)),
+                                                 solver_.object(),
+                                                 *this,
+                                                 i};
+            const RgbT<Floats> c = shader_.template fragment<Floats>(fragment);
+            store(colors.r, i, c.r);
+            store(colors.g, i, c.g);
+            store(colors.b, i, c.b);
+        }
+    }
+
+    static Floats in_pixel(const std::array<SampleOffset, kStrip>& offsets, std::size_t first, std::int32_t SampleOffset::*axis) {
+        StripOf<float> own;
+        for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
+        return load(own, 0);
+    }
+    template <std::size_t N> static std::array<Floats, N> gather(const std::array<StripOf<float>, N>& from, std::size_t i) {
+        std::array<Floats, N> result;
+        for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
+        return result;
+    }
+    auto derivatives(std::size_t i) const {
+        if constexpr (wants_derivatives<S>())
+            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(solver_.dx, i)),
+                                                 varyings<S, Floats>(gather(solver_.dy, i))};
+        else
+            return ScreenDerivatives<Many, false>{};
+    }
+
+    /// As surface_point() has it, but for what base colours don't depend on.
+    Rgb base_color(std::size_t sample) const override {
+        if (!(solver_.seen() >> sample & 1)) return {};
+        const Mesh& mesh = *solver_.one_mesh();
+        const double u = solver_.b1[sample], v = solver_.b2[sample];
+        const auto& corners = mesh.triangles[solver_.index(sample)];
+        SurfacePoint point;
+        point.object = solver_.object().object;
+        point.primitive = static_cast<std::uint32_t>(solver_.index(sample));
+        point.material = material_index(data_.scene, point.object, point.primitive);
+        point.time = view_.time;
+        const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
+        point.p_object = Vec3(a + (b - a) * u + (c - a) * v);
+        point.uv = Vec2(static_cast<float>(u), static_cast<float>(v));
+        if (!mesh.uvs.empty()) {
+            const auto uv = [&](std::size_t k) { return Vec2d(mesh.uvs[corners[k]]); };
+            point.uv = Vec2(uv(0) * (1 - u - v) + uv(1) * u + uv(2) * v);
+        }
+        return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
+    }
+
+    const PreparedData& data_;
+    const Geometry& geometry_;
+    const PassView& view_;
+    const S& shader_;
+    StripSolver<S> solver_;
+    Linear ways_, eyes_; ///< camera rays
+};
+
+/// A shader, kept by value.
+template <Shader S> class ProgramOf final : public Program {
+public:
+    explicit ProgramOf(S shader) : shader_(std::move(shader)) {}
+    std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
+                                          const PixelRect& tile) const override {
+        return std::make_unique<ShadedStrips<S>>(data, geometry, view, tile, shader_);
+    }
+
+private:
+    S shader_;
+};
+
+} // namespace duet::raster

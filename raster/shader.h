@@ -1,0 +1,197 @@
+// Programmable shading: a vertex and a fragment function in C++, written once for one point and for a SIMD batch of them.
+//
+//     struct Stripes {
+//         template <typename T> struct Varyings { T height; };             // nothing but T, and vectors and colours of it
+//         template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.world_p().y}; }
+//         template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+//             return select_each(f.at.height > T(0.5f), f.base_color(), RgbT<T>(T(1)));
+//         }
+//     };
+//     Rendering picture = draw(prepared, view, settings, Stripes{}, control);   // raster/draw.h
+//
+// Visibility comes first (an image of triangle numbers), so a fragment function runs once a visible sample, and a
+// vertex function only for the corners of triangles that are seen. Both inline into the loop over strips of samples.
+// Where a vertex lies in the picture is not theirs to say: that is exact (raster/transform.h).
+#pragma once
+
+#include "common/image/rgb.h"
+#include "common/vec/matrix.h"
+#include "raster/lanes.h"
+#include "raster/prepare.h"
+
+#include <bit>
+#include <concepts>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+namespace duet::raster {
+
+struct PassView;
+
+/// One value to all lanes.
+template <typename T> Vec3T<T> spread(Vec3 v) { return {T(v.x), T(v.y), T(v.z)}; }
+template <typename T> RgbT<T> spread(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
+/// v / |v| of what is not zero.
+template <typename T> Vec3T<T> unit(Vec3T<T> v) { return v * inverse_sqrt(dot(v, v)); }
+/// a where the condition holds, else b.
+template <typename T, typename Mask> RgbT<T> select_each(Mask condition, RgbT<T> a, RgbT<T> b) {
+    return {select(condition, a.r, b.r), select(condition, a.g, b.g), select(condition, a.b, b.b)};
+}
+
+/// What all vertices and samples of an object have in common in one view.
+struct ObjectView {
+    const PreparedData& data;
+    const PassView& pass;
+    std::uint32_t object;      ///< index into Scene::objects
+    bool identity;             ///< its space is the world's
+    bool smooth;               ///< it has normals at its vertices
+    Mat4 to_world, to_object;  ///< at the pass's moment
+    std::optional<Rgb> color;  ///< its base colour, if it has but one
+    Vec3 eye, forward;         ///< the viewer, and unit, the way the camera looks
+    bool orthographic;
+
+    ObjectView(const PreparedData& data, const PassView& pass, std::uint32_t object);
+
+    /// To the world.
+    template <typename T> Vec3T<T> point(Vec3T<T> p) const {
+        if (identity) return p;
+        const auto row = [&](std::size_t r) {
+            const auto& m = to_world[r];
+            return T(m[0]) * p.x + T(m[1]) * p.y + T(m[2]) * p.z + T(m[3]);
+        };
+        return {row(0), row(1), row(2)};
+    }
+    /// A normal to the world, of any length.
+    template <typename T> Vec3T<T> normal(Vec3T<T> n) const {
+        if (identity) return n;
+        const auto column = [&](std::size_t c) {
+            return T(to_object[0][c]) * n.x + T(to_object[1][c]) * n.y + T(to_object[2][c]) * n.z;
+        };
+        return {column(0), column(1), column(2)};
+    }
+    /// From an interpolated normal n and the geometric one ng on the side that is seen, both in the object's space and
+    /// of any length: the shading normal in the world, unit, in the hemisphere of ng. ng's where the object has no other.
+    template <typename T> Vec3T<T> shading_normal(Vec3T<T> n, Vec3T<T> ng) const {
+        if (!smooth) return unit(normal(ng));
+        const Vec3T<T> g = normal(ng), s = normal(n);
+        const T factor = select(dot(s, g) < T(0), T(-1), T(1));
+        return unit(s) * factor;
+    }
+    /// Unit, from a point of the world.
+    template <typename T> Vec3T<T> to_viewer(Vec3T<T> p) const {
+        return orthographic ? -spread<T>(forward) : unit(spread<T>(eye) - p);
+    }
+};
+
+/// What a vertex function is given: a corner of a triangle that is seen. In the object's space, but for world_….
+template <typename T> struct VertexInput {
+    Vec3T<T> p;
+    Vec3T<T> n; ///< as the mesh has it, or (0, 0, 0)
+    Vec2T<T> uv;
+    Vec3T<T> ng;     ///< the triangle's geometric normal on the side that is seen, of any length
+    Vec3T<T> middle; ///< the triangle's or the whole quad's centroid; of a sphere p itself
+    /// One number an edge: 1 at the corner opposite to it, 0 on it. Where no edge is (a quad's diagonal; a sphere): 1.
+    Vec3T<T> edges;
+    const ObjectView& object;
+
+    Vec3T<T> world_p() const { return object.point(p); }
+    Vec3T<T> world_middle() const { return object.point(middle); }
+    /// The shading normal: unit, on the side that is seen.
+    Vec3T<T> world_n() const { return object.shading_normal(n, ng); }
+    Vec3T<T> world_ng() const { return unit(object.normal(ng)); }
+};
+
+/// Looks up what has no batches: base colours of the samples of a strip.
+class ColorSource {
+public:
+    virtual ~ColorSource() = default;
+    virtual Rgb base_color(std::size_t sample) const = 0;
+};
+
+template <typename V, bool kDerivatives> struct ScreenDerivatives {};
+template <typename V> struct ScreenDerivatives<V, true> {
+    V dx, dy; ///< exact derivatives of the varyings by the sample's place, along the row and down the column, per pixel
+};
+
+/// What a fragment function is given: a sample that sees something. dx and dy are there where the shader says so.
+template <typename T, typename V, bool kDerivatives>
+struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
+    V at;                  ///< the varyings, interpolated as perspective shows them
+    Vec3T<T> ng;           ///< geometric normal on the side that is seen, in the object's space, of any length
+    Vec3T<T> origin, way;  ///< the camera ray in the world: way's camera-space −z is 1
+    T depth;               ///< camera-space −z, metres
+    T nearness;            ///< near / depth, in (0, 1]
+    const ObjectView& object;
+    const ColorSource& colors;
+    std::size_t first; ///< sample of the strip that lane 0 is
+
+    Vec3T<T> p() const { return origin + way * depth; } ///< in the world
+    Vec3T<T> wo() const { return -unit(way); }          ///< to the viewer, unit
+    /// The shading normal of an interpolated n of the object's space: unit, in the world, on the side that is seen.
+    Vec3T<T> normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
+    RgbT<T> base_color() const;
+};
+
+template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
+    if (object.color) return spread<T>(*object.color);
+    if constexpr (std::same_as<T, float>) {
+        return colors.base_color(first);
+    } else {
+        RgbT<StripOf<float>> found;
+        for (std::size_t lane = 0; lane < T::size; ++lane) {
+            const Rgb c = colors.base_color(first + lane);
+            found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
+        }
+        return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+    }
+}
+
+/// Whether a shader asks for derivatives: `static constexpr bool kDerivatives = true;`
+template <typename S> constexpr bool wants_derivatives() {
+    if constexpr (requires { S::kDerivatives; })
+        return S::kDerivatives;
+    else
+        return false;
+}
+/// Whether a shader's vertex function reads texture coordinates; `static constexpr bool kTextureCoordinates = false;`
+/// promises that it does not, and saves gathering them.
+template <typename S> constexpr bool wants_texture_coordinates() {
+    if constexpr (requires { S::kTextureCoordinates; })
+        return S::kTextureCoordinates;
+    else
+        return true;
+}
+template <typename S, typename T> using VaryingsOf = typename S::template Varyings<T>;
+template <typename S, typename T> using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>()>;
+
+/// Varyings are numbers in a row, to be interpolated one by one.
+template <typename S> inline constexpr std::size_t kVaryings =
+    std::is_empty_v<VaryingsOf<S, float>> ? 0 : sizeof(VaryingsOf<S, float>) / sizeof(float);
+template <typename S, typename T> std::array<T, kVaryings<S>> numbers(const VaryingsOf<S, T>& varyings) {
+    if constexpr (kVaryings<S> == 0)
+        return {};
+    else
+        return std::bit_cast<std::array<T, kVaryings<S>>>(varyings);
+}
+template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, kVaryings<S>>& numbers) {
+    if constexpr (kVaryings<S> == 0)
+        return {};
+    else
+        return std::bit_cast<VaryingsOf<S, T>>(numbers);
+}
+
+/// What has varyings, and a vertex function for one point and for a batch.
+template <typename S>
+concept VertexShader = requires(const S& s, const VertexInput<float>& one, const VertexInput<Floats>& many) {
+    { s.vertex(one) } -> std::same_as<VaryingsOf<S, float>>;
+    { s.vertex(many) } -> std::same_as<VaryingsOf<S, Floats>>;
+};
+/// And a fragment function: linear radiance, in W/(m² sr) where it is meant to compare with light.
+template <typename S>
+concept Shader = VertexShader<S> && requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many) {
+    { s.template fragment<float>(one) } -> std::same_as<Rgb>;
+    { s.template fragment<Floats>(many) } -> std::same_as<RgbT<Floats>>;
+};
+
+} // namespace duet::raster

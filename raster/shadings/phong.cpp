@@ -1,0 +1,27 @@
+// Phong shading: normals are interpolated, light is worked out at each sample (Phong 1975, «Illumination for Computer
+// Generated Pictures»).
+#include "raster/phong.h"
+#include "raster/program.h"
+#include "raster/shadings/shadings.h"
+
+namespace duet::raster {
+namespace {
+
+struct PhongShader {
+    static constexpr bool kTextureCoordinates = false;
+    template <typename T> struct Varyings {
+        Vec3T<T> n;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        const PreparedData& data = f.object.data;
+        return phong(std::span(data.scene.lights), data.ambient, f.base_color(), [&] { return f.p(); }, f.normal(f.at.n),
+                     f.wo());
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Program> phong_program() { return std::make_unique<ProgramOf<PhongShader>>(PhongShader{}); }
+
+} // namespace duet::raster

@@ -1,0 +1,24 @@
+// The built-in shadings, as programs.
+#pragma once
+
+#include "raster/render.h"
+#include "raster/strip_shader.h"
+
+#include <memory>
+
+namespace duet::raster {
+
+/// Of Settings::shading; null for Shading::kLit, which is no program (raster/shade.h).
+std::unique_ptr<Program> program(Shading shading);
+
+// A file each.
+std::unique_ptr<Program> phong_program();
+std::unique_ptr<Program> gouraud_program();
+std::unique_ptr<Program> flat_program();
+std::unique_ptr<Program> toon_program();
+std::unique_ptr<Program> wireframe_program();
+std::unique_ptr<Program> normal_program(); ///< of surface_colors.cpp, as the next two
+std::unique_ptr<Program> albedo_program();
+std::unique_ptr<Program> depth_program();
+
+} // namespace duet::raster

@@ -1,0 +1,37 @@
+// What a surface is, shown as a colour: its shading normal, its base colour, how near it is.
+#include "raster/program.h"
+#include "raster/shadings/shadings.h"
+
+namespace duet::raster {
+namespace {
+
+/// (n + 1)/2, see direction_color.
+struct NormalShader {
+    static constexpr bool kTextureCoordinates = false;
+    template <typename T> struct Varyings {
+        Vec3T<T> n;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        const Vec3T<T> n = f.normal(f.at.n);
+        const auto channel = [](T component) { return max((component + T(1)) * T(0.5f), T(0)); };
+        return {channel(n.x), channel(n.y), channel(n.z)};
+    }
+};
+
+struct AlbedoShader : NoVaryings {
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return f.base_color(); }
+};
+
+/// near / depth.
+struct DepthShader : NoVaryings {
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(f.nearness); }
+};
+
+} // namespace
+
+std::unique_ptr<Program> normal_program() { return std::make_unique<ProgramOf<NormalShader>>(NormalShader{}); }
+std::unique_ptr<Program> albedo_program() { return std::make_unique<ProgramOf<AlbedoShader>>(AlbedoShader{}); }
+std::unique_ptr<Program> depth_program() { return std::make_unique<ProgramOf<DepthShader>>(DepthShader{}); }
+
+} // namespace duet::raster

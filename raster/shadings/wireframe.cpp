@@ -1,0 +1,34 @@
+// Wireframe with hidden lines removed: a triangle's edges, a pixel wide and anti-aliased, in the base colour; its inside
+// black. The distance of a sample to an edge is barycentric: b / |∇b| pixels, exact on the edge (Bærentzen, Nielsen, Gjøl,
+// Larsen and Christensen 2006, «Single-pass Wireframe Rendering»). A quad's diagonal is no edge; a sphere has none.
+// Lines through and through: raster/lines.h.
+#include "raster/program.h"
+#include "raster/shadings/shadings.h"
+
+namespace duet::raster {
+namespace {
+
+struct WireframeShader {
+    static constexpr bool kTextureCoordinates = false;
+    static constexpr bool kDerivatives = true;
+    template <typename T> struct Varyings {
+        Vec3T<T> edges;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.edges}; }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        T nearest(1e9f);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const T steep = f.dx.edges[k] * f.dx.edges[k] + f.dy.edges[k] * f.dy.edges[k];
+            // What is no edge is as steep as nothing: far.
+            nearest = min(nearest, f.at.edges[k] * inverse_sqrt(max(steep, T(1e-24f))));
+        }
+        constexpr float kHalfWidth = 0.5f;
+        return f.base_color() * clamp(T(kHalfWidth + 0.5f) - nearest, T(0), T(1));
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Program> wireframe_program() { return std::make_unique<ProgramOf<WireframeShader>>(WireframeShader{}); }
+
+} // namespace duet::raster

@@ -1,0 +1,41 @@
+// What shades a picture, whatever it is: strips of samples in, colours out.
+#pragma once
+
+#include "raster/encode_strip.h"
+#include "raster/geometry.h"
+
+#include <memory>
+
+namespace duet::raster {
+
+/// Two rows of eight samples of a tile.
+struct StripPlace {
+    int x = 0, y = 0;                  ///< the first pixel
+    const std::int32_t* ids = nullptr; ///< of what each sees (DepthTile::ids); aligned to 64 bytes
+    const float* nearness = nullptr;   ///< of each (DepthTile::nearness), likewise aligned; null: to be worked out
+    SampleOffset offset;               ///< of every sample in its pixel
+    const std::array<SampleOffset, kStrip>* offsets = nullptr; ///< or, where given, of each its own
+
+    SampleOffset offset_of(std::size_t i) const { return offsets != nullptr ? (*offsets)[i] : offset; }
+    Vec2d position(std::size_t i) const {
+        return offset_of(i).position(x + static_cast<int>(i % kStripWidth), y + static_cast<int>(i / kStripWidth));
+    }
+};
+
+/// Shades the strips of one tile, in any order.
+class StripShader {
+public:
+    virtual ~StripShader() = default;
+    /// Colours of those samples that see something, and a bit for each of them; the others have any.
+    virtual std::uint32_t shade(const StripPlace& place, StripColors& colors) = 0;
+};
+
+/// A shader, ready for any tile.
+class Program {
+public:
+    virtual ~Program() = default;
+    virtual std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
+                                                  const PixelRect& tile) const = 0;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,107 @@
+// Ink lines: where they must be, and where there must be none.
+#include "raster/edges.h"
+#include "tests/raster/varied_scene.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+Rendering inked(const Scene& scene, const View& view, raster::Settings settings = {}) {
+    settings.shading = raster::Shading::kEdges;
+    settings.aovs.hit = true;
+    return render(scene, view, settings);
+}
+
+/// Whether the pixel, or one of the eight around it, has ink.
+bool ink_near(const ImageRgb& picture, int x, int y) {
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+            if (x + dx >= 0 && y + dy >= 0 && x + dx < picture.width() && y + dy < picture.height() &&
+                picture(x + dx, y + dy).r < 0.5f)
+                return true;
+    return false;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("no ink on a plane, however low it is seen; a line where it ends") {
+        Scene scene;
+        add(scene, QuadList{{Quad{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}});
+        finish_scene(scene);
+        const View view{look({0, 0.5, 0}, {0, 0.3, -8}, 50), 200, 150};
+        const Rendering picture = inked(scene, view);
+        int on_plane = 0, spots = 0, border = 0, inked_border = 0;
+        for (int y = 1; y + 1 < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (!picture.hit(x, y).valid()) continue;
+                const bool at_end = !picture.hit(x, y - 1).valid();
+                (at_end ? border : on_plane) += 1;
+                (at_end ? inked_border : spots) += picture.radiance(x, y).r < 1;
+            }
+        CHECK(on_plane > 10'000);
+        CHECK(spots == 0);
+        CHECK(border >= view.width);
+        CHECK(inked_border == border);
+    }
+
+    TEST_CASE("ink at steps of depth within one object, at creases, and between objects") {
+        Scene scene;
+        // Two squares of one object, one before the other, facing the eye: a step in depth alone.
+        add(scene, QuadList{{Quad{Vec3(-2, -2, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)}, Quad{Vec3(-1, -1, 0.5f), Vec3(1, 0, 0), Vec3(0, 1, 0)}}});
+        // A roof: a crease alone. Beside it a square of another object that goes on in its plane.
+        add(scene, QuadList{{Quad{Vec3(0.3f, -1, 0.2f), Vec3(0.5f, 0, 0.4f), Vec3(0, 2, 0)},
+                             Quad{Vec3(0.8f, -1, 0.6f), Vec3(0.5f, 0, -0.4f), Vec3(0, 2, 0)}}});
+        add(scene, QuadList{{Quad{Vec3(-1, 0.5f, 0.5f), Vec3(0.5f, 0, 0), Vec3(0, 0.5f, 0)}}});
+        add(scene, QuadList{{Quad{Vec3(-0.5f, 0.5f, 0.5f), Vec3(0.5f, 0, 0), Vec3(0, 0.5f, 0)}}});
+        finish_scene(scene);
+        const View view{look({0, 0, 6}, {0, 0, 0}, 30), 240, 240};
+        const Rendering picture = inked(scene, view);
+        const auto near_point = [&](Vec3d p) {
+            const Vec3d at = CameraModel(view).through().project(p);
+            return ink_near(picture.radiance, static_cast<int>(at.x), static_cast<int>(at.y));
+        };
+        for (const double along : {-0.7, -0.4, -0.2}) {
+            CHECK(near_point({-1, along, 0.5}));        // the step's left side
+            CHECK(near_point({along, -1, 0.5}));        // and its lower one
+            CHECK(near_point({0.8, along, 0.6}));       // the crease
+            CHECK(!near_point({-0.5, along, 0.5}));     // within the square
+            CHECK(!near_point({0.55, along, 0.4}));     // within a side of the roof
+            CHECK(near_point({-0.5, -along * 0.3 + 0.6, 0.5})); // where two objects meet in one plane
+        }
+    }
+
+    TEST_CASE("every silhouette has its line; the overlay keeps the picture elsewhere; threads don't matter") {
+        const Scene scene = varied_scene(120);
+        const View view = perspective();
+        const Rendering picture = inked(scene, view);
+        int silhouette = 0, missing = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 1; x < view.width; ++x)
+                if (picture.hit(x, y).object != picture.hit(x - 1, y).object) {
+                    ++silhouette;
+                    missing += picture.radiance(x, y).r > 0 || picture.radiance(x - 1, y).r > 0;
+                }
+        CHECK(silhouette > 400);
+        CHECK(missing == 0);
+        raster::Settings settings;
+        settings.shading = raster::Shading::kPhong;
+        const Rendering plain = render(scene, view, settings);
+        settings.edges = true;
+        settings.threads = 1;
+        const Rendering over = render(scene, view, settings);
+        settings.threads = 7;
+        CHECK(render(scene, view, settings).radiance.pixels() == over.radiance.pixels());
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const float paper = picture.radiance(x, y).r;
+                REQUIRE(over.radiance(x, y) == plain.radiance(x, y) * paper);
+            }
+        settings.multisamples = 4;
+        CHECK_THROWS_AS(render(scene, view, settings), Error);
+    }
+}

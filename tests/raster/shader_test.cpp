@@ -1,0 +1,343 @@
+// Programmable shading: shaders of the test's own, and what they are given.
+#include "raster/draw.h"
+#include "raster/shadings/shadings.h"
+#include "tests/raster/varied_scene.h"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+using namespace duet;
+using namespace duet::test;
+using raster::select_each, raster::VertexInput;
+
+namespace {
+
+/// Colours are what a test wants to see, moved to where none is negative.
+constexpr float kLift = 100;
+
+enum class Asked { kPoint, kInterpolated, kNormal, kAlongX, kAlongY, kUv };
+
+/// Shows what fragments are given.
+struct Probe {
+    static constexpr bool kDerivatives = true;
+    Asked asked;
+
+    template <typename T> struct Varyings {
+        Vec3T<T> p, n;
+        Vec2T<T> uv;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.world_p(), v.n, v.uv}; }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        const Vec3T<T> v = asked == Asked::kPoint          ? f.p()
+                           : asked == Asked::kInterpolated ? f.at.p
+                           : asked == Asked::kNormal       ? f.normal(f.at.n)
+                           : asked == Asked::kAlongX       ? f.dx.p
+                           : asked == Asked::kAlongY       ? f.dy.p
+                                                           : Vec3T<T>(f.at.uv.x, f.at.uv.y, T(0));
+        return RgbT<T>(v.x, v.y, v.z) + RgbT<T>(T(kLift));
+    }
+};
+
+/// The README's.
+struct Stripes {
+    template <typename T> struct Varyings {
+        T height;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.world_p().y}; }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        return select_each(f.at.height > T(0.5f), f.base_color(), RgbT<T>(T(1)));
+    }
+};
+
+raster::Settings with_hits() {
+    raster::Settings settings;
+    settings.aovs.hit = true;
+    return settings;
+}
+
+Rendering show(const Scene& scene, const View& view, Asked asked, raster::Settings settings = with_hits()) {
+    Control control;
+    return raster::draw(raster::prepare(scene, settings), view, settings, Probe{asked}, control);
+}
+
+Vec3 shown(const Rendering& picture, int x, int y) {
+    const Rgb c = picture.radiance(x, y);
+    return Vec3(c.r, c.g, c.b) - Vec3(kLift, kLift, kLift);
+}
+
+SurfacePoint surface_at(const Scene& scene, const View& view, Vec2d pixel, const Hit& hit) {
+    const Rayd exact = CameraModel(view).through().ray(pixel);
+    const Ray ray{.origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
+    return surface_point(scene, ray, hit);
+}
+
+/// The point of the plane of a hit that another place of the picture looks at.
+Vec3d on_plane(const SurfacePoint& surface, const View& view, Vec2d pixel) {
+    const Rayd ray = CameraModel(view).through().ray(pixel);
+    const Vec3d n(surface.ng);
+    return ray.origin + ray.direction * (dot(Vec3d(surface.p) - ray.origin, n) / dot(ray.direction, n));
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a fragment knows its point, and varyings are interpolated as perspective shows them") {
+        for (const View& view : {perspective(), orthographic()}) {
+            const Scene scene = varied_scene(60);
+            const Rendering points = show(scene, view, Asked::kPoint), varyings = show(scene, view, Asked::kInterpolated),
+                            normals = show(scene, view, Asked::kNormal);
+            double worst_point = 0, worst_varying = 0, worst_normal = 0;
+            int seen = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    const Hit& hit = points.hit(x, y);
+                    if (!hit.valid()) {
+                        REQUIRE(is_black(points.radiance(x, y)));
+                        continue;
+                    }
+                    ++seen;
+                    const SurfacePoint surface = surface_at(scene, view, {x + 0.5, y + 0.5}, hit);
+                    const auto apart = [](Vec3 a, Vec3 b) { return static_cast<double>(length(a - b)); };
+                    worst_point = std::max(worst_point, apart(shown(points, x, y), surface.p));
+                    worst_varying = std::max(worst_varying, apart(shown(varyings, x, y), surface.p));
+                    const Vec3 wo = Vec3(CameraModel(view).through().ray({x + 0.5, y + 0.5}).direction) * -1.0f;
+                    worst_normal = std::max(worst_normal, apart(shown(normals, x, y), dot(surface.ng, wo) < 0 ? -surface.ns : surface.ns));
+                }
+            CHECK(seen > 30'000);
+            CHECK(worst_point < 5e-5); // colours of about 100 are rounded to 4e-6, distances of 8 to 1e-6
+            CHECK(worst_varying < 5e-5);
+            CHECK(worst_normal < 5e-5);
+        }
+    }
+
+    TEST_CASE("screen derivatives of varyings are those of the triangle's plane") {
+        for (const View& view : {perspective(), orthographic()}) {
+            const Scene scene = varied_scene(30);
+            const Rendering along_x = show(scene, view, Asked::kAlongX), along_y = show(scene, view, Asked::kAlongY);
+            double worst = 0;
+            int compared = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    const Hit& hit = along_x.hit(x, y);
+                    // A sphere's varyings are its own and not its tangent plane's.
+                    if (!hit.valid() || std::holds_alternative<Sphere>(scene.shapes[scene.objects[hit.object].shape])) continue;
+                    const SurfacePoint surface = surface_at(scene, view, {x + 0.5, y + 0.5}, hit);
+                    const auto compare_one = [&](Vec2d step, Vec3 found) {
+                        const double h = 1e-3; // a central difference in double: error of order h²
+                        const Vec3d after = on_plane(surface, view, {x + 0.5 + step.x * h, y + 0.5 + step.y * h}),
+                                    before = on_plane(surface, view, {x + 0.5 - step.x * h, y + 0.5 - step.y * h});
+                        const Vec3d wanted = (after - before) * (0.5 / h);
+                        worst = std::max(worst, length(Vec3d(found) - wanted) / (length(wanted) + 1e-2));
+                    };
+                    compare_one({1, 0}, shown(along_x, x, y));
+                    compare_one({0, 1}, shown(along_y, x, y));
+                    ++compared;
+                }
+            CHECK(compared > 30'000);
+            CHECK(worst < 2e-3); // colours' own rounding: 8e-6 of 1e-2
+        }
+    }
+
+    TEST_CASE("texture coordinates reach the vertex function") {
+        Scene scene;
+        Mesh mesh;
+        mesh.positions = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
+        mesh.uvs = {Vec2(0, 0), Vec2(3, 0), Vec2(3, 2), Vec2(0, 2)};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        add(scene, mesh);
+        finish_scene(scene);
+        const View view{look({0.3, 0.2, 2.5}, {0, 0, 0}, 40), 64, 48};
+        const Rendering picture = show(scene, view, Asked::kUv);
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (!picture.hit(x, y).valid()) continue;
+                const Vec2 uv = surface_at(scene, view, {x + 0.5, y + 0.5}, picture.hit(x, y)).uv;
+                REQUIRE(static_cast<double>(length(shown(picture, x, y) - Vec3(uv.x, uv.y, 0))) < 5e-5);
+            }
+    }
+
+    TEST_CASE("a shader of one's own, its base colours of a texture, too") {
+        Scene scene = varied_scene(60);
+        scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
+        std::get<Diffuse>(scene.materials[0]).albedo.texture = 0;
+        std::get<Diffuse>(scene.materials[0]).albedo.value = Rgb(1.0f);
+        finish_scene(scene);
+        Control control;
+        raster::Settings settings = with_hits();
+        settings.aovs.albedo = true;
+        const View view = perspective();
+        const Rendering picture = raster::draw(raster::prepare(scene, settings), view, settings, Stripes{}, control);
+        int wrong = 0, above = 0, below = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const Hit& hit = picture.hit(x, y);
+                if (!hit.valid()) continue;
+                const float height = surface_at(scene, view, {x + 0.5, y + 0.5}, hit).p.y;
+                if (std::abs(height - 0.5f) < 1e-5f) continue;
+                (height > 0.5f ? above : below) += 1;
+                const Rgb wanted = height > 0.5f ? picture.albedo(x, y) : Rgb(1.0f);
+                wrong += max_component(picture.radiance(x, y) - wanted) > 1e-6f || max_component(wanted - picture.radiance(x, y)) > 1e-6f;
+            }
+        CHECK(above > 3000);
+        CHECK(below > 3000);
+        CHECK(wrong <= 3); // samples at a texture's border, by another rounding
+    }
+
+    TEST_CASE("every built-in shading shows a strip of samples as it shows each alone") {
+        // An object before the mesh in each strip makes the shader go sample by sample: hide it where nobody looks.
+        const Scene scene = varied_scene(60);
+        for (const View& view : {perspective(), orthographic()}) {
+            raster::Settings settings;
+            const raster::Prepared prepared = raster::prepare(scene, settings);
+            const Pinhole pinhole = CameraModel(view).through();
+            const std::vector<raster::SampleOffset> samples{{37, 201}};
+            const raster::PassView pass{pinhole, 0, raster::viewport_of(view, pinhole), samples};
+            const raster::TileGrid grid{{0, 0, view.width, view.height}};
+            raster::Geometry geometry;
+            process_geometry(prepared.data(), grid, pass, settings, geometry);
+            std::uint32_t quad = 0; // a number of another object
+            for (const raster::Run& run : geometry.triangles.runs)
+                if (!run.sphere && std::holds_alternative<QuadList>(geometry.triangles.shape(run))) quad = run.first_id;
+            for (const raster::Shading shading :
+                 {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat, raster::Shading::kToon,
+                  raster::Shading::kWireframe, raster::Shading::kNormal, raster::Shading::kAlbedo, raster::Shading::kDepth}) {
+                const auto program = raster::program(shading);
+                REQUIRE(program != nullptr);
+                int compared = 0, apart = 0;
+                for (std::size_t t = 0; t < grid.size(); ++t) {
+                    raster::DepthTile depths;
+                    cover(geometry, pass, samples[0], grid.tile(t), t, depths);
+                    const auto shader = program->for_tile(prepared.data(), geometry, pass, grid.tile(t));
+                    const raster::PixelRect& r = grid.tile(t);
+                    for (int y = r.y0; y + 2 <= r.y1; y += 2)
+                        for (int x = r.x0; x + 8 <= r.x1; x += 8) {
+                            raster::StripPlace place = raster::strip_place(depths, x, y);
+                            raster::StripOf<std::int32_t> ids;
+                            std::copy_n(place.ids, raster::kStrip, ids.v.begin());
+                            raster::StripColors together, alone;
+                            shader->shade(place, together);
+                            place.ids = ids.at(0);
+                            for (const std::size_t spoiled : {std::size_t{0}, std::size_t{15}}) {
+                                std::copy_n(raster::strip_place(depths, x, y).ids, raster::kStrip, ids.v.begin());
+                                ids[spoiled] = static_cast<std::int32_t>(quad);
+                                shader->shade(place, alone);
+                                for (std::size_t i = 0; i < raster::kStrip; ++i) {
+                                    if (i == spoiled || static_cast<std::uint32_t>(ids[i]) == raster::kNoTriangle) continue;
+                                    ++compared;
+                                    for (std::size_t c = 0; c < 3; ++c)
+                                        apart += !(std::abs(together[c][i] - alone[c][i]) <= 2e-4f * (1 + std::abs(alone[c][i])));
+                                }
+                            }
+                        }
+                }
+                CAPTURE(static_cast<int>(shading));
+                CHECK(compared > 50'000);
+                // Toon's bands and wires change within a pixel: a derivative's rounding shows there.
+                CHECK(apart <= compared / 2000);
+            }
+        }
+    }
+
+    TEST_CASE("flat: a triangle has one colour; Gouraud and Phong agree where triangles are small") {
+        const Scene coarse = varied_scene(12), fine = varied_scene(400);
+        const View view = perspective();
+        const auto picture = [&](const Scene& scene, raster::Shading shading) {
+            raster::Settings settings = with_hits();
+            settings.shading = shading;
+            return render(scene, view, settings);
+        };
+        const Rendering flat = picture(coarse, raster::Shading::kFlat);
+        int same = 0, pairs = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 1; x < view.width; ++x) {
+                const Hit &a = flat.hit(x - 1, y), &b = flat.hit(x, y);
+                if (!a.valid() || a.object != b.object || a.primitive != b.primitive ||
+                    std::holds_alternative<Sphere>(coarse.shapes[coarse.objects[a.object].shape]))
+                    continue;
+                ++pairs;
+                const Rgb difference = flat.radiance(x, y) - flat.radiance(x - 1, y);
+                same += std::abs(difference.r) + std::abs(difference.g) + std::abs(difference.b) < 1e-5f;
+            }
+        CHECK(pairs > 20'000);
+        CHECK(same == pairs);
+        const auto mean_apart = [&](const Scene& scene) {
+            const Rendering a = picture(scene, raster::Shading::kGouraud), b = picture(scene, raster::Shading::kPhong);
+            double sum = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) // the two smooth meshes
+                    if (a.hit(x, y).valid() && a.hit(x, y).object < 2)
+                        sum += std::abs(static_cast<double>(a.radiance(x, y).r - b.radiance(x, y).r));
+            return sum;
+        };
+        const double far = mean_apart(coarse), near = mean_apart(fine);
+        CHECK(near < far / 100);
+        CHECK(near > 0); // they are not the same program
+    }
+
+    TEST_CASE("wires: bright on an edge, black away from it, and a pixel wide") {
+        Scene scene;
+        Mesh mesh;
+        mesh.positions = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(-1, 1, 0)};
+        mesh.triangles = {{0, 1, 2}};
+        add(scene, mesh, Mat4(), Diffuse{{Rgb(1.0f)}});
+        finish_scene(scene);
+        View view{look({0, 0, 4}, {0, 0, 0}, 40), 101, 101};
+        view.camera.projection = Camera::Projection::kOrthographic;
+        view.camera.height = 3;
+        raster::Settings settings;
+        settings.shading = raster::Shading::kWireframe;
+        const Rendering picture = render(scene, view, settings);
+        // Down the column through x = −0.5: the lower edge and the hypotenuse. Each shows the half pixel that lies in the
+        // triangle, all of it seen along the normal: 1/2, and √2/2 where the edge runs at 45°.
+        const int column = static_cast<int>((1.5 - 0.5) / 3 * 101);
+        double sum = 0;
+        int dark = 0;
+        for (int y = 0; y < 101; ++y) {
+            sum += static_cast<double>(picture.radiance(column, y).r);
+            dark += picture.radiance(column, y).r == 0;
+        }
+        CHECK(dark >= 95);
+        // Within the ramp's width samples see 0, 1 or 2 steps of it: coverage of the inner half, ½ + ⅛ of a pixel by area.
+        CHECK(sum > 0.5);
+        CHECK(sum < 3);
+        const double d = 101.0 / 3; // pixels a metre
+        for (int y = 0; y < 101; ++y)
+            for (int x = 0; x < 101; ++x) {
+                const double px = (x + 0.5) / d - 1.5, py = 1.5 - (y + 0.5) / d; // in metres
+                const double inside = std::min({px + 1, py + 1, -(px + py) / std::sqrt(2.0)}) * d; // pixels to the nearest edge
+                if (std::abs(inside) < 0.02) continue;
+                const double wanted = inside < 0 ? 0 : std::clamp(1 - inside, 0.0, 1.0);
+                REQUIRE(static_cast<double>(picture.radiance(x, y).r) == doctest::Approx(wanted).epsilon(0.001).scale(1));
+            }
+    }
+
+    TEST_CASE("toon: few colours, and no others but on borders") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Diffuse{{Rgb(0.5f)}});
+        scene.lights = {SunLight{normalize(Vec3(-0.5f, -1, -0.7f)), Rgb(3.0f)}};
+        finish_scene(scene);
+        const View view{look({0, 0, 4}, {0, 0, 0}, 35), 240, 240};
+        raster::Settings settings = with_hits();
+        settings.shading = raster::Shading::kToon;
+        const Rendering picture = render(scene, view, settings);
+        std::vector<float> values;
+        int seen = 0, between = 0;
+        for (std::size_t i = 0; i < picture.hit.size(); ++i)
+            if (picture.hit[i].valid()) values.push_back(picture.radiance[i].r);
+        std::sort(values.begin(), values.end());
+        std::vector<float> bands; // values that a hundred samples share
+        for (std::size_t i = 0; i + 100 < values.size(); ++i)
+            if (values[i + 100] - values[i] < 1e-5f && (bands.empty() || values[i] - bands.back() > 1e-4f)) bands.push_back(values[i]);
+        for (const float v : values) {
+            ++seen;
+            between += std::none_of(bands.begin(), bands.end(), [&](float b) { return std::abs(v - b) < 1e-3f; });
+        }
+        CHECK(bands.size() == 6); // none to four quarters of the light, and the spot
+        for (std::size_t k = 1; k < 5; ++k)
+            CHECK(static_cast<double>(bands[k] - bands[k - 1]) == doctest::Approx(0.5 / kPiDouble * 3 / 4).epsilon(1e-4));
+        CHECK(seen > 20'000);
+        CHECK(between < seen / 20);
+    }
+}
