@@ -4,6 +4,7 @@
 #include "raster/depth_tile.h"
 #include "raster/geometry.h"
 
+#include "common/camera/pixel_footprint.h"
 #include "common/geometry/hit.h"
 
 #include <vector>
@@ -33,6 +34,10 @@ public:
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
     /// Camera-space −z of what the sample sees, in metres; infinity where that is nothing.
     double depth(int x, int y) const { return static_cast<double>(hit(x, y).t) / distance_per_depth_[index(x, y)]; }
+    /// Of a sample that sees something, where a pixel takes a number of them.
+    RayFootprint footprint(int x, int y, int samples_per_pixel) const {
+        return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
+    }
     /// near / depth; 0 where nothing is seen.
     float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
@@ -43,6 +48,7 @@ private:
     }
 
     PixelRect rect_;
+    Pinhole pinhole_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;

@@ -9,7 +9,7 @@ namespace {
 
 bool all_opaque(const Scene& scene, const Object& object) {
     return std::none_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
-        return std::holds_alternative<Dielectric>(scene.materials[material]);
+        return std::holds_alternative<Dielectric>(scene.materials[material]) || scene.maps[material].cuts_out();
     });
 }
 
@@ -21,6 +21,7 @@ bool any_emissive(const Scene& scene, const Object& object) {
 std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
+    if (scene.maps[object.materials.front()].bends_normals()) return std::nullopt;
     if (texture_slot(material).texture >= 0) return std::nullopt;
     return base_color(material, scene.textures, SurfacePoint{});
 }

@@ -185,10 +185,10 @@ TEST_SUITE("unit") {
         CHECK(std::get<Dielectric>(material_of("illum 7\nNi 9\nTf 0.9 1 1\n")).tint.value == Rgb(0.9f, 1, 1));
         const auto metal = std::get<Metal>(material_of("Kd 1 0.8 0.3\nPm 1\nPr 0.25\n"));
         CHECK(metal.reflectance.value == Rgb(1, 0.8f, 0.3f));
-        CHECK(metal.roughness == 0.25f);
+        CHECK(metal.roughness.value == 0.25f);
         const auto mirror = std::get<Metal>(material_of("Kd 0 0 0\nKs 0.9 0.9 0.9\nillum 3\nNs 30\n"));
         CHECK(mirror.reflectance.value == Rgb(0.9f));
-        CHECK(mirror.roughness == doctest::Approx(0.5)); // (2 / 32)^¼
+        CHECK(mirror.roughness.value == doctest::Approx(0.5)); // (2 / 32)^¼
         CHECK(std::holds_alternative<Diffuse>(material_of("illum 3\nKs 0 0 0\n")));
     }
 
