@@ -32,6 +32,9 @@ public:
     const PixelRect& rect() const { return rect_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
+    double distance_per_depth(int x, int y) const { return distance_per_depth_[index(x, y)]; }
+    /// Lets a sample see something else; what it saw.
+    Hit exchange(int x, int y, const Hit& hit);
     /// Camera-space −z of what the sample sees, in metres; infinity where that is nothing.
     double depth(int x, int y) const { return static_cast<double>(hit(x, y).t) / distance_per_depth_[index(x, y)]; }
     /// Of a sample that sees something, where a pixel takes a number of them.

@@ -4,6 +4,7 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
+#include "raster/layers.h"
 #include "raster/picture.h"
 #include "raster/shade.h"
 
@@ -36,6 +37,7 @@ struct Frame {
     const Settings& settings;
     TileGrid grid;
     Geometry& geometry;
+    Geometry* layers; ///< of the surfaces that may be seen through; null: there are none
     Account& account;
     Progress& progress;
     Control& control;
@@ -52,6 +54,10 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
                              .samples = pass.samples};
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
+    if (frame.layers != nullptr) {
+        process_layers(frame.data, frame.grid, pass_view, frame.settings, *frame.layers);
+        frame.account.add(*frame.layers);
+    }
     const Stopwatch watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
@@ -69,11 +75,16 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
     for (const SampleOffset offset : view.samples) {
         Stopwatch watch;
         cover(frame.geometry, view, offset, rect, index, depths);
-        const HitTile tile(depths, frame.geometry, view);
+        HitTile tile(depths, frame.geometry, view);
+        std::optional<Layers> layers;
+        if (frame.layers != nullptr)
+            layers.emplace(frame.data, frame.settings, *frame.layers, view, offset, index, tile);
         frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
         for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                picture.add(tile, x, y, shade(frame.data, frame.settings, tile, x, y));
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                const Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
+                picture.add(tile, x, y, layers ? layers->over(x, y, shaded) : shaded);
+            }
         frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
@@ -99,6 +110,17 @@ template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
     if (image.width() != view.width || image.height() != view.height) image = Image<Pixel>(view.width, view.height);
 }
 
+/// Where surfaces have holes: what is partly there counts as not there.
+void keep_layered_nearness(const Frame& frame, const PassView& view, std::size_t index, ImageFloat& picture) {
+    const PixelRect rect = frame.grid.tile(index);
+    DepthTile depths;
+    cover(frame.geometry, view, view.samples.front(), rect, index, depths);
+    HitTile tile(depths, frame.geometry, view);
+    const Layers layers(frame.data, frame.settings, *frame.layers, view, view.samples.front(), index, tile);
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) picture(x, y) = tile.nearness(x, y);
+}
+
 /// A single sample a pixel, straight to what a display or a shadow map takes.
 void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                     Rendering& result) {
@@ -111,7 +133,9 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
         frame.account.picture_bytes = result.srgb.size() * sizeof(Rgba8);
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        if (depths_only)
+        if (depths_only && frame.layers != nullptr)
+            keep_layered_nearness(frame, pass_view, i, result.nearness);
+        else if (depths_only)
             keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
         else
             display_tile(frame.data, frame.settings, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
@@ -131,9 +155,12 @@ void render(const Prepared& prepared, const View& view, const Settings& settings
     Account account;
     Progress progress(control, grid.size() * passes.size());
     GeometryLoan geometry(*data.geometries);
-    const Frame frame{data, used, grid, *geometry, account, progress, control};
+    GeometryLoan layers(*data.geometries);
+    const Frame frame{data,    used,     grid,   *geometry, data.has_layers() ? &*layers : nullptr,
+                      account, progress, control};
 
-    if (settings.output != Output::kRadiance && used.samples_per_pixel == 1) {
+    const bool blends = data.has_layers() && settings.output == Output::kSrgb8;
+    if (settings.output != Output::kRadiance && used.samples_per_pixel == 1 && !blends) {
         render_display(frame, camera, view, passes.front(), result);
         result.statistics = {};
     } else {

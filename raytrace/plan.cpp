@@ -68,6 +68,8 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
         skip("textures", "no material has one: each BSDF is made once, not at each hit");
     else if (constant > 0)
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
+    if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
+    if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
     if (!plan.pixel) skip("texture footprints", "no material has a picture that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");

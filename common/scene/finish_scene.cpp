@@ -1,5 +1,6 @@
 // What follows from a scene's description, worked out once for both pipelines.
 #include "common/scene/bake.h"
+#include "common/scene/lamp_texture.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -95,7 +96,7 @@ void add_surface_lights(Scene& scene) {
             std::optional<SurfaceLight> light = surface_light(shape, object.to_world, p);
             if (!light) continue;
             light->two_sided = lamp->two_sided;
-            light->radiance = lamp->radiance;
+            light->radiance = mean_radiance(scene, o, p, *lamp);
             light->object = o;
             light->primitive = p;
             scene.lights.push_back(*light);
@@ -126,6 +127,8 @@ void note_material(const Scene& scene, const Material& material, SceneNeeds& nee
         needs.specular = needs.specular || smooth || varies;
         needs.glossy = needs.glossy || !smooth;
     }
+    if (const Emissive* lamp = emitter(material); lamp != nullptr && lamp->radiance_texture >= 0)
+        needs.lamp_textures = true;
     if (std::holds_alternative<Dielectric>(material)) needs.specular = needs.transmission = true;
     for_each_texture(material, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
 }

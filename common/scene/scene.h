@@ -36,6 +36,7 @@ struct SceneNeeds {
     bool textures = false, image_textures = false;
     bool footprints = false;   ///< an image texture is filtered over what a sample stands for
     bool normal_maps = false;  ///< normal or bump maps
+    bool lamp_textures = false; ///< an emissive surface emits a picture
     bool alpha = false;        ///< cut-outs, or surfaces that stop a part of the light only
     bool motion = false, lens = false;
     bool environment = false; ///< it is not black
