@@ -114,9 +114,12 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
     const float distance = dot(abs(point.ng), point.p_error);
     Vec3 offset = point.ng * distance, start = point.p;
     bool below = dot(w, point.ng) < 0;
-    if (const float seen = dot(point.lift, point.ng); seen != 0 && dot(w, point.horizon) * seen > 0) {
-        start += point.lift;
-        below = seen < 0;
+    if (point.lift != Vec3()) {
+        const float seen = dot(point.lift, point.ng);
+        if (dot(w, point.horizon) * seen > 0) {
+            start += point.lift;
+            below = seen < 0;
+        }
     }
     if (below) offset = -offset;
     Vec3 origin = start + offset;
@@ -183,10 +186,14 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     }
     if (!is_finite(point.ns)) point.ns = point.ng;
     if (dot(point.ns, point.ng) < 0) point.ns = -point.ns;
-    // No farther than the facets' own error, the smooth surface is the flat one.
-    const bool bulges = abs(dot(point.lift, point.ng)) > dot(abs(point.ng), point.p_error);
-    if (!bulges) point.lift = Vec3();
-    point.horizon = bulges ? point.ns : point.ng;
+    point.horizon = point.ng;
+    if (point.lift != Vec3()) { // no farther than the facets' own error, the smooth surface is the flat one
+        const bool bulges = abs(dot(point.lift, point.ng)) > dot(abs(point.ng), point.p_error);
+        if (bulges)
+            point.horizon = point.ns;
+        else
+            point.lift = Vec3();
+    }
     return point;
 }
 

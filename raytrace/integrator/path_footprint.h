@@ -2,9 +2,7 @@
 // Shader and Texture Level of Detail Using Ray Cones»).
 #pragma once
 
-#include "raytrace/integrator/vertex.h"
-
-#include <cmath>
+#include "raytrace/plan.h"
 
 namespace duet::raytrace {
 
@@ -17,41 +15,21 @@ public:
     explicit PathFootprint(const RenderPlan& plan) : pixel_(plan.pixel ? &*plan.pixel : nullptr) {}
 
     /// The footprint of the ray at a hit at distance t, or null: not needed. Once for each ray of the path, in order.
-    const RayFootprint* arrive(const Ray& ray, float t) {
-        if (pixel_ == nullptr) return nullptr;
-        if (first_)
-            begin(ray, t);
-        else
-            widen(ray, t);
-        return &footprint_;
-    }
+    const RayFootprint* arrive(const Ray& ray, float t) { return pixel_ == nullptr ? nullptr : widen(ray, t); }
     /// The path goes on from there in a direction drawn with a density by solid angle, or in the only one.
     void scatter(float pdf, bool specular) {
-        if (pixel_ == nullptr || specular) return;
-        constexpr float kWidest = 0.5f; // radians: what is seen by way of diffuse surfaces keeps some of its detail
-        const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * pixel_->scale();
-        spread_ = max(spread_, min(angle, kWidest));
+        if (pixel_ != nullptr && !specular) spread(pdf);
     }
 
 private:
-    void begin(const Ray& ray, float t) {
-        first_ = false;
-        footprint_ = pixel_->at(ray, t);
-        width_ = std::sqrt(length(footprint_.dx) * length(footprint_.dy));
-        // Straight rays widen in proportion to their length, but for an orthographic camera's, which don't.
-        const RayFootprint farther = pixel_->at(ray, 2 * t);
-        spread_ = (std::sqrt(length(farther.dx) * length(farther.dy)) - width_) / t;
-    }
-    void widen(const Ray& ray, float t) {
-        width_ += spread_ * t;
-        const Frame frame = frame_from_normal(ray.direction);
-        footprint_ = {frame.to_world({width_, 0, 0}), frame.to_world({0, width_, 0})};
-    }
+    // Not inlined: the path's loop is for scenes without, too.
+    const RayFootprint* widen(const Ray& ray, float t);
+    void spread(float pdf);
 
     const PixelFootprint* pixel_;
     RayFootprint footprint_;
     bool first_ = true;
-    float width_ = 0, spread_ = 0;
+    float width_ = 0, spread_ = 0; ///< of the cone at the last vertex, metres; its growth a metre
 };
 
 } // namespace duet::raytrace
