@@ -1,6 +1,7 @@
 // What a render decides once, before its loop: which parts of path tracing this scene, view and settings need.
 #pragma once
 
+#include "common/camera/pixel_footprint.h"
 #include "common/film/rendering.h"
 #include "raytrace/prepare.h"
 #include "raytrace/render.h"
@@ -18,12 +19,14 @@ struct RenderPlan {
     const LightChooser* lights = nullptr;                    ///< null: no light is sampled
     const Environment* environment = nullptr;                ///< null: rays that escape find nothing
     const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material: made once, where no texture varies it
+    std::vector<SurfaceDetail> details; ///< by material: what its surface points need
     bool emission = false;                                   ///< surfaces that are hit may emit
     bool hits_find_light = false;   ///< a ray may find light by itself: an emitter, or the environment
     bool mirror_light = false;      ///< light is sampled at mirrors and glass, too, which cannot reflect it
     bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
     int max_depth = 0;
     bool russian_roulette = false;
+    std::optional<PixelFootprint> pixel; ///< of a camera ray; empty where no texture is filtered
     bool lens = false;   ///< rays start all over the lens
     bool motion = false; ///< rays have times of their own
 

@@ -55,7 +55,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     const RenderPlan plan(prepared.data(), view, settings);
     FilmKeeper keeper(plan.scene, view, settings);
     Film& film = keeper.film();
-    AovBuffers aovs(plan.scene, view, settings.aovs);
+    AovBuffers aovs(plan, view, settings.aovs);
     RayCounts rays;
     const PassTarget target{plan, view, settings, control, keeper, aovs, rays};
 

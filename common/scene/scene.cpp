@@ -12,7 +12,9 @@ ObjectTransform object_transform(const Object& object, float time) {
     return {to_world, Mat4(inverse_affine(Mat4d(to_world)))};
 }
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
+namespace {
+
+SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
     SurfacePoint point;
@@ -25,6 +27,29 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, S
     point.object = hit.object;
     point.material = material_index(scene, hit.object, hit.primitive);
     return point;
+}
+
+} // namespace
+
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+                           SurfaceDetail detail) {
+    SurfacePoint point = plain_surface_point(scene, ray, hit, detail);
+    if (scene.needs.footprints && footprint != nullptr) set_footprint(*footprint, ray.direction, point);
+    if (scene.needs.normal_maps) bend_normal(scene.textures, scene.maps[point.material], ray.direction, point);
+    return point;
+}
+
+float opacity(const Scene& scene, const Ray& ray, const Hit& hit) {
+    const SurfaceMaps& maps = scene.maps[material_index(scene, hit.object, hit.primitive)];
+    if (!maps.cuts_out()) return 1;
+    if (maps.opacity.constant()) return opacity(scene.textures, maps, SurfacePoint{});
+    return opacity(scene.textures, maps, plain_surface_point(scene, ray, hit, SurfaceDetail::kAll));
+}
+
+SurfaceDetail surface_detail(const Scene& scene, std::uint32_t material) {
+    bool textured = scene.maps[material].bends_normals();
+    for_each_texture(scene.materials[material], [&](std::int32_t texture) { textured = textured || texture >= 0; });
+    return textured ? SurfaceDetail::kAll : SurfaceDetail::kWithoutUv;
 }
 
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive) {

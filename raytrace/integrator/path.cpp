@@ -3,6 +3,7 @@
 // it is the naive path tracer, in which only chance finds the lights.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
@@ -71,7 +72,7 @@ private:
 template <typename Sink> class Path {
 public:
     Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink) {}
+        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Ray ray, Hit hit) {
@@ -81,7 +82,7 @@ public:
                 add_environment(ray.direction, depth);
                 break;
             }
-            const Vertex vertex(plan_, ray, hit);
+            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
             if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
@@ -118,7 +119,7 @@ private:
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
         if (!plan_.emission) return;
-        const Rgb emission = emitted(vertex.material, vertex.point, -direction);
+        const Rgb emission = emitted(vertex.material, plan_.scene.textures, vertex.point, -direction);
         if (is_black(emission)) return;
         float weight = 1;
         if (!departure_.certain)
@@ -165,6 +166,7 @@ private:
         throughput_ *= s->weight;
         if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, throughput_);
         if (s->transmitted) note_refraction(vertex);
+        footprint_.scatter(s->pdf, s->specular);
         // Each number is written where it is read from next: a whole ray copied right after it was put together would
         // wait for its parts.
         departure_.certain = s->specular || plan_.lights == nullptr;
@@ -213,6 +215,7 @@ private:
     Rgb throughput_{1.0f};
     float refraction_ = 1; // what the path's refractions have scaled its throughput by
     Departure departure_;
+    PathFootprint footprint_;
 };
 
 } // namespace

@@ -4,10 +4,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// Textures alone ask for more than position and normals.
-SurfaceDetail detail(const RenderPlan& plan, std::uint32_t material) {
-    return (*plan.bsdfs)[material] ? SurfaceDetail::kWithoutUv : SurfaceDetail::kAll;
-}
+const RayFootprint* pointer(const std::optional<RayFootprint>& footprint) { return footprint ? &*footprint : nullptr; }
 
 Vec3 towards_viewer(const Frame& frame, Vec3 ng, Vec3 direction) {
     const Vec3 wo = -direction; // unit: all rays in the world are
@@ -22,11 +19,23 @@ const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, con
 
 } // namespace
 
-Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit)
-    : Vertex(plan, ray, hit, material_index(plan.scene, hit.object, hit.primitive)) {}
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    return plan.pixel ? std::optional(plan.pixel->at(ray, hit.t)) : std::nullopt;
+}
 
-Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t material_index)
-    : point(surface_point(plan.scene, ray, hit, detail(plan, material_index))),
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    return surface_point(plan.scene, ray, hit, pointer(camera_footprint(plan, ray, hit)));
+}
+
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit)
+    : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit))) {}
+
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint)
+    : Vertex(plan, ray, hit, footprint, material_index(plan.scene, hit.object, hit.primitive)) {}
+
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+               std::uint32_t material_index)
+    : point(surface_point(plan.scene, ray, hit, footprint, plan.details[material_index])),
       material(plan.scene.materials[material_index]), frame(frame_from_normal(point.ns)),
       wo(towards_viewer(frame, point.ng, ray.direction)),
       bsdf(made_or_constant(plan, material_index, point, made_)) {}

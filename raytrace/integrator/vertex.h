@@ -8,7 +8,10 @@ namespace duet::raytrace {
 
 class Vertex {
 public:
-    /// The vertex at a valid hit of a ray. Refers to the plan.
+    /// The vertex at a valid hit of a ray, with the ray's footprint there, or null where the plan needs none. Refers to
+    /// the plan.
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint);
+    /// Of a camera ray.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
     Vertex(const Vertex&) = delete; // bsdf may point into it
     Vertex& operator=(const Vertex&) = delete;
@@ -36,12 +39,20 @@ public:
         return {point.p, wo.z < 0 ? -point.ng : point.ng};
     }
     /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
-    /// frame.
-    bool consistent(Vec3 wi, Vec3 local) const { return dot(wi, point.ng) * local.z > 0; }
+    /// frame. On the viewer's side a surface that bulges has a horizon of its own.
+    bool consistent(Vec3 wi, Vec3 local) const {
+        return dot(wi, same_hemisphere(wo, local) ? point.horizon : point.ng) * local.z > 0;
+    }
 
 private:
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t material_index);
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+           std::uint32_t material_index);
 };
+
+/// The footprint of a camera ray at its hit; empty where the plan needs none.
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+/// The surface point that a camera ray hits.
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit);
 
 /// A ray that leaves the vertex towards w (world, unit), starting off the surface.
 inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {
