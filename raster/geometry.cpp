@@ -1,5 +1,7 @@
 #include "raster/geometry.h"
 
+#include "raster/layers.h"
+
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"

@@ -218,34 +218,73 @@ private:
     const std::array<Axes, kCorners>& corners_;
 };
 
-/// The closest hits of a coherent packet's rays, as `find_closest` finds them for each. `instance(ray)` makes what
-/// `find_closest` asks for instances' hits.
-template <typename Instance> class PacketTraversal {
+/// The nearest hits of a packet's rays so far; t is the ray's end where there is none.
+struct PacketHits {
+    static constexpr std::size_t kSize = RayPacket::kSize;
+    template <typename T> using PerRay = std::array<T, kSize>;
+
+    alignas(64) PerRay<float> t, u, v;
+    alignas(64) PerRay<std::uint32_t> object, primitive;
+
+    /// None yet.
+    explicit PacketHits(RayPacket::Batch ends) {
+        ends.store_aligned(t.data());
+        u.fill(0);
+        v.fill(0);
+        object.fill(kNoObject);
+        primitive.fill(0);
+    }
+
+    Hit get(std::size_t ray) const { return {object[ray], primitive[ray], u[ray], v[ray], t[ray]}; }
+    void set(std::size_t ray, const Hit& hit) {
+        object[ray] = hit.object;
+        primitive[ray] = hit.primitive;
+        u[ray] = hit.u;
+        v[ray] = hit.v;
+        t[ray] = hit.t;
+    }
+    void store(std::span<Hit, kSize> hits) const {
+        static_assert(offsetof(Hit, object) == 0 && offsetof(Hit, primitive) == 4 && offsetof(Hit, u) == 8 &&
+                      offsetof(Hit, v) == 12);
+        const auto bits = [](const auto& values) {
+            return RayPacket::Batch::load_aligned(reinterpret_cast<const float*>(values.data()));
+        };
+        store_columns<kSize>(std::array{bits(object), bits(primitive), bits(u), bits(v)},
+                             [&](std::size_t ray) { return reinterpret_cast<float*>(&hits[ray]); });
+        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray].t = object[ray] == kNoObject ? kInfinity : t[ray];
+    }
+};
+
+/// What a hierarchy without instances asks of them.
+struct NoInstances {
+    auto operator()(const Ray&) const {
+        return [](const BvhInstance&, Hit&) { return false; };
+    }
+    void operator()(const BvhInstance&, unsigned, PacketHits&) const {}
+};
+
+/// Finds for a coherent packet's rays what `find_closest` finds for each.
+template <typename Instances> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
 
-    PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, const Instance& instance)
-        : bvh_(bvh), packet_(packet), rays_(rays), instance_(instance) {
-        object_.fill(kNoObject);
-        primitive_.fill(0);
-        u_.fill(0);
-        v_.fill(0);
-        xsimd::min(packet.t_max(), Batch(std::numeric_limits<float>::max())) // what overflowed is no distance
-            .store_aligned(t_.data());
-        last_ = highest(ends());
-    }
+    /// `active`: a bit for each ray that counts. object: of the primitives where it is not kNoObject (an instance's).
+    /// instances(ray) makes what `find_closest` asks for one ray's hits of instances, instances(i, rays, best) finds
+    /// those of several rays.
+    PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, unsigned active,
+                    std::uint32_t object, const Instances& instances, PacketHits& best)
+        : bvh_(bvh), packet_(packet), rays_(rays), active_(active), object_(object), instances_(instances), best_(best),
+          last_(highest(ends())) {}
 
-    void run(std::span<Hit, kSize> hits) {
+    void run() {
         if (bvh_.nodes.empty())
-            for (const BvhRef leaf : bvh_.list) test_leaf(leaf, kAll);
+            for (const BvhRef leaf : bvh_.list) test_leaf(leaf, active_);
         else
             traverse();
-        store_hits(hits);
     }
 
 private:
     using Batch = RayPacket::Batch;
-    static constexpr unsigned kAll = (1u << kSize) - 1;
     // Up to so many rays are tested against a whole block of polygons, more with each polygon at a time.
     static constexpr int kFewRays = kSize / 2;
     // Rays that are tested together against a block, each in its share of the lanes.
@@ -261,14 +300,14 @@ private:
 
     void traverse() {
         BvhRef next = BvhRef::node(0);
-        unsigned active = kAll;
+        unsigned active = active_;
         for (;;) {
             while (active != 0 && !next.is_leaf()) active = step(next);
             if (active != 0) test_leaf(next, active);
             do {
                 if (size_ == 0) return;
                 --size_;
-                active = lane_bits(Batch::load_aligned(stack_[size_].entry.data()) <= ends());
+                active = lane_bits(Batch::load_aligned(stack_[size_].entry.data()) <= ends()) & active_;
             } while (active == 0);
             next = stack_[size_].child;
         }
@@ -287,7 +326,7 @@ private:
         for (unsigned children = entered; children != 0; children &= children - 1) {
             const auto child = static_cast<std::size_t>(std::countr_zero(children));
             const auto [entry, enters] = packet_.enter(node, child, ends());
-            const unsigned rays = lane_bits(enters);
+            const unsigned rays = lane_bits(enters) & active_;
             if (rays == 0) continue;
             std::size_t i = size_++;
             for (; i > bottom && stack_[i - 1].nearest < nearest[child]; --i) stack_[i] = stack_[i - 1];
@@ -307,12 +346,15 @@ private:
             test(bvh_.triangles[leaf.index()], active);
         } else if (leaf.kind() == PrimitiveKind::kQuad) {
             test(bvh_.quads[leaf.index()], active);
+        } else if (leaf.kind() == PrimitiveKind::kInstance && std::popcount(active) > kFewRays) {
+            instances_(bvh_.instances[leaf.index()], active, best_);
+            nearer_ = true;
         } else {
             for (; active != 0; active &= active - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(active));
-                const auto instance = instance_(rays_[ray]);
-                Hit hit = best(ray);
-                LeafTest<false, decltype(instance)>(bvh_, rays_[ray], kNoObject, instance)(leaf, hit);
+                const auto instance = instances_(rays_[ray]);
+                Hit hit = best_.get(ray);
+                LeafTest<false, decltype(instance)>(bvh_, rays_[ray], object_, instance)(leaf, hit);
                 set_best(ray, hit);
             }
         }
@@ -353,7 +395,7 @@ private:
                 rays[i] = active != 0 ? static_cast<std::size_t>(std::countr_zero(active)) : rays[0];
                 active &= active - 1;
             }
-            const CandidateTest<Batch> test(packet_.shears(rays), vertices, RayPacket::share(t_, rays));
+            const CandidateTest<Batch> test(packet_.shears(rays), vertices, RayPacket::share(best_.t, rays));
             unsigned candidates = test.candidates() & ~known;
             if (candidates == 0) continue;
             const Lanes t(test.t()), u(test.u()), v(test.v());
@@ -362,7 +404,7 @@ private:
                 const std::size_t lane = i % kBlockSize, ray = rays[i / kBlockSize];
                 if (!(test.certain() >> i & 1))
                     consider_exactly(block, lane, ray);
-                else if (t[i] > rays_[ray].t_min && t[i] <= t_[ray])
+                else if (t[i] > rays_[ray].t_min && t[i] <= best_.t[ray])
                     consider(block, lane, ray, {t[i], u[i], v[i]});
             }
         }
@@ -390,11 +432,11 @@ private:
     // The hits become these rays' best ones.
     void take(unsigned rays, const CandidateTest<Batch>& test, std::uint32_t object, std::uint32_t primitive) {
         nearer_ = true;
-        store_lanes(test.t(), rays, t_.data());
-        store_lanes(test.u(), rays, u_.data());
-        store_lanes(test.v(), rays, v_.data());
-        store_lanes(object, rays, object_);
-        store_lanes(primitive, rays, primitive_);
+        store_lanes(test.t(), rays, best_.t.data());
+        store_lanes(test.u(), rays, best_.u.data());
+        store_lanes(test.v(), rays, best_.v.data());
+        store_lanes(name(object), rays, best_.object);
+        store_lanes(primitive, rays, best_.primitive);
     }
     template <typename Block>
     void consider_each(unsigned rays, const Block& block, std::size_t lane, const CandidateTest<Batch>& test) {
@@ -406,44 +448,29 @@ private:
     }
     template <typename Block> void consider_exactly(const Block& block, std::size_t lane, std::size_t ray) {
         Ray ended = rays_[ray];
-        ended.t_max = t_[ray];
+        ended.t_max = best_.t[ray];
         if (const auto hit = exact_hit(ShearedRay(ended), block, lane)) consider(block, lane, ray, *hit);
     }
     template <typename Block>
     void consider(const Block& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
-        const Hit found{block.object[lane], block.primitive[lane], hit.u, hit.v, hit.t};
-        if (precedes(found, best(ray))) set_best(ray, found);
+        const Hit found{name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t};
+        if (precedes(found, best_.get(ray))) set_best(ray, found);
     }
 
-    Hit best(std::size_t ray) const { return {object_[ray], primitive_[ray], u_[ray], v_[ray], t_[ray]}; }
     void set_best(std::size_t ray, const Hit& hit) {
-        object_[ray] = hit.object;
-        primitive_[ray] = hit.primitive;
-        u_[ray] = hit.u;
-        v_[ray] = hit.v;
-        t_[ray] = hit.t;
+        best_.set(ray, hit);
         nearer_ = true;
     }
-    Batch ends() const { return Batch::load_aligned(t_.data()); }
-
-    void store_hits(std::span<Hit, kSize> hits) const {
-        static_assert(offsetof(Hit, object) == 0 && offsetof(Hit, primitive) == 4 && offsetof(Hit, u) == 8 &&
-                      offsetof(Hit, v) == 12);
-        const auto bits = [](const auto& values) {
-            return Batch::load_aligned(reinterpret_cast<const float*>(values.data()));
-        };
-        store_columns<kSize>(std::array{bits(object_), bits(primitive_), bits(u_), bits(v_)},
-                             [&](std::size_t ray) { return reinterpret_cast<float*>(&hits[ray]); });
-        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray].t = object_[ray] == kNoObject ? kInfinity : t_[ray];
-    }
+    Batch ends() const { return Batch::load_aligned(best_.t.data()); }
+    std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
     const RayPacket& packet_;
     std::span<const Ray, kSize> rays_;
-    const Instance& instance_;
-    alignas(sizeof(Batch)) RayPacket::Values t_, u_,
-        v_; // of the best hits so far; t: of the rays' ends, where there is none
-    alignas(sizeof(Batch)) std::array<std::uint32_t, kSize> object_, primitive_;
+    unsigned active_;
+    std::uint32_t object_;
+    const Instances& instances_;
+    PacketHits& best_;
     float last_;          // the greatest t
     bool nearer_ = false; // whether one has got less since
     std::size_t size_ = 0;
