@@ -20,7 +20,7 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
     Rgb radiance = s->radiance;
     if (scene.needs.lamp_textures)
         if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen->index]))
-            radiance = radiance_towards(scene, *surface, p, s->wi, s->distance);
+            radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
     return Arrival{s->wi,    radiance,    s->pdf * chosen->probability,
                    s->delta, s->distance, static_cast<std::int64_t>(chosen->index)};
 }
