@@ -85,13 +85,13 @@ void LightBounds::extend(const LightBounds& other) {
     // The smallest cone about both (Conty Estevez and Kulla 2018, algorithm 1).
     const float a = std::acos(clamp(cos_normals, -1.0f, 1.0f)), b = std::acos(clamp(other.cos_normals, -1.0f, 1.0f));
     const float between = angle_between(axis, other.axis);
+    constexpr float kRoom = 1e-3f; // for the rounding of angles: near 0° and 180° a cosine keeps only half of the digits
     if (a >= between + b) return;
     if (b >= between + a) {
         axis = other.axis;
         cos_normals = other.cos_normals;
         return;
     }
-    constexpr float kRoom = 1e-5f; // for the rounding of angles
     const float half = (a + between + b) / 2 + kRoom;
     if (half >= kPi || between > kPi - 1e-3f) {
         cos_normals = -1;

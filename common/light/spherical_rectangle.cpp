@@ -25,15 +25,15 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d u, Vec3d v) {
     const auto z_of_normal = [this](double to_edge) { return to_edge / std::sqrt(to_edge * to_edge + z0_ * z0_); };
     const double n0 = z_of_normal(-y0_), n1 = z_of_normal(x1_), n2 = z_of_normal(y1_), n3 = z_of_normal(-x0_);
     const auto inner_angle = [](double a, double b) { return std::acos(std::clamp(-a * b, -1.0, 1.0)); };
-    after_upper_ = 2 * kPiDouble - inner_angle(n1, n2) - inner_angle(n2, n3);
-    solid_angle_ = inner_angle(n3, n0) + inner_angle(n0, n1) - after_upper_;
+    beyond_left_ = 2 * kPiDouble - inner_angle(n2, n3) - inner_angle(n3, n0);
+    solid_angle_ = inner_angle(n0, n1) + inner_angle(n1, n2) - beyond_left_;
     b0_ = n0;
     b1_ = n2;
 }
 
 Vec3d SphericalRectangle::sample(Vec2d u) const {
     // The plane through the y axis that cuts off the part u.x of the solid angle (eq. 22 to 24).
-    const double phi = u.x * solid_angle_ + after_upper_;
+    const double phi = u.x * solid_angle_ + beyond_left_;
     const double f = (std::cos(phi) * b0_ - b1_) / std::sin(phi);
     const double c = std::clamp(std::copysign(1 / std::sqrt(f * f + b0_ * b0_), f), -1.0, 1.0);
     const double x = std::clamp(-c * z0_ / safe_sqrt(1 - c * c), x0_, x1_);

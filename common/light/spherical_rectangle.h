@@ -22,7 +22,7 @@ private:
     Vec3d x_, y_, z_;                 // the rectangle's axes, z_ so that it lies at negative z
     double x0_, x1_, y0_, y1_, z0_;   // its extent along them
     double b0_, b1_;                  // the z of the normals of the planes through the edges at y0 and y1
-    double solid_angle_, after_upper_; // the latter: 2π less the inner angles at y1 (k in the paper)
+    double solid_angle_, beyond_left_; // the latter: 2π less the inner angles at x0 (k in the paper)
 };
 
 } // namespace duet

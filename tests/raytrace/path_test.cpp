@@ -61,7 +61,7 @@ TEST_SUITE("unit") {
         int compared = 0;
         for (std::uint32_t i = 0; i < 20000; ++i) {
             sampler.start(0, 0, i);
-            const Vec3 p(0.5f, 0, 0.5f);
+            const Vec3 p(-0.9f, 0, 1.4f);
             const LightReceiver receiver{p, i % 2 == 0 ? Vec3(0, 1, 0) : Vec3()};
             const float choice = sampler.get_1d();
             const auto arrival = sample_arrival(scene, lights, receiver, choice, sampler.get_2d());
