@@ -1,12 +1,20 @@
 #include "raster/edges.h"
 
-#include "raster/one_sample.h"
 #include "raster/strip_samples.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
+namespace {
+
+/// The object that a number is of.
+std::uint32_t object_of(const Geometry& geometry, std::uint32_t id) {
+    const Run& run = geometry.triangles.run_of(id);
+    return run.sphere ? geometry.spheres[run.object].object : geometry.triangles.objects[run.object].object;
+}
+
+} // namespace
 
 void SeenPicture::add(const DepthTile& tile, const Geometry& geometry, StripShader& normals) {
     const PixelRect& r = tile.rect();

@@ -7,96 +7,113 @@ Vec3 to_object_normal(const ObjectView& object, Vec3 n) {
     return object.identity ? n : transform_normal(object.to_world, n);
 }
 
-/// bᵢ = eᵢ / Σe with eᵢ linear in the pixel: see StripSolver::solve_lanes.
-void set_weights(SampleCorners& sample, const Interpolation& of, Vec2d pixel, Piece piece) {
-    const Interpolated at = of.at(pixel, piece);
-    const std::array<double, 3> b{at.b0 / at.sum, at.b1 / at.sum, at.b2 / at.sum};
-    const Vec3d sum = of.e[0] + of.e[1] + of.e[2];
-    for (std::size_t k = 0; k < 3; ++k) {
-        sample.weights[k] = static_cast<float>(b[k]);
-        sample.dx[k] = static_cast<float>((of.e[k].x - b[k] * sum.x) / at.sum);
-        sample.dy[k] = static_cast<float>((of.e[k].y - b[k] * sum.y) / at.sum);
-    }
+/// Changes of the point of a plane that a camera ray meets, as the ray goes to the next pixel.
+struct PointSteps {
+    Vec3d dx, dy;
+};
+/// With o + t·d = p, all linear in the pixel but t, and n·p constant: t' = −n·(o' + t·d') / n·d.
+PointSteps point_steps(const Pinhole& pinhole, Vec2d pixel, double t, Vec3d n) {
+    const Vec3d d = pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y;
+    const auto step = [&](Vec3d origin_step, Vec3d direction_step) {
+        const Vec3d along = origin_step + direction_step * t;
+        return along - d * (dot(n, along) / dot(n, d));
+    };
+    return {step(pinhole.origin_dx, pinhole.direction_dx), step(pinhole.origin_dy, pinhole.direction_dy)};
 }
 
-void set_quad(SampleCorners& sample, const Shape& shape, const WholeTriangle& whole) {
-    const Corners corners = primitive_corners(shape, sample.hit.primitive);
-    const std::size_t half = whole.piece == Piece::kQuadFirst ? 0 : 1;
+/// Barycentrics of the second and third corner change by a vector in the triangle's plane so: it times these.
+void set_steps(HitCorners& at, const PassView& view, Vec2d pixel, const ObjectView& object) {
+    const std::array<Vec3d, 3> p{Vec3d(object.point(at.p[0])), Vec3d(object.point(at.p[1])), Vec3d(object.point(at.p[2]))};
+    const Vec3d ab = p[1] - p[0], ac = p[2] - p[0], n = cross(ab, ac);
+    const PointSteps steps = point_steps(view.pinhole, pixel, at.depth, n);
+    const auto weigh = [&](Vec3d step, std::array<float, 3>& weights) {
+        const double b1 = dot(cross(step, ac), n) / dot(n, n), b2 = dot(cross(ab, step), n) / dot(n, n);
+        weights = {static_cast<float>(-b1 - b2), static_cast<float>(b1), static_cast<float>(b2)};
+    };
+    weigh(steps.dx, at.dx);
+    weigh(steps.dy, at.dy);
+}
+
+void set_weights(HitCorners& at, double b1, double b2) {
+    at.weights = {static_cast<float>(1 - b1 - b2), static_cast<float>(b1), static_cast<float>(b2)};
+}
+
+/// The half of a quad that is hit, as the rasterizer draws it: corner, +u, +u+v, or corner, +u+v, +v.
+void set_quad(HitCorners& at, const Shape& shape, const Hit& hit) {
+    const Corners corners = primitive_corners(shape, hit.primitive);
+    const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+    const std::size_t half = u >= v ? 0 : 1;
     constexpr std::array<Vec2, 4> kCorners{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
     const std::array<std::size_t, 3> used{0, 1 + half, 2 + half};
     const std::size_t diagonal = half == 0 ? 1 : 2; // the corner that it is opposite to
     for (std::size_t k = 0; k < 3; ++k) {
-        sample.p[k] = corners.p[used[k]];
-        sample.uv[k] = kCorners[used[k]];
-        sample.edges[k] = {};
-        sample.edges[k][k] = sample.edges[k][diagonal] = 1;
+        at.p[k] = corners.p[used[k]];
+        at.uv[k] = kCorners[used[k]];
+        at.edges[k] = {};
+        at.edges[k][k] = at.edges[k][diagonal] = 1;
     }
+    at.middle = (corners.p[0] + corners.p[2]) * 0.5f; // the whole quad's
+    if (half == 0)
+        set_weights(at, u - v, v);
+    else
+        set_weights(at, u, v - u);
 }
 
-void set_triangle(SampleCorners& sample, const Mesh& mesh) {
-    const auto& corners = mesh.triangles[sample.hit.primitive];
+void set_triangle(HitCorners& at, const Mesh& mesh, const Hit& hit) {
+    const auto& corners = mesh.triangles[hit.primitive];
     for (std::size_t k = 0; k < 3; ++k) {
-        sample.p[k] = mesh.positions[corners[k]];
-        if (!mesh.normals.empty()) sample.n[k] = mesh.normals[corners[k]];
-        if (!mesh.uvs.empty()) sample.uv[k] = mesh.uvs[corners[k]];
-        sample.edges[k][k] = 1;
+        at.p[k] = mesh.positions[corners[k]];
+        if (!mesh.normals.empty()) at.n[k] = mesh.normals[corners[k]];
+        if (!mesh.uvs.empty()) at.uv[k] = mesh.uvs[corners[k]];
+        at.edges[k][k] = 1;
     }
+    at.middle = (at.p[0] + at.p[1] + at.p[2]) * (1.0f / 3);
+    set_weights(at, static_cast<double>(hit.u), static_cast<double>(hit.v));
 }
 
-void set_sphere(SampleCorners& sample, const Scene& scene, const PassView& view, Vec2d pixel, const ObjectView& object) {
-    const Vec3d p(sample.surface.p), n(sample.surface.ng);
+void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object) {
+    const Vec3d p(at.surface.p), n(at.surface.ng);
     const auto point = [&](Vec2d place) {
         const Rayd ray = view.pinhole.ray(place);
-        Hit hit = sample.hit;
-        hit.t = static_cast<float>(dot(p - ray.origin, n) / dot(ray.direction, n));
-        return surface_point(scene, rounded(ray, view.time), hit);
+        Hit beside = hit;
+        beside.t = static_cast<float>(dot(p - ray.origin, n) / dot(ray.direction, n));
+        return surface_point(scene, rounded(ray, view.time), beside);
     };
-    const std::array<SurfacePoint, 3> points{sample.surface, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
+    const std::array<SurfacePoint, 3> points{at.surface, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
     for (std::size_t k = 0; k < 3; ++k) {
-        sample.p[k] = points[k].p_object;
-        sample.n[k] = to_object_normal(object, points[k].ns);
-        sample.uv[k] = points[k].uv;
-        sample.edges[k] = Vec3(1, 1, 1);
+        at.p[k] = points[k].p_object;
+        at.n[k] = to_object_normal(object, points[k].ns);
+        at.uv[k] = points[k].uv;
+        at.edges[k] = Vec3(1, 1, 1);
     }
-    sample.weights = {1, 0, 0};
-    sample.dx = {-1, 1, 0};
-    sample.dy = {-1, 0, 1};
+    at.middle = at.p[0];
+    at.weights = {1, 0, 0};
+    at.dx = {-1, 1, 0};
+    at.dy = {-1, 0, 1};
 }
 
 } // namespace
 
-std::uint32_t object_of(const Geometry& geometry, std::uint32_t id) {
-    const Run& run = geometry.triangles.run_of(id);
-    return run.sphere ? geometry.spheres[run.object].object : geometry.triangles.objects[run.object].object;
-}
-
-SampleCorners sample_corners(const PreparedData& data, const Geometry& geometry, const PassView& view, std::uint32_t id,
-                             Vec2d pixel, const ObjectView& object) {
-    SampleCorners sample;
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object) {
+    const Scene& scene = object.data.scene;
+    HitCorners at;
     const Rayd exact = view.pinhole.ray(pixel);
-    sample.ray = rounded(exact, view.time);
-    sample.hit = find_hit(geometry, view, id, pixel);
-    sample.depth = static_cast<double>(sample.hit.t) * view.pinhole.near / exact.t_min;
-    sample.surface = surface_point(data.scene, sample.ray, sample.hit);
-    const Vec3 ng = sample.surface.ng;
-    sample.ng = to_object_normal(object, dot(ng, sample.ray.direction) > 0 ? -ng : ng);
-    const Shape& shape = data.scene.shapes[data.scene.objects[object.object].shape];
+    const Ray ray = rounded(exact, view.time);
+    at.depth = static_cast<double>(hit.t) * view.pinhole.near / exact.t_min;
+    at.surface = surface_point(scene, ray, hit);
+    const Vec3 ng = at.surface.ng;
+    at.ng = to_object_normal(object, dot(ng, ray.direction) > 0 ? -ng : ng);
+    const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
     if (std::holds_alternative<Sphere>(shape)) {
-        set_sphere(sample, data.scene, view, pixel, object);
-        sample.middle = sample.p[0];
-        return sample;
+        set_sphere(at, scene, view, hit, pixel, object);
+        return at;
     }
-    const WholeTriangle whole = geometry.triangles.whole(id);
-    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels, static_cast<std::int32_t>(pixel.y) * kSubPixels};
-    set_weights(sample, Interpolation(whole.a, whole.b, whole.c, beside), pixel, whole.piece);
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
-        set_triangle(sample, *mesh);
-        sample.middle = (sample.p[0] + sample.p[1] + sample.p[2]) * (1.0f / 3);
-    } else {
-        set_quad(sample, shape, whole);
-        sample.middle = (sample.p[0] + sample.p[whole.piece == Piece::kQuadFirst ? 2 : 1]) * 0.5f; // the whole quad's
-    }
-    return sample;
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape))
+        set_triangle(at, *mesh, hit);
+    else
+        set_quad(at, shape, hit);
+    set_steps(at, view, pixel, object);
+    return at;
 }
 
 } // namespace duet::raster

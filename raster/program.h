@@ -25,7 +25,8 @@ public:
         }
         for (std::size_t i = 0; i < kStrip; ++i) {
             if (!(solver_.seen() >> i & 1)) continue;
-            const Rgb c = shade_one(data_, geometry_, view_, shader_, solver_.id(i), place.position(i),
+            const Vec2d pixel = place.position(i);
+            const Rgb c = shade_one(data_, view_, shader_, find_hit(geometry_, view_, solver_.id(i), pixel), pixel,
                                     place.nearness != nullptr ? place.nearness + i : nullptr);
             colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
         }
@@ -133,6 +134,9 @@ public:
     std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
                                           const PixelRect& tile) const override {
         return std::make_unique<ShadedStrips<S>>(data, geometry, view, tile, shader_);
+    }
+    Rgb shade_hit(const PreparedData& data, const PassView& view, const Hit& hit, Vec2d pixel) const override {
+        return shade_one(data, view, shader_, hit, pixel);
     }
 
 private:

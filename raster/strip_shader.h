@@ -4,6 +4,8 @@
 #include "raster/encode_strip.h"
 #include "raster/geometry.h"
 
+#include "common/geometry/hit.h"
+
 #include <memory>
 
 namespace duet::raster {
@@ -36,6 +38,8 @@ public:
     virtual ~Program() = default;
     virtual std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
                                                   const PixelRect& tile) const = 0;
+    /// One hit of the ray through `pixel`.
+    virtual Rgb shade_hit(const PreparedData& data, const PassView& view, const Hit& hit, Vec2d pixel) const = 0;
 };
 
 } // namespace duet::raster

@@ -186,7 +186,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("every built-in shading shows a strip of samples as it shows each alone") {
-        // An object before the mesh in each strip makes the shader go sample by sample: hide it where nobody looks.
+        // Where a strip sees another object, too, its samples are shaded one by one: one of them is made to.
         const Scene scene = varied_scene(60);
         for (const View& view : {perspective(), orthographic()}) {
             raster::Settings settings;
