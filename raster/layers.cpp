@@ -1,5 +1,7 @@
 #include "raster/layers.h"
 
+#include "common/scene/holes.h"
+
 #include <algorithm>
 
 namespace duet::raster {
@@ -44,10 +46,11 @@ Layers::Layers(const PreparedData& data, const Settings& settings, const Geometr
     }
 }
 
-Shaded Layers::over(int x, int y, const Shaded& behind) const {
+Shaded Layers::over(int x, int y, const Shaded& behind) {
     if (pixels_.empty()) return behind;
-    const Pixel& p = pixels_[place(x, y)];
+    const Pixel& p = pixel(x, y);
     if (p.through == 1) return behind;
+    if (p.stopping.valid()) tile_.exchange(x, y, p.stopping);
     Shaded sum = p.front;
     add_weighted(sum, behind, p.through);
     return sum;
@@ -137,6 +140,7 @@ void Layers::resolve(int x, int y) {
             p.done = true;
             return;
         }
+        if (!p.stopping.valid() && !passes_through(data_.scene, tile_.ray(x, y), hit)) p.stopping = hit;
         add_weighted(p.front, shade(data_, settings_, tile_, x, y), p.through * stopped);
         p.through *= 1 - stopped;
         tile_.exchange(x, y, behind);

@@ -22,8 +22,9 @@ public:
     Layers(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
            SampleOffset offset, std::size_t tile_index, HitTile& tile);
 
-    /// A pixel with its layers over what it sees.
-    Shaded over(int x, int y, const Shaded& behind) const;
+    /// A pixel with its layers over what it sees. What it sees becomes, of the layers and that, what stops its ray
+    /// (common/scene/holes.h): the hit that a ray tracer reports.
+    Shaded over(int x, int y, const Shaded& behind);
 
 private:
     static constexpr std::size_t kKept = 8;
@@ -32,6 +33,7 @@ private:
         std::uint32_t count = 0;
         bool more = false, done = false;
         Hit last{.t = -1};       ///< all nearer ones, and it, are dealt with
+        Hit stopping;            ///< the first among them that stops the sample's ray
         Shaded front{{}, {}, {}}; ///< the sum of what is dealt with
         float through = 1;       ///< the part of what lies behind that is seen
     };

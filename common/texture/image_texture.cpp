@@ -50,8 +50,10 @@ Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vect
         return image(nearest(s, image.width()), image.height() - 1 - nearest(t, image.height()));
     if (!uses_footprint(texture.filter) || smaller.empty()) return bilinear(image, s, t);
 
-    const Vec2d size(image.width() * static_cast<double>(texture.scale.x), image.height() * static_cast<double>(texture.scale.y));
-    const auto in_texels = [&](Vec2 duv) { return Vec2d(duv.x * size.x, duv.y * size.y); };
+    const Vec2d scale(texture.scale);
+    const auto in_texels = [&](Vec2 duv) {
+        return Vec2d(duv.x * scale.x * image.width(), duv.y * scale.y * image.height());
+    };
     const ProbeLine probes = probe_line(in_texels(point.duv_dx), in_texels(point.duv_dy),
                                         texture.filter == TextureFilter::kAnisotropic ? kMaxProbes : 1);
     const auto level = [&](int k) -> const ImageRgb& {

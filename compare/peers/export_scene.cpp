@@ -105,6 +105,8 @@ private:
         for (const Object& o : scene_.objects) used.insert(o.materials.begin(), o.materials.end());
         json list = json::array();
         for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
+            if (used.contains(i) && (scene_.maps[i].bends_normals() || scene_.maps[i].cuts_out()))
+                refuse("normal maps, bump maps and opacity are not exported");
             json m = used.contains(i) ? material(scene_.materials[i]) : material(Diffuse{});
             m["name"] = scene_.material_names[i];
             list.push_back(std::move(m));

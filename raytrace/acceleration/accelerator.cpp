@@ -1,12 +1,12 @@
 #include "raytrace/acceleration/accelerator.h"
 
 #include "common/sampling/hash.h"
+#include "common/scene/holes.h"
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_traverse.h"
-#include "raytrace/acceleration/holes.h"
 
 #include <algorithm>
 #include <bit>

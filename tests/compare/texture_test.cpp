@@ -1,6 +1,6 @@
 // Textures, maps and holes in both pipelines: the same footprints, the same normals, the same hits; and how far each
 // filter is from the truth.
-#include "compare/hits/hit_agreement.h"
+#include "common/camera/pixel_footprint.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 #include "tests/raster/scenes.h"
@@ -60,10 +60,10 @@ double error(const ImageRgb& a, const ImageRgb& b) {
 
 /// How much pixels change while the camera moves sideways by a texel (2 cm) a step, ten times: the mean over pixels of
 /// the standard deviation, near the horizon, where the truth hardly changes.
-double shimmer(TextureFilter filter) {
+double shimmer(TextureFilter filter, int samples = 1) {
     constexpr int kSteps = 10;
     std::vector<ImageRgb> frames;
-    for (int i = 0; i < kSteps; ++i) frames.push_back(raster_albedo(slanted_checker(filter, 100, 0.02 * i)));
+    for (int i = 0; i < kSteps; ++i) frames.push_back(raster_albedo(slanted_checker(filter, 100, 0.02 * i), samples));
     double sum = 0;
     int count = 0;
     for (int y = 44; y < 50; ++y)
@@ -88,18 +88,19 @@ TEST_SUITE("image") {
                      anisotropic = error_of(TextureFilter::kAnisotropic);
         MESSAGE("error of nearest ", error_of(TextureFilter::kNearest), ", bilinear ", bilinear, ", trilinear ", trilinear,
                 ", anisotropic ", anisotropic);
-        CHECK(anisotropic < 0.03);
-        CHECK(anisotropic < 0.6 * trilinear);
+        CHECK(anisotropic < 0.025);
+        CHECK(anisotropic < 0.4 * trilinear);
         CHECK(trilinear < 0.7 * bilinear);
         // More samples of smaller footprints converge to the truth.
         CHECK(error(raster_albedo(slanted_checker(TextureFilter::kAnisotropic), 64), truth) < 0.01);
     }
 
     TEST_CASE("filtered textures do not shimmer") {
-        const double bilinear = shimmer(TextureFilter::kBilinear), anisotropic = shimmer(TextureFilter::kAnisotropic);
-        MESSAGE("shimmer of bilinear ", bilinear, ", anisotropic ", anisotropic);
+        const double bilinear = shimmer(TextureFilter::kBilinear), anisotropic = shimmer(TextureFilter::kAnisotropic),
+                     truth = shimmer(TextureFilter::kAnisotropic, 64);
+        MESSAGE("change of bilinear ", bilinear, ", anisotropic ", anisotropic, ", the truth ", truth);
         CHECK(bilinear > 0.1); // else nothing was tested
-        CHECK(anisotropic < 0.03);
+        CHECK(anisotropic < truth + 0.01);
     }
 
     TEST_CASE("both pipelines filter alike at what the camera sees") {
@@ -168,7 +169,9 @@ TEST_SUITE("image") {
         test::add(scene, Sphere{{-0.7f, 0, 0}, 0.7f});
         test::add(scene, Sphere{{0.8f, 0, 0}, 0.7f});
         test::add(scene, QuadList{{Quad{{-1.5f, -0.8f, 0.9f}, {2, 0, 0.4f}, {0, 1.2f, 0}}}});
-        scene.maps.resize(4);
+        test::add(scene, QuadList{{Quad{{-0.4f, -0.6f, 1.2f}, {1.3f, 0, 0}, {0, 1, 0}}}});
+        scene.maps.resize(5);
+        scene.maps[4].opacity = 0.5f;
         scene.maps[0].normal = scene.maps[1].normal = 0;
         scene.maps[2].bump = 1;
         scene.maps[2].bump_scale = 0.05f;
@@ -187,17 +190,27 @@ TEST_SUITE("image") {
         traced.aovs.hit = true;
         Control control;
         const Rendering b = raytrace::render(raytrace::prepare(scene, traced), view_of(scene), traced, control);
-        int other_hit = 0, other_normal = 0, leaf = 0;
+        int other_hit = 0, other_normal = 0, leaf = 0, veil = 0;
+        // Before the veil normals are blended, or those of what stopped the ray.
+        const CameraModel camera(view_of(scene));
+        const auto veiled = [&](std::size_t i) {
+            const Ray ray = camera.ray({static_cast<double>(i % 192) + 0.5, static_cast<double>(i / 192) + 0.5});
+            const Vec3 p = ray.origin + ray.direction * ((1.2f - ray.origin.z) / ray.direction.z);
+            return std::abs(p.x - 0.25f) < 0.67f && std::abs(p.y + 0.1f) < 0.52f;
+        };
         for (std::size_t i = 0; i < a.hit.size(); ++i) {
             leaf += a.hit[i].valid() && a.hit[i].object == 3;
+            veil += a.hit[i].valid() && a.hit[i].object == 4;
             if (a.hit[i].object != b.hit[i].object || a.hit[i].primitive != b.hit[i].primitive) {
                 ++other_hit;
                 continue;
             }
+            if (veiled(i)) continue;
             const Rgb d = a.radiance[i] - b.radiance[i];
             other_normal += max(max(std::abs(d.r), std::abs(d.g)), std::abs(d.b)) > 2e-3f;
         }
         CHECK(leaf > 500);
+        CHECK(veil > 200);
         CHECK(other_hit <= 4); // on outlines
         CHECK(other_normal <= 4);
     }

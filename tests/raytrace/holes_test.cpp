@@ -106,7 +106,8 @@ TEST_SUITE("statistical") {
         for (const int kind : {0, 1, 2}) { // quad, triangle, sphere
             SceneBuilder builder;
             ImageRgb picture(8, 4);
-            for (int i = 0; i < 32; ++i) picture[static_cast<std::size_t>(i)] = Rgb(i % 5 == 0 ? 1.0f : 0.1f * static_cast<float>(i % 7));
+            for (std::size_t i = 0; i < 32; ++i)
+                picture[i] = Rgb(i % 5 == 0 ? 1.0f : 0.1f * static_cast<float>(i % 7));
             builder.scene.textures = {{ImageTexture{0}}, {picture}};
             Emissive lamp{Rgb(5.0f), true, {}};
             lamp.radiance_texture = 0;

@@ -1,10 +1,10 @@
-#include "raytrace/acceleration/holes.h"
+#include "common/scene/holes.h"
 
 #include "common/sampling/hash.h"
 
 #include <bit>
 
-namespace duet::raytrace {
+namespace duet {
 
 bool passes_through(const Scene& scene, const Ray& ray, const Hit& hit) {
     const float stopped = opacity(scene, ray, hit);
@@ -16,4 +16,4 @@ bool passes_through(const Scene& scene, const Ray& ray, const Hit& hit) {
     return unit_float(high_bits(state)) >= stopped;
 }
 
-} // namespace duet::raytrace
+} // namespace duet
