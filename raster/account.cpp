@@ -1,6 +1,8 @@
 #include "raster/account.h"
 
 #include "common/system/control.h"
+#include "common/system/error.h"
+#include "raster/shadows.h"
 
 #include <algorithm>
 
@@ -39,6 +41,24 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     return result;
 }
 
+void list_shadow_approximations(const PreparedData& data, const Settings& settings, std::vector<std::string>& result) {
+    const Scene& scene = data.scene;
+    if (!settings.parts.direct || scene.lights.empty()) return;
+    if (!settings.shadows || !data.shadows) {
+        result.emplace_back("Direct light is unshadowed.");
+        return;
+    }
+    if (scene.needs.delta_lights)
+        result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
+    if (scene.needs.surface_lights)
+        result.emplace_back("Soft shadows are estimated from the depths that the light's centre sees, with one width of "
+                            "penumbra a point.");
+    if (data.shadows->moments() > 1)
+        result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
+    if (data.shadows->unshadowed() > 0)
+        result.push_back(message("The ", data.shadows->unshadowed(), " weakest lights are unshadowed."));
+}
+
 std::vector<std::string> list_approximations(const PreparedData& data, const Settings& settings) {
     const Scene& scene = data.scene;
     const SceneNeeds& needs = scene.needs;
@@ -60,7 +80,7 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     const bool environment = settings.environment && needs.environment;
     name(parts.emission && parts.direct && parts.environment && parts.reflection,
          "Light that surfaces reflect onto each other is left out.");
-    name(parts.direct && !scene.lights.empty(), "Direct light is unshadowed.");
+    list_shadow_approximations(data, settings, result);
     name(parts.environment && environment, "Light from the environment is unoccluded.");
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");

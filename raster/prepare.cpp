@@ -1,6 +1,9 @@
 #include "raster/prepare.h"
 
 #include "raster/geometry.h"
+#include "raster/shadows.h"
+
+#include "common/system/error.h"
 
 #include <algorithm>
 
@@ -76,6 +79,14 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
+    if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
+        throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
+    if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
+        throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
+    if (settings.shadows && settings.shading == Shading::kLit && settings.parts.direct && !scene.lights.empty()) {
+        data.shadows = std::make_shared<const Shadows>(data, settings);
+        data.memory_bytes += data.shadows->memory_bytes();
+    }
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

@@ -7,7 +7,8 @@
 int main(int argc, char** argv) {
     using namespace duet;
     std::string shading_name = "lit";
-    bool no_environment = false, no_culling = false;
+    bool no_environment = false, no_culling = false, shadows = true;
+    int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
@@ -16,6 +17,12 @@ int main(int argc, char** argv) {
     program.add_options = [&](CLI::App& app) {
         app.add_option("--shading", shading_name, "lit (default: materials and lights), phong, normal, albedo or depth");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
+        app.add_flag("--shadows,!--no-shadows", shadows,
+                     "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
+        app.add_option("--shadow-map", shadow_map_side,
+                       "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half (default 2048)");
+        app.add_option("--shadow-cells", shadow_cells,
+                       "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 3)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
@@ -25,6 +32,9 @@ int main(int argc, char** argv) {
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::shading(shading_name);
         settings.environment = !no_environment;
+        settings.shadows = shadows;
+        settings.shadow_map_side = shadow_map_side;
+        settings.shadow_cells = shadow_cells;
         settings.skips.frustum = settings.skips.back_faces = !no_culling;
         return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
             return raster::render(prepared, view, settings, control);

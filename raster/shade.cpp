@@ -1,6 +1,7 @@
 #include "raster/shade.h"
 
 #include "raster/direct.h"
+#include "raster/shadows.h"
 #include "raster/split.h"
 
 namespace duet::raster {
@@ -47,10 +48,11 @@ private:
 struct DirectLight {
     std::span<const Light> lights;
     const ShadingPoint& point;
+    Visibility visibility;
 
-    Rgb operator()(const DiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
-    Rgb operator()(const MetalBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
-    Rgb operator()(const DielectricBsdf&) const { return {}; }
+    Direct operator()(const DiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point, visibility); }
+    Direct operator()(const MetalBsdf& bsdf) const { return direct_light(lights, bsdf, point, visibility); }
+    Direct operator()(const DielectricBsdf&) const { return {}; }
 };
 
 LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
@@ -59,7 +61,12 @@ LightParts lit(const PreparedData& data, const Settings& settings, const Shading
     const PartSet& asked = settings.parts;
     LightParts parts;
     if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], point.surface, to_viewer);
-    if (asked.direct) parts.direct = std::visit(DirectLight{scene.lights, point}, bsdf);
+    if (asked.direct) {
+        const SoftTaps taps = Shadows::taps(settings);
+        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, &taps};
+        const Direct direct = std::visit(DirectLight{scene.lights, point, visibility}, bsdf);
+        parts.direct = direct.arriving, parts.shadowed = direct.shadowed;
+    }
     const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
     if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
         (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, point), bsdf);
@@ -92,7 +99,7 @@ LightParts shade_surface(const Prepared& prepared, const Settings& settings, con
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit) {
     const PreparedData& data = prepared.data();
     if (!hit.valid())
-        return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}};
+        return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}, .shadowed = {}};
     const SurfacePoint surface = surface_point(data.scene, ray, hit);
     return shade_surface(prepared, settings, surface, bsdf_of(data, surface), -ray.direction);
 }

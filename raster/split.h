@@ -11,9 +11,10 @@ namespace duet::raster {
 /// Settings::parts leaves out is black.
 struct LightParts {
     Rgb emission;    ///< seen directly: emissive surfaces, and the environment behind all
-    Rgb direct;      ///< from Scene::lights by diffuse surfaces and rough metal, unshadowed
+    Rgb direct;      ///< from Scene::lights by diffuse surfaces and rough metal
     Rgb environment; ///< from the environment by diffuse surfaces, unoccluded
     Rgb reflection;  ///< the environment alone, by way of metal and glass
+    Rgb shadowed;    ///< no part of the sum: what `direct` lacks by the shadow maps
 
     Rgb sum() const { return emission + direct + environment + reflection; }
 };
