@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
         app.add_option("--shadow-map", shadow_map_side,
                        "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half (default 2048)");
         app.add_option("--shadow-cells", shadow_cells,
-                       "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 3)");
+                       "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };

@@ -42,7 +42,7 @@ struct Settings : RenderSettings {
     PartSet parts; ///< all, but for a look at one, and for its price
     bool shadows = true; ///< Shading::kLit: shadow maps, made by prepare(), which must be asked for them, too
     int shadow_map_side = 2048; ///< texels along a side, in [64, 8192]; of each face of a cube of maps: half as many
-    int shadow_cells = 3; ///< rectangular lights are cut into as many pieces along each side, in [1, 8], a map each
+    int shadow_cells = 2; ///< rectangular lights are cut into as many pieces along each side, in [1, 8], a map each
     bool environment =
         true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
 };

@@ -214,8 +214,8 @@ CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter*
 
 SoftTaps Shadows::taps(const Settings& settings) {
     const int spp = settings.samples_per_pixel, cells = settings.shadow_cells;
-    const auto shared = [&](int side) { return std::max((side + cells - 1) / cells, 1); };
-    return {std::max(shared(5), 2), shared(spp >= 16 ? 3 : 4), spp >= 4 ? 0 : shared(6)};
+    const auto shared = [&](int side) { return std::max((side + cells - 1) / cells, 2); };
+    return spp >= 4 ? SoftTaps{shared(6), shared(4), 0} : SoftTaps{shared(8), shared(6), shared(8)};
 }
 
 float Shadows::visibility(std::size_t light, const ShadingPoint& point, const SoftTaps& taps) const {

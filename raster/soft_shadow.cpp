@@ -48,12 +48,19 @@ public:
         return corner_ + u_ * u.x + v_ * u.y - p;
     }
 
-    /// The fraction of the way to the light's plane at which q keeps the receiver's light away: 0 here, 1 there. A
-    /// negative number where it does not: below the receiver's plane, beyond the light, or beside the cone.
-    float blocking(Vec3 q) const {
+    /// The fraction of the way to the light's plane at which q stands: 0 here, 1 there. A negative number where that is
+    /// not between the two, or not over the receiver's plane.
+    float between(Vec3 q) const {
         const Vec3 to = q - p;
         const float fraction = dot(axis_, to) * per_height_;
-        if (!(dot(n, to) > slack && fraction > 0 && fraction < 1)) return -1;
+        return dot(n, to) > slack && fraction > 0 && fraction < 1 ? fraction : -1;
+    }
+
+    /// The same, and negative, too, where the line from the receiver through q does not go on to the light.
+    float within(Vec3 q) const {
+        const float fraction = between(q);
+        if (fraction < 0) return -1;
+        const Vec3 to = q - p;
         // The line goes on to corner + a·u + b·v; both sides times the fraction save the division.
         const float a = p_u_ * fraction + dot(to, dual_u_), b = p_v_ * fraction + dot(to, dual_v_);
         const bool meets = kind_ == Emitter::Kind::kBall           ? a * a + b * b <= fraction * fraction
@@ -78,24 +85,26 @@ class Taps {
 public:
     Taps(const CubeMap& map, const Cone& cone) : map_(map), cone_(cone) {}
 
-    /// What the light's centre sees in the direction of q: at which fraction of the way it blocks the receiver's
-    /// light; negative where it does not.
+    /// What the light's centre sees in the direction of q: at which fraction of the way it stands within the cone;
+    /// negative where it does not.
     float blocker(Vec3 q) const {
         const Place place = this->place(q);
-        return place.map == nullptr ? -1 : blocker_at(place, static_cast<int>(place.x), static_cast<int>(place.y));
+        if (place.map == nullptr) return -1;
+        const std::optional<Vec3> seen = this->seen(place, static_cast<int>(place.x), static_cast<int>(place.y));
+        return seen ? cone_.within(*seen) : -1;
     }
 
-    /// The part of the four texels about q, weighed by how near they are, that hold no blocker.
+    /// The part of the four texels about q, weighed by how near they are, that see nothing between receiver and light.
     float lit(Vec3 q) const {
         const Place place = this->place(q);
         if (place.map == nullptr) return 1;
         const int x = static_cast<int>(place.x - 0.5f), y = static_cast<int>(place.y - 0.5f);
         const float fx = place.x - 0.5f - static_cast<float>(x), fy = place.y - 0.5f - static_cast<float>(y);
         float dark = 0;
-        if (blocker_at(place, x, y) > 0) dark += (1 - fx) * (1 - fy);
-        if (blocker_at(place, x + 1, y) > 0) dark += fx * (1 - fy);
-        if (blocker_at(place, x, y + 1) > 0) dark += (1 - fx) * fy;
-        if (blocker_at(place, x + 1, y + 1) > 0) dark += fx * fy;
+        if (dark_at(place, x, y)) dark += (1 - fx) * (1 - fy);
+        if (dark_at(place, x + 1, y)) dark += fx * (1 - fy);
+        if (dark_at(place, x, y + 1)) dark += (1 - fx) * fy;
+        if (dark_at(place, x + 1, y + 1)) dark += fx * fy;
         return 1 - dark;
     }
 
@@ -113,12 +122,17 @@ private:
         return {map, face, map_.middle + along.x * per_depth, map_.middle - along.y * per_depth};
     }
 
-    float blocker_at(const Place& place, int x, int y) const {
+    bool dark_at(const Place& place, int x, int y) const {
+        const std::optional<Vec3> seen = this->seen(place, x, y);
+        return seen && cone_.between(*seen) > 0;
+    }
+
+    std::optional<Vec3> seen(const Place& place, int x, int y) const {
         const float nearness = place.map->nearness(x, y);
-        if (!(nearness > 0)) return -1;
+        if (!(nearness > 0)) return std::nullopt;
         const float depth = map_.near / nearness, per_depth = depth / map_.scale;
-        return cone_.blocking(from_face(place.face, {(static_cast<float>(x) + 0.5f - map_.middle) * per_depth,
-                                                     (map_.middle - static_cast<float>(y) - 0.5f) * per_depth, depth}));
+        return from_face(place.face, {(static_cast<float>(x) + 0.5f - map_.middle) * per_depth,
+                                      (map_.middle - static_cast<float>(y) - 0.5f) * per_depth, depth});
     }
 
     const CubeMap& map_;
@@ -140,7 +154,8 @@ float mean_blocker(const Taps& taps, const Cone& cone, int n, std::uint64_t key)
     int found = 0;
     for (int i = 0; i < count; ++i) {
         // A stride without a factor in common with any square used visits each distance once, far from the last.
-        const float fraction = (static_cast<float>(i * 7 % count) + 0.5f) / static_cast<float>(count);
+        const float jitter = unit_float(high_bits(stream_number(~key, static_cast<std::uint64_t>(i))));
+        const float fraction = (static_cast<float>(i * 7 % count) + jitter) / static_cast<float>(count);
         const float blocker = taps.blocker(cone.p + cone.way(stratum(i, n, key)) * fraction);
         if (blocker > 0) sum += blocker, ++found;
     }

@@ -39,9 +39,9 @@ struct SoftTaps {
 ///
 /// Departures from Fernando's, so that nothing need be guessed: taps lie where lines from the receiver to points of the
 /// light meet the plane, parallel to the light, in which blockers are taken to be, so that the filter has the light's
-/// own shape whatever its direction; and what a tap finds counts as a blocker where it stands over the receiver's
-/// plane, before the light, and the line to it from the receiver goes on to the light. A surface does so not shade
-/// itself, however much steeper than a texel it is.
+/// own shape whatever its direction; what a tap finds counts where it stands over the receiver's plane, before the light,
+/// so that a flat surface does not shade itself, however steep; and the search counts it only where the line to it from
+/// the receiver goes on to the light, so that the walls of a corner are no blockers.
 ///
 /// `key` chooses the jitter of the taps.
 float soft_visibility(const CubeMap& map, const Emitter& light, const Receiver& receiver, SoftTaps taps,
