@@ -2,6 +2,8 @@
 
 #include "common/system/control.h"
 #include "common/system/error.h"
+#include "raster/prefiltered.h"
+#include "raster/shade.h"
 #include "raster/shadows.h"
 
 #include <algorithm>
@@ -81,13 +83,28 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     name(parts.emission && parts.direct && parts.environment && parts.reflection,
          "Light that surfaces reflect onto each other is left out.");
     list_shadow_approximations(data, settings, result);
-    name(parts.environment && environment, "Light from the environment is unoccluded.");
+    name(parts.environment && environment && settings.ambient_occlusion == AmbientOcclusion::kNone,
+         "Light from the environment is unoccluded.");
+    if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone)
+        result.push_back(message("What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
+                                 occlusion_radius(data, settings), " m away, as if all of it were equally bright."));
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
-    name(parts.reflection && (needs.specular || needs.glossy),
-         "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
-    name(parts.reflection && needs.glossy && environment, "Rough metal mirrors the environment as smooth metal does.");
-    name(parts.direct && needs.glossy && needs.surface_lights,
+    const bool rest = needs.transmission || needs.glossy || !needs_screen_radiance(data, settings);
+    name(parts.reflection && (needs.specular || needs.glossy) && rest,
+         !needs_screen_radiance(data, settings)
+             ? "Metal and glass mirror the environment alone, no surfaces and no lights that have one."
+             : "Glass and rougher metal mirror the environment alone, no surfaces and no lights that have one.");
+    name(needs_screen_radiance(data, settings),
+         "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections.");
+    const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
+    name(parts.reflection && needs.glossy && environment && !prefiltered,
+         "Rough metal mirrors the environment as smooth metal does.");
+    name(parts.reflection && needs.glossy && environment && prefiltered,
+         "Rough metal mirrors the environment blurred as by a surface that faces the viewer.");
+    name(parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
+         "Light surfaces shine on rough metal by linearly transformed cosines that look like its lobe.");
+    name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal sees each light surface as a distant light in its centre's direction.");
     name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
@@ -112,7 +129,7 @@ void Account::add(const Geometry& geometry) {
 std::vector<std::pair<std::string, double>> Account::seconds() const {
     const double cover = static_cast<double>(cover_work), work = cover + static_cast<double>(shade_work);
     const double covering = work > 0 ? tiles * cover / work : 0;
-    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"cover", covering},
+    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"prepass", prepass}, {"cover", covering},
             {"shade", tiles - covering}, {"resolve", resolve}};
 }
 

@@ -64,7 +64,8 @@ Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t
     return make_hit(object, primitive, whole.piece, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
 }
 
-HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view) : rect_(tile.rect()) {
+HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
+    : rect_(tile.rect()), screen_(view.screen) {
     const auto count = static_cast<std::size_t>(rect_.width()) * static_cast<std::size_t>(rect_.height());
     rays_.reserve(count);
     distance_per_depth_.reserve(count);

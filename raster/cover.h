@@ -29,6 +29,7 @@ public:
     HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
+    const Screen* screen() const { return screen_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
     /// Camera-space −z of what the sample sees, in metres; infinity where that is nothing.
@@ -43,6 +44,7 @@ private:
     }
 
     PixelRect rect_;
+    const Screen* screen_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;

@@ -1,6 +1,7 @@
 #include "raster/direct.h"
 
 #include "common/light/lambert.h"
+#include "raster/area_specular.h"
 #include "raster/phong.h"
 #include "raster/shadows.h"
 
@@ -118,14 +119,18 @@ Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, cons
 }
 
 Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
-                    const Visibility& visibility) {
+                    const Visibility& visibility, bool transformed_cosines) {
     Direct sum;
     if (bsdf.smooth()) return sum;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
         if (surface != nullptr && is_own(*surface, point.surface)) continue;
-        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p);
-        const Rgb light = incident ? reflected(bsdf, point, *incident) : Rgb();
+        Rgb light;
+        if (surface != nullptr && transformed_cosines)
+            light = area_reflection(*surface, bsdf, point);
+        else if (const auto incident =
+                     surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p))
+            light = reflected(bsdf, point, *incident);
         if (!is_black(light)) sum.add(light, visibility(i, point));
     }
     return sum;

@@ -52,11 +52,12 @@ struct Visibility {
 };
 
 /// Radiance towards the viewer. Diffuse: exact for every light. Rough metal: exact for point, spot and sun; a surface
-/// light counts as a distant one of the same irradiance at its centre. Smooth metal: none.
+/// light by transformed cosines (raster/area_specular.h), or, without, as a distant one of the same irradiance at its
+/// centre. Smooth metal: none.
 Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility);
 Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
-                    const Visibility& visibility);
+                    const Visibility& visibility, bool transformed_cosines);
 
 /// Phong's model (raster/phong.h) under the lights and an ambient radiance from all around. A surface light counts as a
 /// distant one of the same irradiance at its centre.

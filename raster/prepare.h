@@ -30,6 +30,7 @@ std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);
 
 class GeometryPool; // raster/geometry.h
 class Shadows;      // raster/shadows.h
+class Prefiltered;  // raster/prefiltered.h
 
 struct PreparedData {
     const Scene& scene;
@@ -43,6 +44,7 @@ struct PreparedData {
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
     std::shared_ptr<const Shadows> shadows{};   ///< null where the settings or the scene ask for none
+    std::shared_ptr<const Prefiltered> prefiltered{}; ///< likewise
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
 };
 

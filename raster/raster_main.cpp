@@ -6,8 +6,10 @@
 
 int main(int argc, char** argv) {
     using namespace duet;
-    std::string shading_name = "lit";
+    std::string shading_name = "lit", occlusion_name = "gtao";
+    double occlusion_radius = 0;
     bool no_environment = false, no_culling = false, shadows = true;
+    bool screen_reflections = true, prefiltered = true, transformed_cosines = true;
     int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
     RenderProgram program;
     program.name = "raster";
@@ -20,9 +22,20 @@ int main(int argc, char** argv) {
         app.add_flag("--shadows,!--no-shadows", shadows,
                      "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
         app.add_option("--shadow-map", shadow_map_side,
-                       "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half (default 2048)");
+                       "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter (default 2048)");
         app.add_option("--shadow-cells", shadow_cells,
                        "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
+        app.add_option("--ambient-occlusion", occlusion_name,
+                       "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
+        app.add_option("--occlusion-radius", occlusion_radius,
+                       "Metres that it may be away (default 0: half the scene's size or the camera's distance)")
+            ->check(CLI::NonNegativeNumber);
+        app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
+                     "Rough metal mirrors a blurred environment, not as if it were smooth (default: on)");
+        app.add_flag("--transformed-cosines,!--no-transformed-cosines", transformed_cosines,
+                     "Light surfaces shine on rough metal with their shape, not as from their centres (default: on)");
+        app.add_flag("--screen-reflections,!--no-screen-reflections", screen_reflections,
+                     "Smooth and slightly rough metal mirrors what the picture shows (default: on)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
@@ -32,6 +45,11 @@ int main(int argc, char** argv) {
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::shading(shading_name);
         settings.environment = !no_environment;
+        settings.ambient_occlusion = raster::ambient_occlusion(occlusion_name);
+        settings.occlusion_radius = occlusion_radius;
+        settings.prefiltered_environment = prefiltered;
+        settings.transformed_cosines = transformed_cosines;
+        settings.screen_reflections = screen_reflections;
         settings.shadows = shadows;
         settings.shadow_map_side = shadow_map_side;
         settings.shadow_cells = shadow_cells;

@@ -5,6 +5,7 @@
 #include "raster/display.h"
 #include "raster/geometry.h"
 #include "raster/picture.h"
+#include "raster/screen.h"
 #include "raster/shade.h"
 
 #include "common/image/srgb.h"
@@ -41,25 +42,65 @@ struct Frame {
     Control& control;
 };
 
+/// The radiance of the pass's first samples, all parts of it, without reflections of the picture in itself.
+void first_look(const Frame& frame, const View& view, PassView pass, Screen& screen) {
+    Settings settings = frame.settings;
+    settings.screen_reflections = false;
+    settings.parts = {};
+    settings.aovs = {};
+    pass.screen = &screen;
+    ImageRgb radiance(view.width, view.height);
+    Image<std::uint8_t> lamps(view.width, view.height, 0);
+    parallel_for(frame.grid.size(), settings.threads, [&](std::size_t i) {
+        if (frame.control.stopped()) return;
+        const PixelRect rect = frame.grid.tile(i);
+        DepthTile depths;
+        cover(frame.geometry, pass, pass.samples.front(), rect, i, depths);
+        const HitTile tile(depths, frame.geometry, pass);
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                radiance(x, y) = shade(frame.data, settings, tile, x, y).radiance;
+                lamps(x, y) = is_lamp(frame.data.scene, tile.hit(x, y));
+            }
+    });
+    screen.set_radiance(std::move(radiance), std::move(lamps));
+}
+
+/// The depths of the pass's first samples, if an effect needs them.
+std::optional<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
+    if (!needs_screen(frame.data, frame.settings)) return std::nullopt;
+    ImageFloat nearness(view.width, view.height);
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
+        if (!frame.control.stopped()) keep_nearness(frame.geometry, pass, frame.grid.tile(i), i, nearness);
+    });
+    Screen screen(pass.pinhole, pass.samples.front(), std::move(nearness));
+    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, pass, screen);
+    return screen;
+}
+
 /// One pass: its geometry, then each tile, which render_tile(view, index) makes.
 template <typename RenderTile>
 void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
     const Pinhole pinhole = camera.through(pass.lens);
-    const PassView pass_view{.pinhole = pinhole,
+    PassView pass_view{.pinhole = pinhole,
                              .time = static_cast<float>(camera.time(pass.time)),
                              .viewport = viewport_of(view, pinhole),
                              .samples = pass.samples};
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
     const Stopwatch watch;
+    const std::optional<Screen> screen = look_at_screen(frame, view, pass_view);
+    pass_view.screen = screen ? &*screen : nullptr;
+    frame.account.prepass += watch.seconds();
+    const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
         render_tile(pass_view, i);
         frame.account.tiles_done += 1;
         frame.progress.step();
     });
-    frame.account.tiles += watch.seconds();
+    frame.account.tiles += tiles_watch.seconds();
 }
 
 /// One tile of a picture: each of its samples a pixel is covered, then shaded.

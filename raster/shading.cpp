@@ -17,4 +17,11 @@ Shading shading(std::string_view name) {
     throw Error(message("shading: found ", name, ", expected lit, normal, albedo, depth or phong"));
 }
 
+AmbientOcclusion ambient_occlusion(std::string_view name) {
+    if (name == "none") return AmbientOcclusion::kNone;
+    if (name == "ssao") return AmbientOcclusion::kSsao;
+    if (name == "gtao") return AmbientOcclusion::kGtao;
+    throw Error(message("ambient occlusion: found ", name, ", expected none, ssao or gtao"));
+}
+
 } // namespace duet::raster

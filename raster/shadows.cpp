@@ -1,10 +1,9 @@
 #include "raster/shadows.h"
 
-#include "common/sampling/hash.h"
 #include "raster/light_views.h"
+#include "raster/point_key.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 
@@ -94,12 +93,6 @@ std::vector<Emitter> pieces(const Emitter& emitter, int n) {
     return result;
 }
 
-/// Chooses the jitter at a point: any hash of it will do.
-std::uint64_t key_of(Vec3 p, std::size_t light) {
-    const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x)}; };
-    return hash_combine(hash_combine(bits(p.x) << 32 | bits(p.y), bits(p.z)), light);
-}
-
 } // namespace
 
 Shadows::Shadows(const PreparedData& data, const Settings& settings)
@@ -173,12 +166,12 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         const std::vector<Camera> views = spot_views(*spot, scene_size_, side_, kSpotGuard);
         if (!views.empty()) return add_views(caster_scene(data, kept), views);
         maps.cubes.push_back(
-            draw_cube(caster_scene(data, kept), Vec3d(spot->position), nullptr, true, moment, settings.threads));
+            draw_cube(caster_scene(data, kept), Vec3d(spot->position), nullptr, true, moment, cube_side_, settings.threads));
         return;
     }
     if (const auto* point = std::get_if<PointLight>(&light)) {
         maps.cubes.push_back(
-            draw_cube(caster_scene(data, kept), Vec3d(point->position), nullptr, true, moment, settings.threads));
+            draw_cube(caster_scene(data, kept), Vec3d(point->position), nullptr, true, moment, cube_side_, settings.threads));
         return;
     }
 
@@ -190,24 +183,24 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         // Beside it or on it there may be other things in its plane: it looks from just before that.
         const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
         maps.cubes.push_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
-                                       surface.two_sided, moment, settings.threads));
+                                       surface.two_sided, moment, cube_side_ / 2, settings.threads));
     }
 }
 
 CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment,
-                           int threads) {
+                           int side, int threads) {
     CubeMap cube;
     cube.center = Vec3d(Vec3(center)); // as cameras round it
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
-    std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, cube_side_, CubeMap::kGuard);
+    std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (i == 5 && plane != nullptr && !back) continue;
         views[i].shutter_open = views[i].shutter_close = moment;
-        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], cube_side_, threads);
-        memory_bytes_ += std::int64_t{4} * cube_side_ * cube_side_;
+        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], side, threads);
+        memory_bytes_ += std::int64_t{4} * side * side;
     }
     cube.near = static_cast<float>(cube.faces[0]->near());
-    cube.middle = static_cast<float>(cube_side_) / 2;
+    cube.middle = static_cast<float>(side) / 2;
     cube.scale = cube.middle - static_cast<float>(CubeMap::kGuard);
     return cube;
 }
@@ -245,7 +238,7 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, const So
 float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, const SoftTaps& taps) const {
     constexpr double kMargin = ShadowMap::kFilterRadius + 1;
     if (!source.cells.empty()) {
-        const std::uint64_t key = key_of(Vec3(receiver.p), source.lights.front());
+        const std::uint64_t key = point_key(Vec3(receiver.p), source.lights.front());
         float sum = 0;
         for (std::size_t i = 0; i < source.cells.size(); ++i)
             sum += soft_visibility(maps.cubes[i], source.cells[i], receiver, taps, key + i);

@@ -50,7 +50,7 @@ private:
     std::vector<Source> find_sources(const Scene& scene, int cells);
     void draw(const PreparedData& data, const Settings& settings, Source& source, double moment, Maps& maps);
     /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
-    CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+    CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment, int side,
                       int threads);
     float visibility(const Source& source, const Maps& maps, const Receiver& receiver, const SoftTaps& taps) const;
 
