@@ -157,7 +157,7 @@ Rgb background(const PreparedData& data, const Settings& settings, const Ray& ra
 bool needs_screen(const PreparedData& data, const Settings& settings) {
     const bool occlusion = settings.ambient_occlusion != AmbientOcclusion::kNone && settings.parts.environment &&
                            shows_environment(data, settings);
-    return settings.shading == Shading::kLit && (occlusion || needs_screen_radiance(data, settings));
+    return settings.shading == Shading::kLit && settings.output != Output::kNearness && (occlusion || needs_screen_radiance(data, settings));
 }
 
 bool is_lamp(const Scene& scene, const Hit& hit) {
