@@ -98,7 +98,9 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
-    if (settings.shadows && settings.shading == Shading::kLit && settings.parts.direct && !scene.lights.empty()) {
+    const PartSet& parts = settings.parts; // a picture that is mirrored shows all of them
+    const bool direct = parts.direct || (parts.reflection && settings.screen_reflections);
+    if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();
     }

@@ -42,8 +42,8 @@ struct Frame {
     Control& control;
 };
 
-/// The radiance of the pass's first samples, all parts of it, without reflections of the picture in itself.
-void first_look(const Frame& frame, const View& view, PassView pass, Screen& screen) {
+/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself.
+void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, Screen& screen) {
     Settings settings = frame.settings;
     settings.screen_reflections = false;
     settings.parts = {};
@@ -55,8 +55,8 @@ void first_look(const Frame& frame, const View& view, PassView pass, Screen& scr
         if (frame.control.stopped()) return;
         const PixelRect rect = frame.grid.tile(i);
         DepthTile depths;
-        cover(frame.geometry, pass, pass.samples.front(), rect, i, depths);
-        const HitTile tile(depths, frame.geometry, pass);
+        cover(geometry, pass, pass.samples.front(), rect, i, depths);
+        const HitTile tile(depths, geometry, pass);
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x) {
                 radiance(x, y) = shade(frame.data, settings, tile, x, y).radiance;
@@ -66,15 +66,19 @@ void first_look(const Frame& frame, const View& view, PassView pass, Screen& scr
     screen.set_radiance(std::move(radiance), std::move(lamps));
 }
 
-/// The depths of the pass's first samples, if an effect needs them.
+/// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
 std::optional<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
     if (!needs_screen(frame.data, frame.settings)) return std::nullopt;
+    const std::vector<SampleOffset> centers(1);
+    const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
+    GeometryLoan geometry(*frame.data.geometries);
+    process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
     ImageFloat nearness(view.width, view.height);
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (!frame.control.stopped()) keep_nearness(frame.geometry, pass, frame.grid.tile(i), i, nearness);
+        if (!frame.control.stopped()) keep_nearness(*geometry, central, frame.grid.tile(i), i, nearness);
     });
-    Screen screen(pass.pinhole, pass.samples.front(), std::move(nearness));
-    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, pass, screen);
+    Screen screen(central.pinhole, centers.front(), std::move(nearness));
+    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, screen);
     return screen;
 }
 

@@ -48,7 +48,7 @@ TEST_SUITE("unit") {
     }
 
     // A wall of height 1 hides ½ (1 − x/√(x² + 1)) of the sky at a distance x.
-    TEST_CASE("at the foot of a long wall: the form factor of the strip, to 0.02 by horizons") {
+    TEST_CASE("at the foot of a long wall: the form factor of the strip, to 0.05 by horizons") {
         Scene scene = white_scene();
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
         finish_scene(scene);
@@ -66,7 +66,7 @@ TEST_SUITE("unit") {
                 const double hidden = (1 - z / std::sqrt(z * z + 1)) / 2;
                 CAPTURE(z);
                 if (kind == raster::AmbientOcclusion::kGtao)
-                    CHECK(std::abs(1 - mean - hidden) < 0.02);
+                    CHECK(std::abs(1 - mean - hidden) < 0.05);
                 else // points at one distance a direction miss what is nearer or farther: too little, never too much
                     CHECK((1 - mean < hidden + 0.02 && (z > 0.3 || 1 - mean > 0.25 * hidden)));
                 ++rows;
