@@ -1,6 +1,10 @@
 #include "raster/account.h"
 
 #include "common/system/control.h"
+#include "common/system/error.h"
+#include "raster/prefiltered.h"
+#include "raster/shade.h"
+#include "raster/shadows.h"
 
 #include <algorithm>
 
@@ -42,6 +46,24 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     return result;
 }
 
+void list_shadow_approximations(const PreparedData& data, const Settings& settings, std::vector<std::string>& result) {
+    const Scene& scene = data.scene;
+    if (!settings.parts.direct || scene.lights.empty()) return;
+    if (!settings.shadows || !data.shadows) {
+        result.emplace_back("Direct light is unshadowed.");
+        return;
+    }
+    if (scene.needs.delta_lights)
+        result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
+    if (scene.needs.surface_lights)
+        result.emplace_back("Soft shadows are estimated from the depths that the light's centre sees, with one width of "
+                            "penumbra a point.");
+    if (data.shadows->moments() > 1)
+        result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
+    if (data.shadows->unshadowed() > 0)
+        result.push_back(message("The ", data.shadows->unshadowed(), " weakest lights are unshadowed."));
+}
+
 std::vector<std::string> list_approximations(const PreparedData& data, const Settings& settings) {
     const Scene& scene = data.scene;
     const SceneNeeds& needs = scene.needs;
@@ -63,14 +85,29 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     const bool environment = settings.environment && needs.environment;
     name(parts.emission && parts.direct && parts.environment && parts.reflection,
          "Light that surfaces reflect onto each other is left out.");
-    name(parts.direct && !scene.lights.empty(), "Direct light is unshadowed.");
-    name(parts.environment && environment, "Light from the environment is unoccluded.");
+    list_shadow_approximations(data, settings, result);
+    name(parts.environment && environment && settings.ambient_occlusion == AmbientOcclusion::kNone,
+         "Light from the environment is unoccluded.");
+    if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone)
+        result.push_back(message("What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
+                                 occlusion_radius(data, settings), " m away, as if all of it were equally bright."));
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
-    name(parts.reflection && (needs.specular || needs.glossy),
-         "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
-    name(parts.reflection && needs.glossy && environment, "Rough metal mirrors the environment as smooth metal does.");
-    name(parts.direct && needs.glossy && needs.surface_lights,
+    const bool rest = needs.transmission || needs.glossy || !needs_screen_radiance(data, settings);
+    name(parts.reflection && (needs.specular || needs.glossy) && rest,
+         !needs_screen_radiance(data, settings)
+             ? "Metal and glass mirror the environment alone, no surfaces and no lights that have one."
+             : "Glass and rougher metal mirror the environment alone, no surfaces and no lights that have one.");
+    name(needs_screen_radiance(data, settings),
+         "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections.");
+    const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
+    name(parts.reflection && needs.glossy && environment && !prefiltered,
+         "Rough metal mirrors the environment as smooth metal does.");
+    name(parts.reflection && needs.glossy && environment && prefiltered,
+         "Rough metal mirrors the environment blurred as by a surface that faces the viewer.");
+    name(parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
+         "Light surfaces shine on rough metal by linearly transformed cosines that look like its lobe.");
+    name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal sees each light surface as a distant light in its centre's direction.");
     name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
@@ -96,7 +133,7 @@ void Account::add(const Geometry& geometry) {
 std::vector<std::pair<std::string, double>> Account::seconds() const {
     const double cover = static_cast<double>(cover_work), work = cover + static_cast<double>(shade_work);
     const double covering = work > 0 ? tiles * cover / work : 0;
-    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"cover", covering},
+    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"prepass", prepass}, {"cover", covering},
             {"shade", tiles - covering}, {"resolve", resolve}};
 }
 

@@ -16,7 +16,7 @@ namespace duet::raster {
 
 /// The running account of a rendering.
 struct Account {
-    double transform = 0, setup = 0, bin = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
+    double transform = 0, setup = 0, bin = 0, prepass = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
     std::atomic<std::int64_t> cover_work{0}, shade_work{0};           ///< nanoseconds, summed over threads
     std::atomic<std::size_t> tiles_done{0};                           ///< over all passes
     CullCounts culled;                                                ///< over all passes

@@ -141,7 +141,7 @@ void HitTile::make_room() {
 }
 
 HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole) {
+    : rect_(tile.rect()), pinhole_(view.pinhole), screen_(view.screen) {
     make_room();
     Filler filler(*this, geometry, view);
     for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kStripRows)
@@ -149,7 +149,7 @@ HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView
 }
 
 HitTile::HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole) {
+    : rect_(tile.rect()), pinhole_(view.pinhole), screen_(view.screen) {
     make_room();
     Filler filler(*this, geometry, view);
     LayeredTile::Strip strip;

@@ -36,6 +36,7 @@ public:
     HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
+    const Screen* screen() const { return screen_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
     double distance_per_depth(int x, int y) const { return distance_per_depth_[index(x, y)]; }
@@ -60,6 +61,7 @@ private:
 
     PixelRect rect_;
     Pinhole pinhole_;
+    const Screen* screen_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;

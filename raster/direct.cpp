@@ -1,7 +1,9 @@
 #include "raster/direct.h"
 
 #include "common/light/lambert.h"
+#include "raster/area_specular.h"
 #include "raster/lights.h"
+#include "raster/shadows.h"
 
 #include <array>
 #include <cmath>
@@ -96,26 +98,39 @@ Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
     return std::visit([&](const auto& shape) { return irradiance_above(light, shape, point); }, light.shape);
 }
 
-Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point) {
-    if (is_black(bsdf.albedo)) return {};
-    Rgb sum;
-    for (const Light& light : lights) {
-        if (const auto* surface = std::get_if<SurfaceLight>(&light))
-            sum += bsdf.albedo * kInvPi * irradiance(*surface, point);
-        else if (const auto incident = delta_light(light, point.surface.p))
-            sum += reflected(bsdf, point, *incident);
+float Visibility::operator()(std::size_t light, const ShadingPoint& point) const {
+    return shadows != nullptr ? shadows->visibility(light, point, *taps) : 1;
+}
+
+Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility) {
+    Direct sum;
+    if (is_black(bsdf.albedo)) return sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        Rgb light;
+        if (const auto* surface = std::get_if<SurfaceLight>(&lights[i]))
+            light = bsdf.albedo * kInvPi * irradiance(*surface, point);
+        else if (const auto incident = delta_light(lights[i], point.surface.p))
+            light = reflected(bsdf, point, *incident);
+        if (!is_black(light)) sum.add(light, visibility(i, point));
     }
     return sum;
 }
 
-Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point) {
-    if (bsdf.smooth()) return {};
-    Rgb sum;
-    for (const Light& light : lights) {
-        const auto* surface = std::get_if<SurfaceLight>(&light);
+Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility, bool transformed_cosines) {
+    Direct sum;
+    if (bsdf.smooth()) return sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
         if (surface != nullptr && is_own(*surface, point.surface)) continue;
-        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(light, point.surface.p);
-        if (incident) sum += reflected(bsdf, point, *incident);
+        Rgb light;
+        if (surface != nullptr && transformed_cosines)
+            light = area_reflection(*surface, bsdf, point);
+        else if (const auto incident =
+                     surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p))
+            light = reflected(bsdf, point, *incident);
+        if (!is_black(light)) sum.add(light, visibility(i, point));
     }
     return sum;
 }

@@ -1,4 +1,4 @@
-// Light that comes straight from the scene's lights, visibility left out.
+// Light that comes straight from the scene's lights.
 #pragma once
 
 #include "common/geometry/surface_point.h"
@@ -30,10 +30,35 @@ struct ShadingPoint {
 /// normals. 0 on the light's own primitive.
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
 
+class Shadows; // raster/shadows.h
+struct SoftTaps;
+
+/// Light towards the viewer, and what shadows keep from it.
+struct Direct {
+    Rgb arriving, shadowed;
+
+    /// Light of which a part is visible.
+    void add(Rgb light, float visible) {
+        arriving += light * visible;
+        shadowed += light * (1 - visible);
+    }
+};
+
+/// Tells of each light how much of it arrives.
+struct Visibility {
+    const Shadows* shadows = nullptr; ///< null: all of all
+    const SoftTaps* taps = nullptr;
+
+    float operator()(std::size_t light, const ShadingPoint& point) const;
+};
+
 /// Radiance towards the viewer. Diffuse: exact for every light. Rough metal: exact for point, spot and sun; a surface
-/// light counts as a distant one of the same irradiance at its centre. Smooth metal: none.
-Rgb direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point);
-Rgb direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point);
+/// light by transformed cosines (raster/area_specular.h), or, without, as a distant one of the same irradiance at its
+/// centre. Smooth metal: none.
+Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility);
+Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility, bool transformed_cosines);
 
 /// A surface light as a distant one in its centre's direction, and its irradiance at p on a surface facing that way;
 /// black in the centre itself.

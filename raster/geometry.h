@@ -11,12 +11,15 @@
 
 namespace duet::raster {
 
+class Screen; // raster/screen.h
+
 /// One view of the scene: a point of the lens, a moment, and the samples that see it.
 struct PassView {
     Pinhole pinhole;
     float time = 0;
     Viewport viewport;
     const std::vector<SampleOffset>& samples;
+    const Screen* screen = nullptr; ///< its depths, where an effect asks for them
 };
 
 /// A pass's primitives, ready to be drawn tile by tile. Made anew for each pass in the same memory.

@@ -1,6 +1,11 @@
 #include "raster/prepare.h"
 
 #include "raster/geometry.h"
+#include "raster/ggx_table.h"
+#include "raster/prefiltered.h"
+#include "raster/shadows.h"
+
+#include "common/system/error.h"
 
 #include <algorithm>
 
@@ -41,6 +46,19 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
+}
+
+/// What the scene's lights need of rough metal, made now rather than in the first picture.
+void prepare_rough_metal(const Settings& settings, PreparedData& data) {
+    const SceneNeeds& needs = data.scene.needs;
+    const bool mirrors = settings.prefiltered_environment && settings.parts.reflection && settings.environment && needs.environment;
+    if (mirrors) {
+        data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
+        data.memory_bytes += data.prefiltered->memory_bytes();
+    }
+    const bool shines = settings.transformed_cosines && settings.parts.direct && needs.surface_lights;
+    if (mirrors || shines) ggx_albedo(1, 1);
+    if (shines) ggx_lobe(1, 1);
 }
 
 } // namespace
@@ -87,6 +105,17 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
+    if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
+        throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
+    if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
+        throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
+    const PartSet& parts = settings.parts; // a picture that is mirrored shows all of them
+    const bool direct = parts.direct || (parts.reflection && settings.screen_reflections);
+    if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
+        data.shadows = std::make_shared<const Shadows>(data, settings);
+        data.memory_bytes += data.shadows->memory_bytes();
+    }
+    if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_rough_metal(settings, data);
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

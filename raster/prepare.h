@@ -29,6 +29,8 @@ struct alignas(32) PackedVertex {
 std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);
 
 class GeometryPool; // raster/geometry.h
+class Shadows;      // raster/shadows.h
+class Prefiltered;  // raster/prefiltered.h
 
 struct PreparedData {
     const Scene& scene;
@@ -43,6 +45,8 @@ struct PreparedData {
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
+    std::shared_ptr<const Shadows> shadows{};   ///< null where the settings or the scene ask for none
+    std::shared_ptr<const Prefiltered> prefiltered{}; ///< likewise
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
 };

@@ -7,9 +7,12 @@
 
 int main(int argc, char** argv) {
     using namespace duet;
-    std::string shading_name = "lit";
-    bool no_environment = false, no_culling = false, sample_shading = false, edges = false;
+    std::string shading_name = "lit", occlusion_name = "gtao";
+    double occlusion_radius = 0;
+    bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
+    bool screen_reflections = true, prefiltered = true, transformed_cosines = true;
     int multisamples = 0;
+    int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
@@ -23,6 +26,23 @@ int main(int argc, char** argv) {
         app.add_flag("--edges", edges, "Ink lines over the picture where depth, normals or objects change");
         app.add_flag("--sample-shading", sample_shading, "With --msaa: shade each sample")->needs("--msaa");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
+        app.add_flag("--shadows,!--no-shadows", shadows,
+                     "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
+        app.add_option("--shadow-map", shadow_map_side,
+                       "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter (default 2048)");
+        app.add_option("--shadow-cells", shadow_cells,
+                       "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
+        app.add_option("--ambient-occlusion", occlusion_name,
+                       "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
+        app.add_option("--occlusion-radius", occlusion_radius,
+                       "Metres that it may be away (default 0: half the scene's size or the camera's distance)")
+            ->check(CLI::NonNegativeNumber);
+        app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
+                     "Rough metal mirrors a blurred environment, not as if it were smooth (default: on)");
+        app.add_flag("--transformed-cosines,!--no-transformed-cosines", transformed_cosines,
+                     "Light surfaces shine on rough metal with their shape, not as from their centres (default: on)");
+        app.add_flag("--screen-reflections,!--no-screen-reflections", screen_reflections,
+                     "Smooth and slightly rough metal mirrors what the picture shows (default: on)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
@@ -36,6 +56,14 @@ int main(int argc, char** argv) {
         settings.edges = edges;
         settings.sample_shading = sample_shading;
         settings.environment = !no_environment;
+        settings.ambient_occlusion = raster::ambient_occlusion(occlusion_name);
+        settings.occlusion_radius = occlusion_radius;
+        settings.prefiltered_environment = prefiltered;
+        settings.transformed_cosines = transformed_cosines;
+        settings.screen_reflections = screen_reflections;
+        settings.shadows = shadows;
+        settings.shadow_map_side = shadow_map_side;
+        settings.shadow_cells = shadow_cells;
         settings.skips.frustum = settings.skips.back_faces = !no_culling;
         return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
             return raster::render(prepared, view, settings, control);

@@ -9,6 +9,7 @@
 #include "raster/lines.h"
 #include "raster/multisample.h"
 #include "raster/picture.h"
+#include "raster/screen.h"
 #include "raster/shade.h"
 #include "raster/shadings/shadings.h"
 #include "raster/strip_samples.h"
@@ -70,11 +71,51 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
+/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself.
+void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, Screen& screen) {
+    Settings settings = frame.settings;
+    settings.screen_reflections = false;
+    settings.parts = {};
+    settings.aovs = {};
+    pass.screen = &screen;
+    ImageRgb radiance(view.width, view.height);
+    Image<std::uint8_t> lamps(view.width, view.height, 0);
+    parallel_for(frame.grid.size(), settings.threads, [&](std::size_t i) {
+        if (frame.control.stopped()) return;
+        const PixelRect rect = frame.grid.tile(i);
+        DepthTile depths;
+        cover(geometry, pass, pass.samples.front(), rect, i, depths);
+        const HitTile tile(depths, geometry, pass);
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                radiance(x, y) = shade(frame.data, settings, tile, x, y).radiance;
+                lamps(x, y) = is_lamp(frame.data.scene, tile.hit(x, y));
+            }
+    });
+    screen.set_radiance(std::move(radiance), std::move(lamps));
+}
+
+/// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
+std::optional<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
+    if (!needs_screen(frame.data, frame.settings)) return std::nullopt;
+    const std::vector<SampleOffset> centers(1);
+    const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
+    GeometryLoan geometry(*frame.data.geometries);
+    process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
+    ImageFloat nearness(view.width, view.height);
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
+        if (!frame.control.stopped()) keep_nearness(*geometry, central, frame.grid.tile(i), i, nearness);
+    });
+    Screen screen(central.pinhole, centers.front(), std::move(nearness));
+    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, screen);
+    return screen;
+}
+
 /// One pass: its geometry, then each tile, which render_tile(view, index) makes.
 template <typename RenderTile>
 void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
-    const PassView pass_view = pass_view_of(camera, view, pass);
+    PassView pass_view = pass_view_of(camera, view, pass);
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
     if (frame.layers != nullptr) {
@@ -82,13 +123,17 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
         frame.account.add(*frame.layers);
     }
     const Stopwatch watch;
+    const std::optional<Screen> screen = look_at_screen(frame, view, pass_view);
+    pass_view.screen = screen ? &*screen : nullptr;
+    frame.account.prepass += watch.seconds();
+    const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
         render_tile(pass_view, i);
         frame.account.tiles_done += 1;
         frame.progress.step();
     });
-    frame.account.tiles += watch.seconds();
+    frame.account.tiles += tiles_watch.seconds();
 }
 
 /// Samples of a tile by a program.

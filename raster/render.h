@@ -31,6 +31,11 @@ Shading shading(std::string_view name);
 /// "lit, phong … or depth".
 std::string shading_names();
 
+/// How the environment's occlusion is guessed from the picture's depths (raster/ambient_occlusion.h).
+enum class AmbientOcclusion { kNone, kSsao, kGtao };
+/// "none", "ssao", "gtao"; throws Error for another name.
+AmbientOcclusion ambient_occlusion(std::string_view name);
+
 /// The parts of Shading::kLit (LightParts in raster/split.h): one that is left out is not computed.
 struct PartSet {
     bool emission = true, direct = true, environment = true, reflection = true;
@@ -53,6 +58,17 @@ struct Settings : RenderSettings {
     bool sample_shading = false; ///< with it: shade each of its samples, which is supersampling by its pattern
     bool edges = false; ///< ink lines over the picture where depth, normals or objects change (raster/edges.h)
     PartSet parts; ///< all, but for a look at one, and for its price
+    bool shadows = true; ///< Shading::kLit: shadow maps, made by prepare(), which must be asked for them, too
+    int shadow_map_side = 2048; ///< texels along a side, in [64, 8192]; of each face of a cube of maps half as many,
+                                ///< of a surface light's a quarter
+    int shadow_cells = 2; ///< rectangular lights are cut into as many pieces along each side, in [1, 8], a map each
+    AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: of diffuse surfaces
+    /// How far what occludes the environment may be, metres; 0: half of the lesser of the scene's diagonal
+    /// and the way from its camera's eye to what that looks at.
+    double occlusion_radius = 0;
+    bool prefiltered_environment = true;  ///< Shading::kLit: rough metal mirrors it blurred, not as if it were smooth
+    bool screen_reflections = true;  ///< Shading::kLit: smooth and slightly rough metal mirrors what the picture shows
+    bool transformed_cosines = true; ///< Shading::kLit: of surface lights on rough metal; off: as from their centres
     bool environment =
         true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only
 };

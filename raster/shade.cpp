@@ -1,10 +1,24 @@
 #include "raster/shade.h"
 
+#include "raster/ambient_occlusion.h"
 #include "raster/direct.h"
+#include "raster/ggx_table.h"
+#include "raster/point_key.h"
+#include "raster/prefiltered.h"
+#include "raster/screen.h"
+#include "raster/screen_reflection.h"
+#include "raster/shadows.h"
 #include "raster/split.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace duet::raster {
 namespace {
+
+/// GGX alpha up to which metal mirrors what the picture shows (roughness 0.32): rougher metal would need too many rays.
+constexpr float kRoughestMirror = 0.1f;
+constexpr int kMirrorSamples = 4; ///< of rough metal, where a pixel has few samples of its own
 
 bool shows_environment(const PreparedData& data, const Settings& settings) {
     return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
@@ -13,13 +27,20 @@ bool shows_environment(const PreparedData& data, const Settings& settings) {
 /// Light from the environment, which nothing is taken to occlude.
 class EnvironmentLight {
 public:
-    EnvironmentLight(const PreparedData& data, const ShadingPoint& point) : data_(data), point_(point) {}
+    EnvironmentLight(const PreparedData& data, const Settings& settings, const ShadingPoint& point)
+        : data_(data), prefiltered_(settings.prefiltered_environment ? data.prefiltered.get() : nullptr), point_(point) {}
 
     Rgb operator()(const DiffuseBsdf& bsdf) const {
         return bsdf.albedo * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns);
     }
-    /// What a smooth metal reflects, also for a rough one.
-    Rgb operator()(const MetalBsdf& bsdf) const { return look_up(MetalBsdf{bsdf.reflectance, 0}, false); }
+    /// Of a rough one by the split sum; else what a smooth metal reflects.
+    Rgb operator()(const MetalBsdf& bsdf) const {
+        if (bsdf.smooth() || prefiltered_ == nullptr) return look_up(MetalBsdf{bsdf.reflectance, 0}, false);
+        const Vec3 mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
+        const Vec3 axis = Prefiltered::axis(point_.ns, mirrored, bsdf.alpha);
+        return prefiltered_->at(data_.scene.environment, axis, bsdf.alpha) *
+               ggx_albedo(bsdf.alpha, std::abs(point_.wo.z)).of(bsdf.reflectance);
+    }
     /// The mirror image, and what is seen through this side of the glass alone: refracted once, tinted as by two
     /// crossings; weighed by Fresnel's equations.
     Rgb operator()(const DielectricBsdf& bsdf) const {
@@ -41,28 +62,84 @@ private:
     }
 
     const PreparedData& data_;
+    const Prefiltered* prefiltered_;
     const ShadingPoint& point_;
 };
 
 struct DirectLight {
     std::span<const Light> lights;
     const ShadingPoint& point;
+    Visibility visibility;
+    bool transformed_cosines;
 
-    Rgb operator()(const DiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
-    Rgb operator()(const MetalBsdf& bsdf) const { return direct_light(lights, bsdf, point); }
-    Rgb operator()(const DielectricBsdf&) const { return {}; }
+    Direct operator()(const DiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point, visibility); }
+    Direct operator()(const MetalBsdf& bsdf) const {
+        return direct_light(lights, bsdf, point, visibility, transformed_cosines);
+    }
+    Direct operator()(const DielectricBsdf&) const { return {}; }
 };
 
+/// The part of the environment that a diffuse surface sees.
+float environment_visibility(const PreparedData& data, const Settings& settings, const Screen* screen,
+                             const ShadingPoint& point, Vec3 to_viewer) {
+    if (screen == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone) return 1;
+    const OcclusionPoint seen{screen->relative(point.surface.p), point.ns, to_viewer};
+    const auto radius = static_cast<float>(occlusion_radius(data, settings));
+    const int spp = settings.samples_per_pixel;
+    const std::uint64_t key = point_key(point.surface.p, 0);
+    if (settings.ambient_occlusion == AmbientOcclusion::kSsao)
+        return screen_space_occlusion(*screen, seen, radius, spp >= 16 ? 8 : spp >= 4 ? 16 : 32, key);
+    return horizon_occlusion(*screen, seen, radius, spp >= 16 ? 2 : spp >= 4 ? 3 : 6, 8, key);
+}
+
+/// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions drawn
+/// from its lobe.
+Rgb mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point,
+             const MetalBsdf& bsdf) {
+    const int count = bsdf.smooth() || settings.samples_per_pixel >= 4 ? 1 : kMirrorSamples;
+    const std::uint64_t key = point_key(point.surface.p, 1);
+    const Vec3 p = screen.relative(point.surface.p);
+    Rgb sum;
+    for (int i = 0; i < count; ++i) {
+        const std::uint64_t random = stream_number(key, static_cast<std::uint64_t>(i));
+        const Vec2 u{(static_cast<float>(i) + unit_float(high_bits(random))) / static_cast<float>(count),
+                     unit_float(low_bits(random))};
+        const auto sample = bsdf.sample(point.wo, 0, u, TransportMode::kRadiance);
+        if (!sample) continue;
+        const Vec3 way = normalize(point.frame.to_world(sample->wi));
+        if (!point.receives(way)) continue;
+        if (const auto hit = trace_screen(screen, p, point.ng, way)) {
+            // What lamps do to rough metal is direct light.
+            if (bsdf.smooth() || !screen.is_lamp(hit->x, hit->y))
+                sum += screen.radiance()(hit->x, hit->y) * sample->weight;
+        } else if (shows_environment(data, settings)) {
+            sum += radiance(data.scene.environment, way) * sample->weight;
+        }
+    }
+    return sum / static_cast<float>(count);
+}
+
 LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
-               Vec3 to_viewer) {
+               Vec3 to_viewer, const Screen* screen) {
     const Scene& scene = data.scene;
     const PartSet& asked = settings.parts;
     LightParts parts;
     if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], scene.textures, point.surface, to_viewer);
-    if (asked.direct) parts.direct = std::visit(DirectLight{scene.lights, point}, bsdf);
+    if (asked.direct) {
+        const SoftTaps taps = Shadows::taps(settings);
+        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, &taps};
+        const Direct direct = std::visit(DirectLight{scene.lights, point, visibility, settings.transformed_cosines}, bsdf);
+        parts.direct = direct.arriving, parts.shadowed = direct.shadowed;
+    }
     const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
     if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
-        (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, point), bsdf);
+        (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point), bsdf);
+    const auto* metal = std::get_if<MetalBsdf>(&bsdf);
+    if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
+        !screen->radiance().empty() && metal->alpha <= kRoughestMirror)
+        parts.reflection = mirrored(data, settings, *screen, point, *metal);
+    if (diffuse && !is_black(parts.environment))
+        parts.environment *= environment_visibility(data, settings, screen, point, to_viewer);
     return parts;
 }
 
@@ -77,6 +154,32 @@ Rgb background(const PreparedData& data, const Settings& settings, const Ray& ra
 
 } // namespace
 
+bool needs_screen(const PreparedData& data, const Settings& settings) {
+    const bool occlusion = settings.ambient_occlusion != AmbientOcclusion::kNone && settings.parts.environment &&
+                           shows_environment(data, settings);
+    return settings.shading == Shading::kLit && settings.output != Output::kNearness && (occlusion || needs_screen_radiance(data, settings));
+}
+
+bool is_lamp(const Scene& scene, const Hit& hit) {
+    return hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+}
+
+bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {
+    const std::vector<Material>& materials = data.scene.materials;
+    return settings.shading == Shading::kLit && settings.screen_reflections && settings.parts.reflection &&
+           std::any_of(materials.begin(), materials.end(), [](const Material& material) {
+               const auto* metal = std::get_if<Metal>(&material);
+               return metal != nullptr && (!metal->roughness.constant() || sqr(metal->roughness.value) <= kRoughestMirror);
+           });
+}
+
+double occlusion_radius(const PreparedData& data, const Settings& settings) {
+    if (settings.occlusion_radius > 0) return settings.occlusion_radius;
+    const Camera& camera = data.scene.camera;
+    return min(static_cast<double>(length(data.scene.bounds.diagonal())), length(camera.look_at - camera.eye)) /
+           (settings.ambient_occlusion == AmbientOcclusion::kSsao ? 8 : 2); // a point in the hemisphere finds less far off
+}
+
 std::optional<Rgb> constant_background(const PreparedData& data, const Settings& settings) {
     if (settings.shading != Shading::kLit || !settings.parts.emission || !shows_environment(data, settings))
         return Rgb();
@@ -84,18 +187,40 @@ std::optional<Rgb> constant_background(const PreparedData& data, const Settings&
     return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
 }
 
+std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings) {
+    if (!needs_screen(prepared.data(), settings)) return nullptr;
+    Settings depths = settings;
+    depths.output = Output::kNearness;
+    Control control;
+    const auto screen = std::make_shared<Screen>(CameraModel(view).through(), SampleOffset{},
+                                                 render(prepared, view, depths, control).nearness);
+    if (needs_screen_radiance(prepared.data(), settings)) {
+        Settings first = settings;
+        first.screen_reflections = false;
+        first.samples_per_pixel = 1;
+        first.parts = {};
+        first.aovs = {};
+        first.aovs.hit = true;
+        Rendering look = render(prepared, view, first, control);
+        Image<std::uint8_t> lamps(view.width, view.height, 0);
+        for (std::size_t i = 0; i < lamps.size(); ++i) lamps[i] = is_lamp(prepared.data().scene, look.hit[i]);
+        screen->set_radiance(std::move(look.radiance), std::move(lamps));
+    }
+    return screen;
+}
+
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
-                         const Bsdf& bsdf, Vec3 to_viewer) {
-    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer);
+                         const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen) {
+    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen);
 }
 
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
-                     const RayFootprint* footprint) {
+                     const RayFootprint* footprint, const Screen* screen) {
     const PreparedData& data = prepared.data();
     if (!hit.valid())
-        return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}};
+        return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}, .shadowed = {}};
     const SurfacePoint surface = surface_point(data.scene, ray, hit, footprint);
-    return shade_surface(prepared, settings, surface, bsdf_of(data, surface), -ray.direction);
+    return shade_surface(prepared, settings, surface, bsdf_of(data, surface), -ray.direction, screen);
 }
 
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
@@ -109,7 +234,7 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
     if (settings.shading == Shading::kLit)
-        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction).sum();
+        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen()).sum();
     return result;
 }
 

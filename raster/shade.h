@@ -20,6 +20,15 @@ struct Shaded {
 /// shading shows none. The albedo is filled in where the settings ask for it.
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
 
+/// Whether shading by these settings looks at HitTile::screen.
+bool needs_screen(const PreparedData& data, const Settings& settings);
+/// Whether that must have its radiance, too, shaded by the same settings without reflections of it.
+bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
+/// Whether a hit is on one of Scene::lights.
+bool is_lamp(const Scene& scene, const Hit& hit);
+/// Settings::occlusion_radius, or what its 0 stands for.
+double occlusion_radius(const PreparedData& data, const Settings& settings);
+
 /// What is seen where nothing is, if it is the same everywhere.
 std::optional<Rgb> constant_background(const PreparedData& data, const Settings& settings);
 

@@ -44,4 +44,11 @@ std::unique_ptr<Program> program(Shading shading) {
     return nullptr;
 }
 
+AmbientOcclusion ambient_occlusion(std::string_view name) {
+    if (name == "none") return AmbientOcclusion::kNone;
+    if (name == "ssao") return AmbientOcclusion::kSsao;
+    if (name == "gtao") return AmbientOcclusion::kGtao;
+    throw Error(message("ambient occlusion: found ", name, ", expected none, ssao or gtao"));
+}
+
 } // namespace duet::raster

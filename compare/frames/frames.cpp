@@ -120,7 +120,9 @@ void write_pictures(const std::filesystem::path& folder, const MeshRows& mesh) {
 /// Whether every row was measured: false where a signal came.
 bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
                   ProgressBar& bar, double first, double share, const InterruptFlag& interrupt) {
-    const raster::Prepared prepared = raster::prepare(scene, {});
+    raster::Settings phong; // no frame here casts shadows
+    phong.shading = raster::Shading::kPhong;
+    const raster::Prepared prepared = raster::prepare(scene, phong);
     FrameSettings settings = options.settings;
     settings.stop = &interrupt.flag();
     double done = 0;

@@ -14,12 +14,12 @@ namespace {
 /// What one camera sample adds to I₁ … I₇.
 using Steps = std::array<Rgbd, kRungCount>;
 
-Steps steps(const PreparedPair& pair, const raytrace::CameraSample& sample) {
+Steps steps(const PreparedPair& pair, const raster::Screen* screen, const raytrace::CameraSample& sample) {
     const raster::LightParts hit = raster::shade_hit(pair.raster, pair.raster_settings, sample.ray, sample.hit,
-                                                     sample.footprint ? &*sample.footprint : nullptr);
+                                                     sample.footprint ? &*sample.footprint : nullptr, screen);
     const raster::LightParts surface =
         sample.surface ? raster::shade_surface(pair.raster, pair.raster_settings, sample.surface->point,
-                                               sample.surface->bsdf, -sample.ray.direction)
+                                               sample.surface->bsdf, -sample.ray.direction, screen)
                        : hit;
     const raytrace::LightParts& light = sample.light;
     const Rgbd v(surface.environment), r(surface.reflection);
@@ -27,7 +27,7 @@ Steps steps(const PreparedPair& pair, const raytrace::CameraSample& sample) {
     const Rgbd seen = emission + shadowed_direct;
     return {Rgbd(hit.sum()),
             Rgbd(surface.sum()),
-            emission + Rgbd(light.unshadowed()) + v + r,
+            emission + Rgbd(light.unshadowed()) - Rgbd(surface.shadowed) + v + r,
             seen + v + r,
             seen + environment + r,
             seen + environment + Rgbd(light.reflection),
@@ -35,8 +35,11 @@ Steps steps(const PreparedPair& pair, const raytrace::CameraSample& sample) {
 }
 
 bool is_valid(const Steps& steps) {
-    for (const Rgbd& c : steps)
-        if (!is_finite(c) || c.r < 0 || c.g < 0 || c.b < 0) return false;
+    constexpr std::size_t kShadowsTaken = 2; // I₃: a light sample less the shadow of all lights may be negative
+    for (std::size_t k = 0; k < kRungCount; ++k) {
+        const Rgbd& c = steps[k];
+        if (!is_finite(c) || (k != kShadowsTaken && (c.r < 0 || c.g < 0 || c.b < 0))) return false;
+    }
     return true;
 }
 
@@ -55,12 +58,13 @@ struct Sums {
 };
 
 /// One pixel; returns the number of invalid samples.
-int climb_pixel(const PreparedPair& pair, const raytrace::SplitTracer& tracer, int x, int y, LadderPictures& pictures) {
+int climb_pixel(const PreparedPair& pair, const raster::Screen* screen, const raytrace::SplitTracer& tracer, int x,
+                int y, LadderPictures& pictures) {
     std::array<Sums, 2> sums;
     int invalid = 0;
     const auto samples = static_cast<std::uint32_t>(pair.raytrace_settings.samples_per_pixel);
     for (std::uint32_t i = 0; i < samples; ++i)
-        if (!sums[i % 2].add(steps(pair, tracer.sample(x, y, i)))) ++invalid;
+        if (!sums[i % 2].add(steps(pair, screen, tracer.sample(x, y, i)))) ++invalid;
     for (std::size_t half = 0; half < 2; ++half)
         for (std::size_t k = 0; k < kRungCount; ++k) pictures.halves[half][k](x, y) = sums[half].mean(k);
     return invalid;
@@ -80,13 +84,15 @@ LadderPictures climb(ImageRgb first, const PreparedPair& pair, const View& view,
     pictures.first = std::move(first);
     for (auto& half : pictures.halves) half.fill(ImageRgb(view.width, view.height));
     const raytrace::SplitTracer tracer(pair.raytrace, view, pair.raytrace_settings);
+    const std::shared_ptr<const raster::Screen> screen =
+        raster::screen_of(pair.raster, view, pair.raster_settings);
     std::atomic<std::int64_t> invalid = 0;
     std::mutex mutex; // of the progress
     int rows_done = 0;
     parallel_for(static_cast<std::size_t>(view.height), pair.raytrace_settings.threads, [&](std::size_t row) {
         for (int x = 0; x < view.width; ++x) {
             if (control.stopped()) return;
-            invalid += climb_pixel(pair, tracer, x, static_cast<int>(row), pictures);
+            invalid += climb_pixel(pair, screen.get(), tracer, x, static_cast<int>(row), pictures);
         }
         const std::lock_guard lock(mutex);
         control.report(static_cast<double>(++rows_done) / view.height);

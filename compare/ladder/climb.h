@@ -17,17 +17,18 @@ struct LadderPictures {
     ImageRgb picture(std::size_t k) const;
 };
 
-/// With the parts of the light of one camera sample as the rasterizer shades it (raster::LightParts: e, d, v, r) and as
+/// With the parts of the light of one camera sample as the rasterizer shades it (raster::LightParts: e, d, v, r, and s,
+/// what its shadows take from d) and as
 /// the path tracer finds it (raytrace::LightParts: emission E, direct D, unshadowed U, environment V, reflection R,
 /// indirect G), the means over the path tracer's camera samples are
 ///
 ///   I₁ = e + d + v + r at the traced hits      I₄ = E + D + v + r
 ///   I₂ = the same at the traced surfaces       I₅ = E + D + V + r
-///   I₃ = E + U + v + r                         I₆ = E + D + V + R
+///   I₃ = E + U − s + v + r                     I₆ = E + D + V + R
 ///                                              I₇ = E + D + V + R + G, the path tracer's picture.
 ///
-/// What the rasterizer learns of reflections or occlusion is part of its r and v, and all stays as it is. Once it has
-/// shadows, its parts must tell what they take away (as LightParts::shadowed does here): I₃ is less by that.
+/// What the rasterizer knows of reflections and of the environment's occlusion is part of its r and v. Effects in screen
+/// space look at the depths seen through the lens's centre as the shutter opens.
 ///
 /// `first` is I₀. Stopped by `control`, it returns what is finished, the rest black.
 LadderPictures climb(ImageRgb first, const PreparedPair& pair, const View& view, Control& control);

@@ -89,23 +89,27 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
                            "Surface point and texture of its hits.",
                            "Shared code: from a hit on, both are the same. Where these pictures differ, samples lie "
                            "elsewhere in the pixel."};
-    const RungPlan direct{{light("direct", pair, kLights, Integrator::kUnshadowed, false)},
-                          "Each light in closed form; on rough metal a surface light counts as a distant one.",
+    PreparedPair open = pair; // nothing casts a shadow
+    open.raster_settings.shadows = false;
+    const RungPlan direct{{light("direct", open, kLights, Integrator::kUnshadowed, false)},
+                          "Each light in closed form; on rough metal by a linearly transformed cosine.",
                           "One light sample a camera ray, its visibility left out.",
                           ""};
     raster::Settings raster_lights = pair.raster_settings;
     raster_lights.parts = kLights;
     const RungPlan shadows{{light("shadows", pair, kLights, Integrator::kLights, false)},
-                           "The same light as on the rung below.",
+                           "The same light, times the part that shadow maps let pass.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
                            paragraph(raster::approximations(pair.raster, raster_lights))};
     const RungPlan environment{
         {light("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
-        "Irradiance as if nothing hid the environment, in closed form or by spherical harmonics.",
+        "Irradiance in closed form or by spherical harmonics, times the part of the environment that the depths in the "
+        "picture leave in sight.",
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
     const RungPlan reflections{{light("reflections", pair, kReflection, Integrator::kReflection, true)},
-                               "Looks up the environment in the mirrored and the refracted direction.",
+                               "Looks up the environment in the mirrored and the refracted direction, blurred where metal is rough; smooth metal in "
+                               "what the picture shows, first.",
                                "Follows the path on from metal and glass to whatever it meets.",
                                ""};
     const RungPlan everything{{light("everything", pair, {}, Integrator::kPath, true)},

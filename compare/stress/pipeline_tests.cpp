@@ -144,7 +144,8 @@ template <typename Settings> Settings with_everything(int threads) {
 }
 Rendering render_raster(const TrialScene& trial, int threads) {
     Control control;
-    const auto settings = with_everything<raster::Settings>(threads);
+    auto settings = with_everything<raster::Settings>(threads);
+    settings.shadow_map_side = 128;
     return raster::render(raster::prepare(trial.scene, settings), trial.view, settings, control);
 }
 Rendering render_raytrace(const TrialScene& trial, int threads) {

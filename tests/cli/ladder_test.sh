@@ -20,7 +20,7 @@ for key in shares shares_sum rungs visible_pixels difference_rms code note unexp
 done
 expect 0 "$bin/compare" ladder models/cornell.json -o "$scratch/report" --size 24x24 --spp 4
 grep -q "sum of shares: 1.0000000000" "$scratch/stderr" || fail "the table lacks the sum of the shares"
-grep -q "Direct light is unshadowed" "$scratch/stderr" || fail "the table does not say what the rasterizer lacks"
+grep -q "Soft shadows are estimated" "$scratch/stderr" || fail "the table does not say what the rasterizer lacks"
 
 terminated 2 "$bin/compare" ladder models/cornell.json -o "$scratch/interrupted" --size 64x64 --spp 1000000 --quiet
 nothing_in "$scratch/interrupted"

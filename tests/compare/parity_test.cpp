@@ -110,7 +110,7 @@ TEST_SUITE("statistical") {
         const View view{scene.camera, 96, 96};
         Control control;
         raster::Settings closed;
-        closed.environment = false;
+        closed.environment = closed.shadows = false;
         closed.aovs.hit = true;
         raytrace::Settings sampled;
         sampled.integrator = raytrace::Integrator::kUnshadowed;

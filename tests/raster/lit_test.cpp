@@ -61,7 +61,7 @@ TEST_SUITE("unit") {
                 const double e = rectangle_above(-0.5 - p.x, 1 - p.x, -1 - p.z, 1 - p.z, 4);
                 check_rgb(rendering.radiance(x, y), albedo * light * static_cast<float>(e / kPiDouble));
             }
-        CHECK(names(rendering, "unshadowed"));
+        CHECK(names(rendering, "Soft shadows"));
         CHECK_FALSE(names(rendering, "environment"));
         CHECK_FALSE(names(rendering, "etal"));
     }
@@ -121,7 +121,9 @@ TEST_SUITE("unit") {
             add(scene, Sphere{Vec3(0, 1, 0), 0.5f}, Mat4(), white);
             scene.environment = ConstantEnvironment{Rgb(0.7f)};
             finish_scene(scene);
-            const Rendering rendering = render(scene, {look({1, 2, 3}, {0, 0, 0}), 48, 32}, {});
+            raster::Settings settings; // occlusion would darken the ring's inside
+            settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+            const Rendering rendering = render(scene, {look({1, 2, 3}, {0, 0, 0}), 48, 32}, settings);
             for (const Rgb c : rendering.radiance) check_rgb(c, Rgb(0.7f), 1e-5);
             CHECK(names(rendering, "unoccluded"));
         }
@@ -169,7 +171,9 @@ TEST_SUITE("unit") {
         finish_scene(with_lamp);
         with_sun.lights.push_back(SunLight{Vec3(0, -1, 0), Rgb(1000.0f) * (kPi * 1e-4f)});
         finish_scene(with_sun);
-        const Rendering lamp = render(with_lamp, kFromAbove, {}), sun = render(with_sun, kFromAbove, {});
+        raster::Settings from_center;
+        from_center.transformed_cosines = false;
+        const Rendering lamp = render(with_lamp, kFromAbove, from_center), sun = render(with_sun, kFromAbove, {});
         const MetalBsdf bsdf{Rgb(0.9f, 0.7f, 0.4f), 0.25f};
         const Ray ray = CameraModel(kFromAbove).ray({16.5, 12.5});
         const Vec3 wo(-ray.direction.x, ray.direction.z,
@@ -179,6 +183,9 @@ TEST_SUITE("unit") {
         check_rgb(lamp.radiance(16, 12), expected, 0.02);
         CHECK(names(lamp, "Rough metal sees each light surface"));
         CHECK_FALSE(names(sun, "Rough metal sees each light surface"));
+        const Rendering cosines = render(with_lamp, kFromAbove, {}); // look like its lobe, but are not
+        check_rgb(cosines.radiance(16, 12), expected, 0.15);
+        CHECK(names(cosines, "linearly transformed cosines"));
     }
 
     TEST_CASE("light from behind the geometric surface does not arrive, whatever the shading normal") {
@@ -195,7 +202,9 @@ TEST_SUITE("unit") {
             Emissive{.radiance = Rgb(9, 0, 0), .two_sided = true});
         finish_scene(scene);
         const View view = kFromAbove;
-        const Rendering rendering = render(scene, view, {});
+        raster::Settings open; // the lamps stand in each other's way
+        open.shadows = false;
+        const Rendering rendering = render(scene, view, open);
         const Vec3 p = floor_point(view, 16, 12);
         const Vec3 upper[] = {Vec3(8, 0, -1), Vec3(8, 0, 1), Vec3(8, 2, 1), Vec3(8, 2, -1)};
         const double factor = polygon_form_factor_times_pi(p, normalize(Vec3(1, 0.6f, 0)), upper);

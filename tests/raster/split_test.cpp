@@ -47,17 +47,18 @@ TEST_SUITE("unit") {
             const raster::Prepared prepared = raster::prepare(scene, settings);
             Control control;
             const Rendering picture = raster::render(prepared, kView, settings, control);
+            const std::shared_ptr<const raster::Screen> screen = raster::screen_of(prepared, kView, settings);
             const CameraModel camera(kView);
             ImageRgb shaded(kView.width, kView.height), again = shaded;
             for (int y = 0; y < kView.height; ++y)
                 for (int x = 0; x < kView.width; ++x) {
                     const Ray ray = camera.ray({x + 0.5, y + 0.5});
                     const Hit hit = picture.hit(x, y);
-                    shaded(x, y) = again(x, y) = raster::shade_hit(prepared, settings, ray, hit).sum();
+                    shaded(x, y) = again(x, y) = raster::shade_hit(prepared, settings, ray, hit, nullptr, screen.get()).sum();
                     if (!hit.valid()) continue;
                     const SurfacePoint point = surface_point(scene, ray, hit);
                     const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
-                    again(x, y) = raster::shade_surface(prepared, settings, point, bsdf, -ray.direction).sum();
+                    again(x, y) = raster::shade_surface(prepared, settings, point, bsdf, -ray.direction, screen.get()).sum();
                 }
             CHECK(largest_difference(picture.radiance, shaded) < 1e-5);
             CHECK(largest_difference(shaded, again) == 0);

@@ -1,0 +1,42 @@
+// What GGX microfacets do to light from everywhere, and the linearly transformed cosine that looks most like them, by
+// roughness and angle: the two tables that lights with an area and environments need of a rough metal.
+#pragma once
+
+#include "common/material/metal.h"
+namespace duet::raster {
+
+/// The part of white light from all around that a metal of reflectance R returns to the viewer: scale·R + offset, with
+/// Schlick's Fresnel term inside the integral (the second factor of the split sum; Karis 2013, «Real Shading in Unreal
+/// Engine 4»). Less than 1 for R = 1: light that a second microfacet would reflect is left out, as by MetalBsdf.
+struct Albedo {
+    float scale = 1, offset = 0;
+
+    Rgb of(Rgb reflectance) const { return reflectance * scale + Rgb(offset); }
+};
+
+/// The map that takes a clamped cosine's directions to the lobe's, in the frame of the normal, the viewer in the plane
+/// y = 0: columns of [m11 0 m13; 0 m22 0; m31 0 m33] (Heitz et al. 2016, «Real-Time Polygonal-Light Shading with
+/// Linearly Transformed Cosines», §3).
+struct LobeMatrix {
+    float m11 = 1, m13 = 0, m22 = 1, m31 = 0, m33 = 1;
+
+    /// The lobe's directions back to the cosine's.
+    Vec3 to_cosine(Vec3 w) const {
+        const float over = 1 / (m11 * m33 - m13 * m31);
+        return {(m33 * w.x - m13 * w.z) * over, w.y / m22, (m11 * w.z - m31 * w.x) * over};
+    }
+};
+
+// Both tables are computed, once a process, on first use: nothing but common/material/ggx.h says what they hold.
+// alpha in (0, 1]; below (1/20)² that stands in. cosine: between normal and viewer, in (0, 1].
+
+Albedo ggx_albedo(float alpha, float cosine);
+LobeMatrix ggx_lobe(float alpha, float cosine);
+
+/// The lobe of one entry, by fitting; `start` is where the search begins. For tests.
+LobeMatrix fit_lobe(float alpha, float cosine, const LobeMatrix& start);
+/// ∫ |f − t| dw over the hemisphere, of the normalized lobe f and the transformed cosine t: 0 where they are the same,
+/// 2 where they have nothing in common. For tests.
+double lobe_distance(float alpha, float cosine, const LobeMatrix& lobe);
+
+} // namespace duet::raster

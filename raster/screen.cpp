@@ -1,0 +1,39 @@
+#include "raster/screen.h"
+
+namespace duet::raster {
+
+Screen::Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness)
+    : eye_(view.origin), near_(static_cast<float>(view.near)),
+      perspective_(view.world_to_pixel[3] == view.world_to_pixel[2]), nearness_(std::move(nearness)) {
+    const Vec2d first = offset.position(0, 0);
+    origin_ = Vec3(view.origin_dx * first.x + view.origin_dy * first.y);
+    origin_dx_ = Vec3(view.origin_dx), origin_dy_ = Vec3(view.origin_dy);
+    direction_ = Vec3(view.direction + view.direction_dx * first.x + view.direction_dy * first.y);
+    direction_dx_ = Vec3(view.direction_dx), direction_dy_ = Vec3(view.direction_dy);
+    for (std::size_t row = 0; row < 4; ++row) {
+        const auto& m = view.world_to_pixel[row];
+        const double shifted = m[0] * eye_.x + m[1] * eye_.y + m[2] * eye_.z + m[3];
+        to_pixel_[row] = {static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]),
+                          static_cast<float>(shifted)};
+    }
+}
+
+Vec3 Screen::project(Vec3 p) const {
+    const auto row = [&](std::size_t r) {
+        const Vec4& m = to_pixel_[r];
+        return m.x * p.x + m.y * p.y + m.z * p.z + m.w;
+    };
+    const float w = row(3);
+    return {row(0) / w, row(1) / w, row(2)};
+}
+
+std::optional<Vec3> Screen::seen(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width() || y >= height()) return std::nullopt;
+    const float nearness = nearness_(x, y);
+    if (!(nearness > 0)) return std::nullopt;
+    const float fx = static_cast<float>(x), fy = static_cast<float>(y);
+    return (origin_ + origin_dx_ * fx + origin_dy_ * fy) +
+           (direction_ + direction_dx_ * fx + direction_dy_ * fy) * (near_ / nearness);
+}
+
+} // namespace duet::raster

@@ -1,0 +1,87 @@
+#include "raster/shadow_map.h"
+
+#include <array>
+#include <cmath>
+
+namespace duet::raster {
+
+ShadowMap::ShadowMap(const Prepared& casters, const Camera& camera, int side, int threads)
+    : view_(CameraModel({camera, side, side}).through()),
+      orthographic_(camera.projection == Camera::Projection::kOrthographic) {
+    Settings settings;
+    settings.output = Output::kNearness;
+    settings.threads = threads;
+    Control control;
+    nearness_ = std::move(render(casters, {camera, side, side}, settings, control).nearness);
+}
+
+std::optional<Vec3d> ShadowMap::place(Vec3d p, double margin) const {
+    const Vec4d h = view_.world_to_pixel * Vec4d(p, 1.0);
+    const double most = side() - margin;
+    if (!(h.z > view_.near) || !(h.x >= margin * h.w && h.x <= most * h.w && h.y >= margin * h.w && h.y <= most * h.w))
+        return std::nullopt;
+    return Vec3d(h.x / h.w, h.y / h.w, h.z);
+}
+
+double ShadowMap::texel(double depth) const {
+    return orthographic_ ? length(view_.origin_dx) : length(view_.direction_dx) * depth;
+}
+
+/// The receiver's plane in the map, as a linear function of texels, larger where the plane is nearer to the light; a
+/// blocker's value is larger than `at` by more than `slack`.
+struct ShadowMap::Plane {
+    double at, dx, dy; ///< at the receiver's place; its change from texel to texel
+    double slack;
+};
+
+/// The plane n·(q − p) = 0 meets the ray o + d·w of a texel at the depth d = n·(p − o)/n·w. Seen from a point o is the
+/// same for all and 1/d is linear in w; seen from infinitely far w is the same, and d is linear in o.
+ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
+    const Vec3d n = receiver.n;
+    const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
+    const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
+    const double reach = kFilterRadius * texel(place.z) / cosine; // on the plane
+    const double height = kConcave * reach + 2 * receiver.error + place.z * 0x1p-22;
+    const double depth_slack = height / towards;
+    if (orthographic_)
+        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, depth_slack};
+    const double at = view_.near / place.z;
+    // 1/d grows by n·dw/(n·w d) for a change dw of w.
+    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards,
+            at * depth_slack / place.z};
+}
+
+namespace {
+
+/// The quadratic B-spline's weights of four samples, the first at −1.5 + (1 − f) from the middle, f in [0, 1): what
+/// the box of a texel, blurred by a box of a texel twice, leaves of each.
+std::array<double, 4> spline(double f) {
+    const auto b = [](double x) {
+        x = std::abs(x);
+        return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * sqr(1.5 - x) : 0.0;
+    };
+    return {b(1 + f), b(f), b(1 - f), b(2 - f)};
+}
+
+} // namespace
+
+float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
+    if (dot(receiver.n, view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y) >= 0) return 1;
+    const Plane plane = this->plane(receiver, place);
+    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
+    const std::array<double, 4> across = spline(place.x - 0.5 - left), down = spline(place.y - 0.5 - top);
+    const int x0 = static_cast<int>(left) - 1, y0 = static_cast<int>(top) - 1;
+    double dark = 0;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) {
+            const int x = x0 + column, y = y0 + row;
+            const double nearness = static_cast<double>(nearness_(x, y));
+            const double seen = orthographic_ ? -view_.near / nearness : nearness;
+            const double expected = plane.at + plane.dx * (x + 0.5 - place.x) + plane.dy * (y + 0.5 - place.y);
+            if (seen > expected + plane.slack)
+                dark += across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+        }
+    return dark < 1 - 1e-12 ? static_cast<float>(1 - dark) : 0.0f;
+}
+
+} // namespace duet::raster

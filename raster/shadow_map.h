@@ -1,0 +1,60 @@
+// Shadow maps: what a light sees hides the rest from it (Williams 1978, «Casting Curved Shadows on Curved Surfaces»).
+#pragma once
+
+#include "common/image/image.h"
+#include "raster/render.h"
+
+#include <optional>
+
+namespace duet::raster {
+
+/// A point that may lie in a shadow.
+struct Receiver {
+    Vec3d p;
+    Vec3d n;          ///< unit normal of its plane, on the side that is seen
+    double error = 0; ///< how far p may be off its plane, metres
+};
+
+/// The depths that a light sees through one camera, each at the centre of its texel, as exact as any picture's.
+class ShadowMap {
+public:
+    /// Draws `casters`, depths alone, onto side × side texels.
+    ShadowMap(const Prepared& casters, const Camera& camera, int side, int threads);
+
+    /// Where a point is seen: texels from the upper left corner, and depth. Empty where that is nearer than `margin`
+    /// texels to the map's edge, beyond it, or not before the light.
+    std::optional<Vec3d> place(Vec3d p, double margin) const;
+    /// The part of a point light's or a sun's light that arrives, in [0, 1]: percentage-closer filtering (Reeves,
+    /// Salesin and Cook 1987) over 4 × 4 texels, weighed by the quadratic B-spline about the point's place: an edge is
+    /// blurred over kFilterRadius texels to both sides. `place` is the receiver's, kFilterRadius + 1 or more from the
+    /// edge.
+    ///
+    /// Each texel's depth is compared with that of the receiver's *plane* at the texel's centre (Isidoro 2006, «Shadow
+    /// Mapping: GPU-based Tips and Techniques», receiver plane depth bias). On a plane both are the same number but for
+    /// rounding, however steep the light: there is no slope to be guessed. What is left is a height over the plane:
+    /// the rounding of both, and kConcave of the filter's reach on the plane, or each concave edge between the facets
+    /// of a curved surface would throw a shadow as wide as the filter.
+    float lit_fraction(const Receiver& receiver, Vec3d place) const;
+
+    static constexpr double kFilterRadius = 1.5;
+    static constexpr double kConcave = 0.25; ///< facets that meet at up to 14° do not shade each other
+
+    int side() const { return nearness_.width(); }
+    /// near / depth at a texel's centre; 0 where nothing is seen.
+    float nearness(int x, int y) const { return nearness_(x, y); }
+    double near() const { return view_.near; }
+    /// The width of a texel at a depth, metres.
+    double texel(double depth) const;
+
+private:
+    struct Plane;
+    Plane plane(const Receiver& receiver, Vec3d place) const;
+
+    Pinhole view_;
+    bool orthographic_;
+    /// near / depth; 0 where nothing is seen. Of a point's plane it is linear in the texels' coordinates, seen from a
+    /// point; seen from infinitely far depth itself is.
+    ImageFloat nearness_;
+};
+
+} // namespace duet::raster

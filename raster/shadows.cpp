@@ -1,0 +1,258 @@
+#include "raster/shadows.h"
+
+#include "raster/light_views.h"
+#include "raster/point_key.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace duet::raster {
+namespace {
+
+constexpr double kSpotGuard = 4;                     ///< texels
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
+constexpr double kFloor = 1e-4;                      ///< of the scene's size: how far things may dip into a floor
+
+/// A scene's prepared data, with some of its objects: what a shadow map needs of it.
+PreparedData with_objects(const PreparedData& data, const std::vector<bool>& kept) {
+    PreparedData result{.scene = data.scene,
+                        .objects = data.objects,
+                        .polygonal = {},
+                        .spheres = {},
+                        .irradiance = data.irradiance,
+                        .geometries = data.geometries};
+    for (const std::uint32_t object : data.polygonal)
+        if (kept[object]) result.polygonal.push_back(object);
+    for (const std::uint32_t object : data.spheres)
+        if (kept[object]) result.spheres.push_back(object);
+    return result;
+}
+
+Prepared caster_scene(const PreparedData& data, const std::vector<bool>& kept) {
+    return Prepared(std::make_shared<const PreparedData>(with_objects(data, kept)));
+}
+
+Box3 bounds_of(const PreparedData& data, const std::vector<bool>& kept) {
+    Box3 box;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (kept[i]) box.extend(data.objects[i].bounds);
+    return box;
+}
+
+/// Whether the object is a quad that all the scene lies on one side of, and the sun, too: it shades nothing, however
+/// large it is.
+bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_way) {
+    const Object& o = scene.objects[object];
+    const auto* list = std::get_if<QuadList>(&scene.shapes[o.shape]);
+    if (list == nullptr || list->quads.size() != 1 || o.moving) return false;
+    const Quad& quad = list->quads.front();
+    const Vec3d p = transform_point(Mat4d(o.to_world), Vec3d(quad.corner));
+    const Vec3d u = transform_vector(Mat4d(o.to_world), Vec3d(quad.u)), v = transform_vector(Mat4d(o.to_world), Vec3d(quad.v));
+    Vec3d n = normalize(cross(u, v));
+    if (dot(n, Vec3d(sun_way)) > 0) n = -n;
+    const Box3& box = scene.bounds;
+    double lowest = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3 q(corner & 1u ? box.high.x : box.low.x, corner & 2u ? box.high.y : box.low.y,
+                     corner & 4u ? box.high.z : box.low.z);
+        lowest = min(lowest, dot(n, Vec3d(q) - p));
+    }
+    return lowest > -kFloor * length(Vec3d(box.diagonal()));
+}
+
+bool only_shines(const Scene& scene, std::uint32_t object) {
+    const Object& o = scene.objects[object];
+    return std::all_of(o.materials.begin(), o.materials.end(),
+                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+}
+
+std::vector<SurfaceLight> surface_lights(const Scene& scene, const std::vector<std::size_t>& lights) {
+    std::vector<SurfaceLight> result;
+    for (const std::size_t i : lights) result.push_back(std::get<SurfaceLight>(scene.lights[i]));
+    return result;
+}
+
+/// The light's plane, rounded: what primitives of one object that lie in one plane have in common.
+std::array<long, 4> plane_key(const SurfaceLight& light, double scene_size) {
+    const Emitter e = Emitter::of(light);
+    const auto rounded = [](double x) { return std::lround(x * 1e3); };
+    return {rounded(e.normal.x), rounded(e.normal.y), rounded(e.normal.z),
+            rounded(dot(e.normal, e.center) / scene_size * 10)};
+}
+
+/// A light cut into n × n of its like; a triangle or a ball stays whole.
+std::vector<Emitter> pieces(const Emitter& emitter, int n) {
+    if (emitter.kind != Emitter::Kind::kParallelogram || n == 1) return {emitter};
+    std::vector<Emitter> result(static_cast<std::size_t>(n * n), emitter);
+    for (int i = 0; i < n * n; ++i) {
+        Emitter& piece = result[static_cast<std::size_t>(i)];
+        piece.center = emitter.center + emitter.u * ((i % n + 0.5) / n - 0.5) + emitter.v * ((i / n + 0.5) / n - 0.5);
+        piece.u = emitter.u / static_cast<double>(n), piece.v = emitter.v / static_cast<double>(n);
+    }
+    return result;
+}
+
+} // namespace
+
+Shadows::Shadows(const PreparedData& data, const Settings& settings)
+    : scene_(data.scene), scene_size_(static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30),
+      side_(settings.shadow_map_side), cube_side_(settings.shadow_map_side / 2) {
+    sources_ = find_sources(scene_, settings.shadow_cells);
+    const Camera& camera = scene_.camera;
+    const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 && camera.shutter_open != camera.shutter_close;
+    for (int i = 0; i < (moving ? kMoments : 1); ++i)
+        moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) * (i + 0.5) / kMoments
+                                  : camera.shutter_open);
+    std::int64_t cubes = 0;
+    for (const Source& source : sources_)
+        cubes += static_cast<std::int64_t>(std::max<std::size_t>(source.cells.size(), 1) * moments_.size());
+    while (cube_side_ > 64 && cubes * 6 * cube_side_ * cube_side_ > kCubeTexels) cube_side_ /= 2;
+    source_of_.assign(scene_.lights.size(), sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
+        sources_[i].moments.resize(moments_.size());
+        for (std::size_t k = 0; k < moments_.size(); ++k)
+            draw(data, settings, sources_[i], moments_[k], sources_[i].moments[k]);
+    }
+}
+
+std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells) {
+    std::vector<Source> sources;
+    std::map<std::pair<std::uint32_t, std::array<long, 4>>, std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&scene.lights[i]);
+        if (surface == nullptr) {
+            sources.push_back({{i}, {}, false, {}});
+        } else {
+            const bool lamp = only_shines(scene, surface->object);
+            groups[{surface->object, lamp ? std::array<long, 4>{} : plane_key(*surface, scene_size_)}].push_back(i);
+        }
+    }
+    for (auto& [key, lights] : groups) {
+        const std::vector<SurfaceLight> surfaces = surface_lights(scene, lights);
+        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_shines(scene, key.first), {}});
+    }
+    if (sources.size() <= kMostSources) return sources;
+    const float radius = static_cast<float>(scene_size_ / 2);
+    const auto power = [&](const Source& source) {
+        float sum = 0;
+        for (const std::size_t i : source.lights) sum += light_power(scene.lights[i], radius);
+        return sum;
+    };
+    std::stable_sort(sources.begin(), sources.end(), [&](const Source& a, const Source& b) { return power(a) > power(b); });
+    for (std::size_t i = kMostSources; i < sources.size(); ++i) unshadowed_ += sources[i].lights.size();
+    sources.resize(kMostSources);
+    return sources;
+}
+
+void Shadows::draw(const PreparedData& data, const Settings& settings, Source& source, double moment, Maps& maps) {
+    std::vector<bool> kept(scene_.objects.size(), true);
+    const Light& light = scene_.lights[source.lights.front()];
+    const auto add_views = [&](const Prepared& casters, std::vector<Camera> views) {
+        for (Camera& camera : views) {
+            camera.shutter_open = camera.shutter_close = moment;
+            maps.views.emplace_back(casters, camera, side_, settings.threads);
+            memory_bytes_ += std::int64_t{4} * side_ * side_;
+        }
+    };
+    if (const auto* sun = std::get_if<SunLight>(&light)) {
+        for (std::uint32_t i = 0; i < kept.size(); ++i) kept[i] = !is_floor(scene_, i, sun->direction);
+        const Box3 bounds = bounds_of(data, kept);
+        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera));
+        return;
+    }
+    if (const auto* spot = std::get_if<SpotLight>(&light)) {
+        const std::vector<Camera> views = spot_views(*spot, scene_size_, side_, kSpotGuard);
+        if (!views.empty()) return add_views(caster_scene(data, kept), views);
+        maps.cubes.push_back(
+            draw_cube(caster_scene(data, kept), Vec3d(spot->position), nullptr, true, moment, cube_side_, settings.threads));
+        return;
+    }
+    if (const auto* point = std::get_if<PointLight>(&light)) {
+        maps.cubes.push_back(
+            draw_cube(caster_scene(data, kept), Vec3d(point->position), nullptr, true, moment, cube_side_, settings.threads));
+        return;
+    }
+
+    const auto& surface = std::get<SurfaceLight>(light);
+    if (source.lamp) kept[surface.object] = false;
+    const Prepared casters = caster_scene(data, kept);
+    for (const Emitter& cell : source.cells) {
+        const bool flat = cell.kind != Emitter::Kind::kBall;
+        // Beside it or on it there may be other things in its plane: it looks from just before that.
+        const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
+        maps.cubes.push_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
+                                       surface.two_sided, moment, cube_side_ / 2, settings.threads));
+    }
+}
+
+CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+                           int side, int threads) {
+    CubeMap cube;
+    cube.center = Vec3d(Vec3(center)); // as cameras round it
+    if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
+    std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (i == 5 && plane != nullptr && !back) continue;
+        views[i].shutter_open = views[i].shutter_close = moment;
+        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], side, threads);
+        memory_bytes_ += std::int64_t{4} * side * side;
+    }
+    cube.near = static_cast<float>(cube.faces[0]->near());
+    cube.middle = static_cast<float>(side) / 2;
+    cube.scale = cube.middle - static_cast<float>(CubeMap::kGuard);
+    return cube;
+}
+
+SoftTaps Shadows::taps(const Settings& settings) {
+    const int spp = settings.samples_per_pixel, cells = settings.shadow_cells;
+    const auto shared = [&](int side) { return std::max((side + cells - 1) / cells, 2); };
+    return spp >= 4 ? SoftTaps{shared(6), shared(4), 0} : SoftTaps{shared(8), shared(6), shared(8)};
+}
+
+float Shadows::visibility(std::size_t light, const ShadingPoint& point, const SoftTaps& taps) const {
+    if (source_of_[light] == sources_.size()) return 1;
+    const Source& source = sources_[source_of_[light]];
+    const SurfacePoint& surface = point.surface;
+    const Vec3 size = abs(point.ng);
+    Receiver receiver{Vec3d(surface.p), Vec3d(point.ng), static_cast<double>(dot(size, surface.p_error))};
+    std::size_t moment = 0;
+    if (moments_.size() > 1) {
+        const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
+        const double part = (static_cast<double>(surface.time) - open) / (close - open) * kMoments;
+        moment = static_cast<std::size_t>(std::clamp(part, 0.0, kMoments - 1.0));
+        const Object& object = scene_.objects[surface.object];
+        if (object.moving) {
+            const ObjectTransform now = object_transform(object, surface.time),
+                                  then = object_transform(object, static_cast<float>(moments_[moment]));
+            const Mat4d way = Mat4d(then.to_world) * Mat4d(now.to_object);
+            receiver.p = transform_point(way, receiver.p);
+            receiver.n = normalize(transform_normal(inverse_affine(way), receiver.n));
+            receiver.error *= 4; // the maps' rounding, too
+        }
+    }
+    return visibility(source, source.moments[moment], receiver, taps);
+}
+
+float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, const SoftTaps& taps) const {
+    constexpr double kMargin = ShadowMap::kFilterRadius + 1;
+    if (!source.cells.empty()) {
+        const std::uint64_t key = point_key(Vec3(receiver.p), source.lights.front());
+        float sum = 0;
+        for (std::size_t i = 0; i < source.cells.size(); ++i)
+            sum += soft_visibility(maps.cubes[i], source.cells[i], receiver, taps, key + i);
+        return sum / static_cast<float>(source.cells.size());
+    }
+    for (const CubeMap& cube : maps.cubes) {
+        const Vec3 way(cube.frame.to_local(receiver.p - cube.center));
+        const ShadowMap& face = *cube.faces[cube_face(way)];
+        const std::optional<Vec3d> place = face.place(receiver.p, kMargin);
+        return place ? face.lit_fraction(receiver, *place) : 1;
+    }
+    for (const ShadowMap& view : maps.views)
+        if (const std::optional<Vec3d> place = view.place(receiver.p, kMargin)) return view.lit_fraction(receiver, *place);
+    return 1;
+}
+
+} // namespace duet::raster

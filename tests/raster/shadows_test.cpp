@@ -1,0 +1,241 @@
+// Shadow maps against shadows whose outline is known.
+#include "tests/raster/scenes.h"
+
+#include "common/light/lambert.h"
+#include "raster/shadow_map.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+constexpr int kSize = 200;      ///< pixels
+constexpr double kSquare = 4.0; ///< side of the floor's part in the picture, metres
+
+/// Straight down on [−2, 2]² of the floor, from below all that casts shadows there.
+View over_floor(double height = 0.25) {
+    Camera camera = look({0, height, 0}, {0, 0, 0});
+    camera.projection = Camera::Projection::kOrthographic;
+    camera.up = {0, 0, -1};
+    camera.height = kSquare;
+    return {camera, kSize, kSize};
+}
+Vec3d floor_point(int x, int y) {
+    return {(x + 0.5) * kSquare / kSize - kSquare / 2, 0, (y + 0.5) * kSquare / kSize - kSquare / 2};
+}
+
+Scene floor_scene(float half = 4) {
+    Scene scene;
+    add(scene, QuadList{{{Vec3(-half, 0, half), Vec3(2 * half, 0, 0), Vec3(0, 0, -2 * half)}}});
+    scene.camera = over_floor().camera;
+    return scene;
+}
+
+/// The part of the light that arrives at each pixel.
+ImageFloat visible(const Scene& scene, const View& view, raster::Settings settings = {}) {
+    const ImageRgb shaded = render(scene, view, settings).radiance;
+    settings.shadows = false;
+    const ImageRgb open = render(scene, view, settings).radiance;
+    ImageFloat result(view.width, view.height);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = open[i].g > 0 ? shaded[i].g / open[i].g : 1;
+    return result;
+}
+
+/// Visibility against an outline of which `inside` tells how far within it a point is (negative: without): all dark
+/// or all lit farther than `reach` from it, and of the right area to `tolerance` metres along `perimeter`.
+template <typename Inside>
+void check_outline(const ImageFloat& found, const Inside& inside, double reach, double perimeter, double tolerance) {
+    constexpr double kPixel = kSquare / kSize;
+    double area = 0, expected = 0;
+    int wrong = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const double depth = inside(floor_point(x, y));
+            area += 1 - static_cast<double>(found(x, y));
+            expected += depth > 0;
+            if (depth > reach) wrong += found(x, y) > 0;
+            if (depth < -reach) wrong += found(x, y) < 1;
+        }
+    CHECK(wrong == 0);
+    // Pixels whose centres decide are themselves off by up to half a pixel along the outline; by 1/8 in the mean.
+    CHECK(std::abs(area - expected) * kPixel * kPixel < perimeter * (tolerance + kPixel / 8));
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a sphere under a point light: the shadow is the disk that its tangents draw, to a texel") {
+        const double height = 3, center = 1, radius = 0.4;
+        Scene scene = floor_scene();
+        add(scene, Sphere{Vec3(0, 1, 0), 0.4f});
+        scene.lights.push_back(PointLight{Vec3(0, 3, 0), Rgb(20)});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 1024;
+        const double sine = radius / (height - center), edge = height * sine / std::sqrt(1 - sine * sine);
+        const double texel = 2 * height / (settings.shadow_map_side / 2 - 8);
+        check_outline(visible(scene, over_floor(), settings), [&](Vec3d p) { return edge - length(p); },
+                      (raster::ShadowMap::kFilterRadius + 1) * texel, 2 * kPiDouble * edge, texel / 2);
+    }
+
+    TEST_CASE("a square under a slanting sun and in a spot's cone: its shadow is where the light's rays take it") {
+        for (const bool sun : {true, false}) {
+            Scene scene = floor_scene();
+            add(scene, QuadList{{{Vec3(-0.5f, 1, 0.5f), Vec3(1, 0, 0), Vec3(0, 0, -1)}}});
+            const Vec3 way = normalize(Vec3(0.4f, -1, 0.2f));
+            if (sun)
+                scene.lights.push_back(SunLight{way, Rgb(2)});
+            else
+                scene.lights.push_back(SpotLight{Vec3(0, 3, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.shadow_map_side = 1024;
+            const double half = sun ? 0.5 : 0.75;
+            const Vec3d middle = sun ? Vec3d(0.4, 0, 0.2) : Vec3d();
+            const double texel = 8.0 / settings.shadow_map_side; // of the sun's map over all; the spot's is finer
+            check_outline(visible(scene, over_floor(), settings),
+                          [&](Vec3d p) {
+                              const Vec3d d = abs(p - middle);
+                              return half - max(d.x, d.z);
+                          },
+                          (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * half, texel / 2);
+        }
+    }
+
+    TEST_CASE("no acne: flat and convex surfaces under steep and grazing light are lit as if shadows were off") {
+        for (const float lift : {1.0f, 0.1f, 0.01f})
+            for (const int side : {64, 2048}) {
+                Scene scene = floor_scene();
+                add(scene, Sphere{Vec3(1, 3, 0), 0.5f});
+                const Vec3 way = normalize(Vec3(-1, -lift, 0.3f));
+                scene.lights.push_back(SunLight{way, Rgb(2)});
+                scene.lights.push_back(PointLight{way * -20.0f, Rgb(20)});
+                scene.lights.push_back(SpotLight{way * -20.0f, way, Rgb(20), 0.99f, 0.98f});
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = side;
+                // The sphere's own shadow falls beyond the floor or onto it: the sphere is looked at, and the floor
+                // where it is in no shadow.
+                const View ball{look({4, 3, 4}, {1, 3, 0}, 12), 64, 64};
+                for (const float part : visible(scene, ball, settings)) CHECK(part == 1);
+                if (lift == 1.0f) continue;
+                for (const float part : visible(scene, over_floor(), settings)) CHECK(part == 1);
+            }
+    }
+
+    TEST_CASE("no peter-panning: behind a box that stands on the floor the shadow begins at its foot") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
+        scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)}); // the shadow reaches to x = 1.5
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 1024;
+        const double texel = 8.0 / settings.shadow_map_side;
+        const ImageFloat found = visible(scene, over_floor(2), settings);
+        int dark = 0;
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const Vec3d p = floor_point(x, y);
+                const double margin = 3 * texel;
+                if (p.x < 0.5 + 1e-3 || p.x > 1.5 - margin || std::abs(p.z) > 0.5 - margin) continue;
+                CHECK(found(x, y) < 0.01f);
+                ++dark;
+            }
+        CHECK(dark > 1000);
+    }
+
+    // What a square hides of a square lamp, both parallel to the floor, is where the lines through its corners meet the
+    // lamp: the irradiance that arrives is in closed form, too.
+    TEST_CASE("a square before a square lamp: the penumbra of the closed form, to 1 % in the mean") {
+        Scene scene = floor_scene();
+        constexpr float kLamp = 0.5f, kHeight = 3, kSide = 0.6f, kAbove = 1;
+        add(scene, QuadList{{{Vec3(-kLamp, kHeight, -kLamp), Vec3(2 * kLamp, 0, 0), Vec3(0, 0, 2 * kLamp)}}}, Mat4(),
+            Emissive{Rgb(5)});
+        add(scene, QuadList{{{Vec3(-kSide, kAbove, kSide), Vec3(2 * kSide, 0, 0), Vec3(0, 0, -2 * kSide)}}});
+        finish_scene(scene);
+        for (const int cells : {1, 2, 4}) {
+            raster::Settings settings;
+            settings.shadow_cells = cells;
+            settings.shadow_map_side = 1024;
+            const ImageFloat found = visible(scene, over_floor(), settings);
+            double sum = 0;
+            int penumbra = 0;
+            for (int y = 0; y < kSize; y += 4)
+                for (int x = 0; x < kSize; x += 4) {
+                    const Vec3d p = floor_point(x, y);
+                    const auto hidden = [&](double at) { // an interval of the lamp, along one axis
+                        const double a = at + (-static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove),
+                                     b = at + (static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove);
+                        const double lamp = static_cast<double>(kLamp);
+                        return Vec2d(std::clamp(a, -lamp, lamp), std::clamp(b, -lamp, lamp));
+                    };
+                    const Vec2d u = hidden(p.x), v = hidden(p.z);
+                    const auto factor = [&](Vec2d a, Vec2d b) {
+                        const double h = static_cast<double>(kHeight);
+                        const std::array<Vec3, 4> q = {Vec3(Vec3d(a.x, h, b.x)), Vec3(Vec3d(a.y, h, b.x)),
+                                                       Vec3(Vec3d(a.y, h, b.y)), Vec3(Vec3d(a.x, h, b.y))};
+                        return polygon_form_factor_times_pi(Vec3(p), Vec3(0, 1, 0), q);
+                    };
+                    const double lamp = static_cast<double>(kLamp), all = factor({-lamp, lamp}, {-lamp, lamp});
+                    const double part = u.x < u.y && v.x < v.y ? 1 - factor(u, v) / all : 1;
+                    sum += std::abs(static_cast<double>(found(x, y)) - part);
+                    penumbra += part > 0.05 && part < 0.95;
+                }
+            const double error = sum / (kSize * kSize / 16);
+            CAPTURE(cells);
+            CHECK(penumbra > 100);
+            CHECK(error < 0.01);
+        }
+    }
+
+    TEST_CASE("what moves does not shade itself by its own motion, and leaves a blurred shadow") {
+        Scene scene = floor_scene();
+        Object& ball = add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));
+        ball.moving = true;
+        ball.to_world_end = translation(Vec3(1, 1, 0));
+        scene.lights.push_back(SunLight{normalize(Vec3(0.1f, -1, 0.1f)), Rgb(2)});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.samples_per_pixel = 16;
+        View from_above = over_floor(3);
+        // In the middle of its way the ball covers its own shadow but for the slant; far beside it all is lit.
+        const ImageFloat above = visible(scene, from_above, settings), floor = visible(scene, over_floor(), settings);
+        double least = 1;
+        for (int x = 60; x < 140; ++x) least = std::min(least, static_cast<double>(floor(x, kSize / 2 + 5)));
+        CHECK(least > 0.3); // at most 0.6 m of 2 m at a time
+        CHECK(least < 0.9);
+        CHECK(above(10, 10) == 1);
+        // The ball alone, no floor to be shaded: its light is all there.
+        Scene alone;
+        Object& other = add(alone, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));
+        other.moving = true;
+        other.to_world_end = translation(Vec3(1, 1, 0));
+        alone.lights = scene.lights;
+        alone.camera = scene.camera;
+        finish_scene(alone);
+        for (const float part : visible(alone, from_above, settings)) CHECK(part == 1);
+    }
+
+    TEST_CASE("the same bits for any number of threads; a size or a number of pieces out of range is refused") {
+        Scene scene = floor_scene();
+        add(scene, torus(24, 12), translation(Vec3(0, 0.5f, 0)));
+        add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
+        scene.lights.push_back(PointLight{Vec3(1, 2, 1), Rgb(3)});
+        scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 256;
+        settings.threads = 1;
+        const Rendering one = render(scene, over_floor(2), settings);
+        settings.threads = 5;
+        CHECK(render(scene, over_floor(2), settings).radiance.pixels() == one.radiance.pixels());
+        settings.shadow_map_side = 16;
+        CHECK_THROWS_AS(raster::prepare(scene, settings), Error);
+        settings.shadow_map_side = 256;
+        settings.shadow_cells = 0;
+        CHECK_THROWS_AS(raster::prepare(scene, settings), Error);
+    }
+}
