@@ -33,6 +33,8 @@ public:
     const Bvh& world() const { return world_; }
 
 private:
+    struct PacketInstances;
+    Ray inside(const BvhInstance& instance, const Ray& ray) const;
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
