@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/camera/camera.h"
+#include "common/scene/scene.h"
 #include "common/system/control.h"
 #include "compare/bench/bias_check.h"
 #include "compare/bench/reference.h"
