@@ -1,6 +1,7 @@
 #include "compare/bench/reference.h"
 
 #include "common/image/image_file.h"
+#include "common/scene/scene_hash.h"
 #include "common/system/file.h"
 #include "compare/bench/bias_check.h"
 #include "compare/bench/render_reference.h"
