@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
         app.add_option("--ambient-occlusion", occlusion_name,
                        "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
         app.add_option("--occlusion-radius", occlusion_radius,
-                       "Metres that it may be away (default 0: half the scene's size or the camera's distance)")
+                       "Metres that it may be away (default 0: half of the scene's size or the camera's distance, of ssao an eighth)")
             ->check(CLI::NonNegativeNumber);
         app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
                      "Rough metal mirrors a blurred environment, not as if it were smooth (default: on)");

@@ -63,8 +63,8 @@ struct Settings : RenderSettings {
                                 ///< of a surface light's a quarter
     int shadow_cells = 2; ///< rectangular lights are cut into as many pieces along each side, in [1, 8], a map each
     AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: of diffuse surfaces
-    /// How far what occludes the environment may be, metres; 0: half of the lesser of the scene's diagonal
-    /// and the way from its camera's eye to what that looks at.
+    /// How far what occludes the environment may be, metres; 0: half (of ssao: an eighth) of the lesser of the scene's
+    /// diagonal and the way from its camera's eye to what that looks at.
     double occlusion_radius = 0;
     bool prefiltered_environment = true;  ///< Shading::kLit: rough metal mirrors it blurred, not as if it were smooth
     bool screen_reflections = true;  ///< Shading::kLit: smooth and slightly rough metal mirrors what the picture shows

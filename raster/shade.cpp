@@ -18,6 +18,7 @@ namespace {
 
 /// GGX alpha up to which metal mirrors what the picture shows (roughness 0.32): rougher metal would need too many rays.
 constexpr float kRoughestMirror = 0.1f;
+constexpr int kHorizonSteps = 12; ///< to each side: fewer miss some of the highest
 constexpr int kMirrorSamples = 4; ///< of rough metal, where a pixel has few samples of its own
 
 bool shows_environment(const PreparedData& data, const Settings& settings) {
@@ -89,7 +90,7 @@ float environment_visibility(const PreparedData& data, const Settings& settings,
     const std::uint64_t key = point_key(point.surface.p, 0);
     if (settings.ambient_occlusion == AmbientOcclusion::kSsao)
         return screen_space_occlusion(*screen, seen, radius, spp >= 16 ? 8 : spp >= 4 ? 16 : 32, key);
-    return horizon_occlusion(*screen, seen, radius, spp >= 16 ? 2 : spp >= 4 ? 3 : 6, 8, key);
+    return horizon_occlusion(*screen, seen, radius, spp >= 16 ? 2 : spp >= 4 ? 3 : 6, kHorizonSteps, key);
 }
 
 /// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions drawn

@@ -1,6 +1,8 @@
 // The environment's occlusion against form factors.
 #include "tests/raster/scenes.h"
 
+#include "raster/ambient_occlusion.h"
+
 #include <doctest/doctest.h>
 
 using namespace duet;
@@ -72,6 +74,24 @@ TEST_SUITE("unit") {
                 ++rows;
             }
             CHECK(rows > 30);
+        }
+    }
+
+    TEST_CASE("horizons converge to the form factor of the strip as steps grow: to 0.01 with 400") {
+        Scene scene = white_scene();
+        add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}});
+        finish_scene(scene);
+        const View view{look({0, 3, 4}, {0, 0.3, 0.7}, 50), 640, 480};
+        raster::Settings depths;
+        depths.output = raster::Output::kNearness;
+        const raster::Screen screen(CameraModel(view).through(), {}, render(scene, view, depths).nearness);
+        for (const double z : {0.2, 0.7, 1.5}) {
+            const Vec3 p = screen.relative(Vec3(Vec3d(0.01, 0, z)));
+            double mean = 0;
+            for (std::uint64_t key = 0; key < 100; ++key)
+                mean += static_cast<double>(raster::horizon_occlusion(screen, {p, {0, 1, 0}, normalize(-p)}, 10, 4, 400, key)) / 100;
+            CAPTURE(z);
+            CHECK(std::abs(mean - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);
         }
     }
 

@@ -1,0 +1,150 @@
+// Each light effect of the rasterizer against the path tracer's truth of the same quantity.
+#include "compare/metrics/error_metrics.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+
+using namespace duet;
+using namespace duet::compare;
+
+namespace {
+
+constexpr raster::PartSet kLights{.emission = true, .direct = true, .environment = false, .reflection = false};
+constexpr raster::PartSet kEnvironment{.emission = false, .direct = false, .environment = true, .reflection = false};
+constexpr raster::PartSet kReflection{.emission = false, .direct = false, .environment = false, .reflection = true};
+
+Scene model(const std::string& name) {
+    return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / (name + ".json"));
+}
+
+raster::Settings sixteen(const raster::PartSet& parts) {
+    raster::Settings settings;
+    settings.samples_per_pixel = 16;
+    settings.parts = parts;
+    return settings;
+}
+
+ImageRgb traced(const Scene& scene, const View& view, raytrace::Integrator integrator, bool environment) {
+    raytrace::Settings settings;
+    settings.integrator = integrator;
+    settings.samples_per_pixel = 256;
+    settings.environment = environment;
+    Control control;
+    return raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
+}
+
+double error(const Scene& scene, const View& view, const raster::Settings& settings, const ImageRgb& truth) {
+    Control control;
+    return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth).relmse;
+}
+
+View small(const Scene& scene, int width) { return {scene.camera, width, width * scene.height / scene.width}; }
+
+} // namespace
+
+// Bounds are well above the ratios found; seeds are fixed, so nothing is left to chance.
+TEST_SUITE("statistical") {
+
+    TEST_CASE("shadows of the Cornell box: a tenth of the error of unshadowed light at most") {
+        const Scene scene = model("cornell");
+        const View view = small(scene, 96);
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
+        raster::Settings settings = sixteen(kLights);
+        const double with = error(scene, view, settings, truth);
+        settings.shadows = false;
+        const double without = error(scene, view, settings, truth);
+        MESSAGE("relmse ", with, ", unshadowed ", without);
+        CHECK(with < 0.1 * without); // most of what is left is the lamp's outline, sampled elsewhere in the pixel
+    }
+
+    TEST_CASE("shadows of sun, spot, point and surfaces with lens and motion: a fifth of the error at most") {
+        const Scene scene = model("everything");
+        const View view = small(scene, 96);
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
+        raster::Settings settings = sixteen(kLights);
+        settings.environment = false;
+        const double with = error(scene, view, settings, truth);
+        settings.shadows = false;
+        const double without = error(scene, view, settings, truth);
+        MESSAGE("relmse ", with, ", unshadowed ", without);
+        CHECK(with < 0.2 * without);
+    }
+
+    TEST_CASE("the environment's occlusion: by horizons a third of the error at most, by points less than none") {
+        const Scene scene = model("spheres");
+        const View view = small(scene, 128);
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kEnvironment, true);
+        raster::Settings settings = sixteen(kEnvironment);
+        const double gtao = error(scene, view, settings, truth);
+        settings.ambient_occlusion = raster::AmbientOcclusion::kSsao;
+        const double ssao = error(scene, view, settings, truth);
+        settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+        const double none = error(scene, view, settings, truth);
+        MESSAGE("relmse by horizons ", gtao, ", by points ", ssao, ", none ", none);
+        CHECK(gtao < none / 3);
+        CHECK(ssao < 0.8 * none);
+        CHECK(gtao < ssao);
+    }
+
+    TEST_CASE("what metal and glass mirror: nearer with a prefiltered environment, nearer still with the picture") {
+        const Scene scene = model("spheres");
+        const View view = small(scene, 128);
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
+        raster::Settings settings = sixteen(kReflection);
+        const double all = error(scene, view, settings, truth);
+        settings.screen_reflections = false;
+        const double prefiltered = error(scene, view, settings, truth);
+        settings.prefiltered_environment = false;
+        const double plain = error(scene, view, settings, truth);
+        MESSAGE("relmse ", all, ", prefiltered alone ", prefiltered, ", neither ", plain);
+        CHECK(prefiltered < plain);
+        CHECK(all < 0.8 * prefiltered);
+    }
+
+    TEST_CASE("lamps over rough metal: transformed cosines have a third of the error of light from centres at most") {
+        Scene scene;
+        const auto add = [&](Shape shape, Material material) {
+            scene.shapes.push_back(std::move(shape));
+            scene.materials.push_back(std::move(material));
+            scene.material_names.push_back("material " + std::to_string(scene.materials.size()));
+            Object object;
+            object.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+            object.materials = {object.shape};
+            scene.objects.push_back(object);
+        };
+        add(QuadList{{{Vec3(-3, 0, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}}, Metal{{Rgb(0.9f, 0.7f, 0.4f)}, 0.4f});
+        add(QuadList{{{Vec3(-1, 1, -2), Vec3(2, 0, 0), Vec3(0, 1, 0)}}}, Emissive{.radiance = Rgb(3.0f), .two_sided = true});
+        add(Sphere{Vec3(1.5f, 0.7f, 0), 0.3f}, Emissive{Rgb(5.0f)});
+        scene.camera.eye = {0, 2, 4};
+        finish_scene(scene);
+        const View view{scene.camera, 96, 72};
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kUnshadowed, false);
+        raster::Settings settings = sixteen(kLights);
+        settings.shadows = false;
+        const double cosines = error(scene, view, settings, truth);
+        settings.transformed_cosines = false;
+        const double centers = error(scene, view, settings, truth);
+        MESSAGE("relmse ", cosines, ", from centres ", centers);
+        CHECK(cosines < centers / 3);
+    }
+
+    TEST_CASE("all effects together bring the picture nearer to the path tracer's, in each scene") {
+        for (const char* const name : {"cornell", "everything", "spheres"}) {
+            const Scene scene = model(name);
+            const View view = small(scene, 64);
+            const ImageRgb truth = traced(scene, view, raytrace::Integrator::kPath, true);
+            raster::Settings settings = sixteen({});
+            const double with = error(scene, view, settings, truth);
+            settings.shadows = settings.prefiltered_environment = settings.transformed_cosines = false;
+            settings.screen_reflections = false;
+            settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+            const double without = error(scene, view, settings, truth);
+            MESSAGE(std::string(name), ": relmse ", with, ", without ", without);
+            CHECK(with < without);
+        }
+    }
+}
