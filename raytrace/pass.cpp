@@ -12,8 +12,10 @@
 namespace duet::raytrace {
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    const CameraNumbers u = plan.lens || plan.motion ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
-    return camera.ray(Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), Vec2d(u.lens), static_cast<double>(u.time));
+    const bool all = plan.lens || plan.motion;
+    const CameraNumbers u = all ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
+    const Vec2d in_picture = Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel);
+    return camera.ray(in_picture, Vec2d(u.lens), static_cast<double>(u.time));
 }
 
 namespace {

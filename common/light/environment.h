@@ -1,6 +1,6 @@
 // Light from infinitely far in all directions.
 //
-// Rays that follow the materials find an even sky well enough, and only unevenness calls for samples of its own: so it
+// Rays that follow the materials find an even sky well enough, and only unevenness asks for samples of its own: so it
 // is the light *above the mean* that is sampled, and all light must also be looked for by BSDF samples, the two combined
 // by multiple importance sampling («MIS compensation», Karlík et al. 2019, «MIS Compensation: Optimizing Sampling
 // Techniques in Multiple Importance Sampling», §5). A constant sky or a plain gradient has no samples at all, which

@@ -38,7 +38,9 @@ LightBounds flat(std::initializer_list<Vec3> corners, Vec3 area, const SurfaceLi
 }
 
 struct {
-    LightBounds operator()(const PointLight& light) const { return all_around(light.position, average(light.intensity)); }
+    LightBounds operator()(const PointLight& light) const {
+        return all_around(light.position, average(light.intensity));
+    }
     LightBounds operator()(const SpotLight& light) const { // its cone is not bounded: spots are few
         return all_around(light.position, average(light.intensity));
     }
@@ -48,7 +50,8 @@ struct {
     }
     LightBounds operator()(const SurfaceLight& light) const {
         if (const auto* quad = std::get_if<Quad>(&light.shape))
-            return flat({quad->corner, quad->corner + quad->u, quad->corner + quad->v, quad->corner + quad->u + quad->v},
+            return flat({quad->corner, quad->corner + quad->u, quad->corner + quad->v,
+                         quad->corner + quad->u + quad->v},
                         cross(quad->u, quad->v), light);
         if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape))
             return flat({t->a, t->b, t->c}, cross(t->b - t->a, t->c - t->a) * 0.5f, light);
@@ -85,7 +88,7 @@ void LightBounds::extend(const LightBounds& other) {
     // The smallest cone about both (Conty Estevez and Kulla 2018, algorithm 1).
     const float a = std::acos(clamp(cos_normals, -1.0f, 1.0f)), b = std::acos(clamp(other.cos_normals, -1.0f, 1.0f));
     const float between = angle_between(axis, other.axis);
-    constexpr float kRoom = 1e-3f; // for the rounding of angles: near 0° and 180° a cosine keeps only half of the digits
+    constexpr float kRoom = 1e-3f; // for rounding: near 0° and 180° a cosine keeps only half of an angle's digits
     if (a >= between + b) return;
     if (b >= between + a) {
         axis = other.axis;

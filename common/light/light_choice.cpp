@@ -72,7 +72,8 @@ std::optional<LightChoice> LightChooser::sample(const LightReceiver& receiver, f
 
 float LightChooser::probability(const LightReceiver& receiver, std::size_t index) const {
     if (distant_.empty()) return tree_.probability(receiver, index);
-    const auto found = std::find_if(distant_.begin(), distant_.end(), [&](const Distant& d) { return d.index == index; });
+    const auto found =
+        std::find_if(distant_.begin(), distant_.end(), [&](const Distant& d) { return d.index == index; });
     if (sources_ == 1) return found != distant_.end() ? 1.0f : 0.0f;
     const Weights all = weights(receiver);
     if (found != distant_.end()) return all.probability(weight(*found, receiver));

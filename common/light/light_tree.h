@@ -41,7 +41,7 @@ private:
     };
     struct Node {
         LightBounds bounds;
-        std::uint32_t first = 0; ///< of an inner node: the second child (the first is the next node); of a leaf: its lights
+        std::uint32_t first = 0; ///< the second child (the first is the next node); of a leaf: its lights
         std::uint32_t count = 0; ///< of a leaf's lights; 0: an inner node
     };
     /// Where a light is found: turns from the root down, the first the lowest bit, and its place.

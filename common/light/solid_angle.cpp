@@ -47,8 +47,8 @@ template <std::size_t N> struct Seen {
 };
 
 /// A shape is sampled by solid angle where it is near: where the density by area would vary much. Farther away that of
-/// area is as good at a third of the cost (the Cornell box from 0.05 on: the same error, a quarter more time). Below and
-/// above these solid angles rounding would show.
+/// area is nearly as good at a third of the cost (the Cornell box from 0.05 on: 4 % less error for 27 % more time).
+/// Below and above these solid angles rounding would show.
 constexpr double kNear = 0.3; ///< area over squared distance to the centre
 constexpr double kMinSolidAngle = 1e-4, kMaxSolidAngle = 6.2;
 

@@ -20,7 +20,7 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d u, Vec3d v) {
     x1_ = x0_ + width;
     y1_ = y0_ + height;
 
-    // The planes through the origin and the edges at y0, x1, y1, x0: the z of their unit normals, which lie in a plane of
+    // The planes through the origin and the edges at y0, x1, y1, x0: the z of their unit normals, which lie in planes of
     // axes, so that the cosine of an inner angle is a product of two.
     const auto z_of_normal = [this](double to_edge) { return to_edge / std::sqrt(to_edge * to_edge + z0_ * z0_); };
     const double n0 = z_of_normal(-y0_), n1 = z_of_normal(x1_), n2 = z_of_normal(y1_), n3 = z_of_normal(-x0_);

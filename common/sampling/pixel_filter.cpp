@@ -14,7 +14,8 @@ namespace {
 double blackman_harris_below(double x, double r) {
     constexpr double a0 = 0.35875, a1 = 0.48829, a2 = 0.14128, a3 = 0.01168;
     const double t = (x + r) / (2 * r), turn = 2 * kPiDouble; // the window is a0 − a1 cos 2πt + a2 cos 4πt − a3 cos 6πt
-    return t + (-a1 * std::sin(turn * t) + a2 / 2 * std::sin(2 * turn * t) - a3 / 3 * std::sin(3 * turn * t)) / (turn * a0);
+    const double waves = -a1 * std::sin(turn * t) + a2 / 2 * std::sin(2 * turn * t) - a3 / 3 * std::sin(3 * turn * t);
+    return t + waves / (turn * a0);
 }
 
 std::vector<double> blackman_harris_quantiles() {

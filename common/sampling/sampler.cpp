@@ -139,8 +139,8 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
 }
 
 // Pixels along a Z-curve take consecutive blocks of one sequence: blocks of 4, 16, 64 … pixels are nets together, too,
-// so that errors of neighbours cancel, and what noise is left has little of the low frequencies that eyes see (Ahmed and
-// Wonka 2020, «Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels»,
+// so that errors of neighbours cancel, and what noise is left has little of the low frequencies that eyes see (Ahmed
+// and Wonka 2020, «Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels»,
 // §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
 // sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {

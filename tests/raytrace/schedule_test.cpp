@@ -32,6 +32,10 @@ template <typename Spread> void take(Film& film, const Spread& spread, std::uint
         }
 }
 
+void promise_all(Film& film, std::uint32_t samples) {
+    for (std::size_t i = 0; i < film.pixels().size(); ++i) film.pixels()[i].target = samples;
+}
+
 // A lamp whose edges are most of the error, in a corner of a dim room.
 Scene lamp_scene() {
     SceneBuilder builder;
@@ -96,7 +100,7 @@ TEST_SUITE("unit") {
         Film film(40, 20);
         const auto spread = [](int x, int) { return x < 20 ? 1.0f : 0.1f; };
         std::int64_t sum = 0;
-        for (Film::Pixel& pixel : film.pixels()) pixel.target = 32;
+        promise_all(film, 32);
         take(film, spread, 1);
         for (int pass = 0; pass < 12; ++pass) {
             spread_samples(film, 40 * 20 * 16);
@@ -113,14 +117,17 @@ TEST_SUITE("unit") {
         }
         double left = 0, right = 0;
         for (int y = 0; y < 20; ++y)
-            for (int x = 0; x < 40; ++x) (x < 18 ? left : x >= 22 ? right : sum) += film.taken(x, y);
+            for (int x = 0; x < 40; ++x) {
+                if (x < 18) left += film.taken(x, y);
+                if (x >= 22) right += film.taken(x, y);
+            }
         CHECK(left / right == doctest::Approx(10).epsilon(0.35)); // roughly: variances of two replicates scatter
     }
 
     TEST_CASE("no pixel's number depends on its own samples, and one alone gets as many as are asked") {
         const auto planned_after = [](float value) {
             Film film(9, 9);
-            for (Film::Pixel& pixel : film.pixels()) pixel.target = 32;
+            promise_all(film, 32);
             take(film, [](int x, int y) { return 0.1f * static_cast<float>(1 + x + y); }, 5);
             film.pixels()(4, 4).sum[0] = Rgbd(static_cast<double>(value)); // as if its samples had been others
             spread_samples(film, 81 * 8);

@@ -174,7 +174,8 @@ TEST_SUITE("unit") {
             REQUIRE(choice->probability == doctest::Approx(chooser.probability(up, choice->index)));
             counts[choice->index] += 1e-4;
         }
-        for (std::size_t i = 0; i < 4; ++i) CHECK(counts[i] == doctest::Approx(chooser.probability(up, i)).epsilon(2e-3));
+        for (std::size_t i = 0; i < 4; ++i)
+            CHECK(counts[i] == doctest::Approx(chooser.probability(up, i)).epsilon(2e-3));
     }
 
     TEST_CASE("no lights, one, and lights of extreme scale") {
@@ -191,6 +192,7 @@ TEST_SUITE("unit") {
         CHECK(bright.sample(origin, 0.2f).has_value());
         // A thousand at one place: the tree halves them.
         const LightChooser heap(std::vector<Light>(1000, PointLight{{0, 1, 0}, Rgb(1.0f)}), 0);
-        for (const std::size_t i : {0u, 7u, 999u}) CHECK(heap.probability(origin, i) == doctest::Approx(1e-3).epsilon(0.1));
+        for (const std::size_t i : {0u, 7u, 999u})
+            CHECK(heap.probability(origin, i) == doctest::Approx(1e-3).epsilon(0.1));
     }
 }

@@ -71,7 +71,8 @@ TEST_SUITE("unit") {
             const auto triangle = [](Vec3d a, Vec3d b, Vec3d c) {
                 return SphericalTriangle{normalize(a), normalize(b), normalize(c)}.solid_angle();
             };
-            const double expected = triangle(corner, corner + u, corner + u + v) + triangle(corner, corner + u + v, corner + v);
+            const Vec3d opposite = corner + u + v;
+            const double expected = triangle(corner, corner + u, opposite) + triangle(corner, opposite, corner + v);
             REQUIRE(rectangle.solid_angle() == doctest::Approx(expected).epsilon(1e-9));
             for (const double a : {0.0, 0.3, static_cast<double>(kOneMinusEpsilon)})
                 for (const double b : {0.0, 0.7, static_cast<double>(kOneMinusEpsilon)}) {
