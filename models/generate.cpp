@@ -13,6 +13,7 @@ std::span<const Model> all_models() {
         {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},
         {"sky", kCommitted, {"textures/sky.hdr"}, write_sky},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
+        {"hall", kBuilt, {kHallFile}, write_hall},
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
         {"octopus-hundred-thousand", kOnRequest, {kOctopusSmallFile}, write_octopus_hundred_thousand},
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},

@@ -33,6 +33,8 @@ void make(const Model& model, const std::filesystem::path& folder);
 // One function a model, each in the file of its name.
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);
+inline constexpr const char* kHallFile = "generated/hall.obj";
+void write_hall(const std::filesystem::path& folder);
 void write_octopus(const std::filesystem::path& folder);
 void write_octopus_hundred_thousand(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);

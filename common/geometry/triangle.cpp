@@ -3,21 +3,42 @@
 #include "common/system/sabotage.h"
 #include "common/vec/box.h"
 
+#include <array>
 #include <cmath>
-#include <utility>
+#include <limits>
 
 namespace duet {
 
 namespace {
 
+// Where on the triangle's rim a ray that misses it by a rounding comes next to it. p: the corners from its origin.
+TriangleHit rim_hit(Vec3d d, const std::array<Vec3d, 3>& p) {
+    const double size = dot(d, d);
+    double nearest = std::numeric_limits<double>::infinity(), t = 0;
+    std::array<double, 3> weights{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const double ti = dot(p[i], d) / size, tj = dot(p[j], d) / size;
+        const Vec3d from = p[i] - d * ti, along = p[j] - d * tj - from; // across the ray
+        const double s = dot(along, along) > 0 ? clamp(-dot(from, along) / dot(along, along), 0.0, 1.0) : 0.0;
+        const double distance = length_squared(from + along * s);
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        t = lerp(ti, tj, s);
+        weights = {};
+        weights[i] = 1 - s;
+        weights[j] = s;
+    }
+    return {static_cast<float>(t), static_cast<float>(weights[1]), static_cast<float>(weights[2])};
+}
+
 // Where on the triangle the ray hits it, or comes next to it by a rounding, in double from the unrounded differences.
-TriangleHit needle_hit(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c, const TriangleHit& rounded) {
+TriangleHit needle_hit(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3d o(ray.origin), d(ray.direction), pa = Vec3d(a) - o, pb = Vec3d(b) - o, pc = Vec3d(c) - o;
-    double e0 = dot(d, cross(pb, pc)), e1 = dot(d, cross(pc, pa)), e2 = dot(d, cross(pa, pb));
-    const double sign = std::copysign(1.0, e0 + e1 + e2);
-    e0 = max(sign * e0, 0.0), e1 = max(sign * e1, 0.0), e2 = max(sign * e2, 0.0);
+    const double e0 = dot(d, cross(pb, pc)), e1 = dot(d, cross(pc, pa)), e2 = dot(d, cross(pa, pb));
     const double det = e0 + e1 + e2;
-    if (!(det > 0)) return rounded;
+    const bool inside = (e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0);
+    if (!inside || det == 0) return rim_hit(d, {pa, pb, pc});
     const std::size_t z_axis = ray.shear.kz;
     const double z = (e0 * pa[z_axis] + e1 * pb[z_axis] + e2 * pc[z_axis]) / det;
     return {static_cast<float>(z / d[z_axis]), static_cast<float>(e1 / det), static_cast<float>(e2 / det)};
@@ -42,11 +63,17 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     if (!(det != 0)) return std::nullopt;
     const float inv_det = 1 / det;
     TriangleHit hit{test.distance(inv_det), e1 * inv_det, e2 * inv_det};
-    if (test.is_needle(inv_det)) hit = needle_hit(ray, a, b, c, hit);
+    const bool needle = test.is_needle(inv_det, ray.shear.speed);
+    if (needle) hit = needle_hit(ray, a, b, c);
     // Within its error of the ray's origin (or out of range) t says nothing: is this the surface the ray has just left,
     // or one that touches it?
-    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det));
-    if (uncertain && !sabotaged(Guard::kPlaneDistance)) hit.t = plane_distance(ray, a, b, c);
+    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det, ray.shear.speed));
+    if (uncertain && !sabotaged(Guard::kPlaneDistance)) {
+        const float plane = plane_distance(ray, a, b, c);
+        if (!(plane > ray.t_min)) return std::nullopt;
+        // But a ray that passes a needle by a rounding meets its plane far beside it, where the needle is not.
+        if (!needle) hit.t = plane;
+    }
     if (!(hit.t > ray.t_min && hit.t <= ray.t_max)) return std::nullopt;
     return hit;
 }

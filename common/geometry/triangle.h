@@ -24,6 +24,12 @@ template <typename T> struct Shear {
     std::size_t kx, ky, kz; ///< axes of the world; x and y swapped where z runs backwards, to keep triangles' winding
     Vec3T<T> origin;        ///< of the rays, its axes in that order
     T sx, sy, sz;
+    T speed; ///< of the largest axis, |d.z|: a stretch of t is as long in the world times this
+};
+
+/// A vertex as seen from the ray's origin: the difference of the two.
+template <typename Vertex> struct Relative {
+    Vertex vertex;
 };
 
 /// A ray prepared for watertight tests.
@@ -40,7 +46,8 @@ struct ShearedRay {
         const std::size_t kz = longest_axis(abs(direction)), next = kNext[kz], after = kNext[next];
         const bool swap = d[kz] < 0;
         const std::size_t kx = swap ? after : next, ky = swap ? next : after;
-        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz]};
+        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz],
+                 std::abs(d[kz])};
     }
 };
 
@@ -65,9 +72,12 @@ template <typename T> struct TriangleTest {
     /// A vertex relative to the ray's origin and sheared, which makes the test one of the origin in a 2D triangle.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Vertex& p) {
-        const T x = T(p[ray.kx]) - T(ray.origin.x), y = T(p[ray.ky]) - T(ray.origin.y),
-                z = T(p[ray.kz]) - T(ray.origin.z);
-        return Vec3T<T>(x - T(ray.sx) * z, y - T(ray.sy) * z, T(ray.sz) * z);
+        return shear(ray, {T(p[ray.kx]) - T(ray.origin.x), T(p[ray.ky]) - T(ray.origin.y),
+                           T(p[ray.kz]) - T(ray.origin.z)});
+    }
+    template <typename S, typename Vertex>
+    [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Relative<Vertex>& p) {
+        return shear(ray, {T(p.vertex[ray.kx]), T(p.vertex[ray.ky]), T(p.vertex[ray.kz])});
     }
     /// The same edge gives the same numbers in both of its triangles, but for the sign: no ray slips between.
     [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
@@ -83,15 +93,17 @@ template <typename T> struct TriangleTest {
     }
 
     /// The bound on the error of that distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products
-    /// ordered so that they stay in range wherever the edge functions do.
-    [[gnu::always_inline]] T distance_error(T inv_det) const {
+    /// ordered so that they stay in range wherever the edge functions do. `speed` is the shear's: x and y, of the world's
+    /// measure, were sheared by depths of that measure, while z counts in the ray's own t.
+    template <typename S> [[gnu::always_inline]] T distance_error(T inv_det, const S& speed) const {
         const T gamma2(gamma_bound(2)), gamma3(gamma_bound(3)), gamma5(gamma_bound(5));
         const T max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
         const T delta_z = gamma3 * max_z;
         const T max_x = max(max(abs(at.x), abs(bt.x)), abs(ct.x));
         const T max_y = max(max(abs(at.y), abs(bt.y)), abs(ct.y));
-        const T delta_x = gamma5 * (max_x + max_z);
-        const T delta_y = gamma5 * (max_y + max_z);
+        const T depth = max_z * T(speed);
+        const T delta_x = gamma5 * (max_x + depth);
+        const T delta_y = gamma5 * (max_y + depth);
         const T delta_e = T(2) * (gamma2 * max_x * max_y + delta_y * max_x + delta_x * max_y) * abs(inv_det);
         const T max_e = max(max(abs(e0), abs(e1)), abs(e2)) * abs(inv_det);
         return T(3) * (gamma3 * max_e * max_z + delta_e * max_z + delta_z * max_e);
@@ -99,13 +111,18 @@ template <typename T> struct TriangleTest {
 
     /// Whether the triangle is a needle as the ray sees it, so that the distance may be off by more than that. The
     /// sheared coordinates are off by some u·max_z, an edge function by that times the triangle's width: the hit moves
-    /// along the triangle by as much over det, across depths of `spread`. That is no more than z's own rounding, but
-    /// where the triangle is much thinner than it is deep.
-    [[gnu::always_inline]] auto is_needle(T inv_det) const {
+    /// along the triangle by as much over det, across depths of `spread` (in the world: the shear's `speed` makes them
+    /// so). That is no more than z's own rounding, but where the triangle is much thinner than it is deep.
+    template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& speed) const {
         const T width = max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
         const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
         const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
-        return width * abs(inv_det) * spread > T(limit);
+        return width * abs(inv_det) * (spread * T(speed)) > T(limit);
+    }
+
+private:
+    template <typename S> [[gnu::always_inline]] static Vec3T<T> shear(const Shear<S>& ray, const Vec3T<T>& d) {
+        return Vec3T<T>(d.x - T(ray.sx) * d.z, d.y - T(ray.sy) * d.z, T(ray.sz) * d.z);
     }
 };
 

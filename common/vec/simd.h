@@ -92,6 +92,24 @@ inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
 #endif
 }
 
+/// The one number in the lower half of the lanes, the other in the upper half.
+template <std::size_t N> FloatBatch<N> halves(float low, float high) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (N == 16) return _mm512_mask_broadcastss_ps(_mm512_set1_ps(low), 0xFF00, _mm_set_ss(high));
+#endif
+    alignas(sizeof(FloatBatch<N>)) std::array<float, N> lanes;
+    for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
+    return FloatBatch<N>::load_aligned(lanes.data());
+}
+/// As many floats as fill the lanes once, or half as many twice.
+template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<float, M>& lanes) {
+    static_assert(M == N || 2 * M == N);
+    if constexpr (M == N) return FloatBatch<N>::load_aligned(lanes.data());
+#if XSIMD_WITH_AVX512F
+    if constexpr (M == 8) return _mm512_broadcast_f32x8(_mm256_load_ps(lanes.data()));
+#endif
+}
+
 /// A batch of floats to pick from.
 template <typename Batch> struct Lanes {
     alignas(sizeof(Batch)) std::array<float, sizeof(Batch) / sizeof(float)> values;
@@ -106,43 +124,102 @@ template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsig
     if constexpr (sizeof(batch) == 64) return _mm512_mask_store_ps(to, static_cast<__mmask16>(lanes), batch);
 #endif
     const Lanes values(batch);
-    for (; lanes != 0; lanes &= lanes - 1) to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
+    for (; lanes != 0; lanes &= lanes - 1)
+        to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
 }
 /// The same of one value.
 template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, std::array<std::uint32_t, N>& to) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
-        return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes), _mm512_set1_epi32(static_cast<int>(value)));
+        return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes),
+                                        _mm512_set1_epi32(static_cast<int>(value)));
 #endif
     for (; lanes != 0; lanes &= lanes - 1) to[static_cast<std::size_t>(std::countr_zero(lanes))] = value;
 }
 
-/// Structure of arrays out of an array of structures: lanes[k][i] is the k-th of the eight numbers at rows[i].
-template <std::size_t N> void transpose_rows(const std::array<const float*, N>& rows, std::array<std::array<float, N>, 8>& lanes) {
+namespace detail {
+
+/// Of each run of four lanes: a0 b0 a1 b1, and a2 b2 a3 b3.
+inline FloatBatch<4> zip_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unpacklo_ps(a, b); }
+inline FloatBatch<4> zip_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unpackhi_ps(a, b); }
+/// a0 a1 b0 b1, and a2 a3 b2 b3.
+inline FloatBatch<4> pair_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movelh_ps(a, b); }
+inline FloatBatch<4> pair_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movehl_ps(b, a); }
 #if XSIMD_WITH_AVX
-    // Eight rows at a time: pairs, fours, then halves are interleaved.
-    static_assert(N % 8 == 0);
-    for (std::size_t first = 0; first < N; first += 8) {
-        std::array<FloatBatch<8>, 8> r, p;
-        for (std::size_t i = 0; i < 8; ++i) r[i] = _mm256_loadu_ps(rows[first + i]);
-        for (std::size_t i = 0; i < 8; i += 2) {
-            p[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
-            p[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
-        }
-        for (std::size_t i = 0; i < 8; i += 4)
-            for (std::size_t k = 0; k < 2; ++k) {
-                r[i + 2 * k] = _mm256_shuffle_ps(p[i + k], p[i + k + 2], 0x44);
-                r[i + 2 * k + 1] = _mm256_shuffle_ps(p[i + k], p[i + k + 2], 0xEE);
-            }
-        for (std::size_t k = 0; k < 4; ++k) {
-            _mm256_storeu_ps(&lanes[k][first], _mm256_permute2f128_ps(r[k], r[k + 4], 0x20));
-            _mm256_storeu_ps(&lanes[k + 4][first], _mm256_permute2f128_ps(r[k], r[k + 4], 0x31));
-        }
-    }
-#else
-    for (std::size_t i = 0; i < N; ++i)
-        for (std::size_t k = 0; k < 8; ++k) lanes[k][i] = rows[i][k];
+inline FloatBatch<8> zip_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpacklo_ps(a, b); }
+inline FloatBatch<8> zip_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpackhi_ps(a, b); }
+inline FloatBatch<8> pair_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0x44); }
+inline FloatBatch<8> pair_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0xEE); }
 #endif
+#if XSIMD_WITH_AVX512F
+inline FloatBatch<16> zip_low(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpacklo_ps(a, b); }
+inline FloatBatch<16> zip_high(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpackhi_ps(a, b); }
+inline FloatBatch<16> pair_low(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_shuffle_ps(a, b, 0x44); }
+inline FloatBatch<16> pair_high(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_shuffle_ps(a, b, 0xEE); }
+#endif
+
+/// Four numbers at each of N / 4 places, one after the other.
+template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
+    const auto four = [&](std::size_t i) { return _mm_loadu_ps(at(i)); };
+#if XSIMD_WITH_AVX512F
+    if constexpr (N == 16)
+        return _mm512_insertf32x4(
+            _mm512_insertf32x4(_mm512_insertf32x4(_mm512_castps128_ps512(four(0)), four(1), 1), four(2), 2), four(3),
+            3);
+#endif
+#if XSIMD_WITH_AVX
+    if constexpr (N == 8) return _mm256_insertf128_ps(_mm256_castps128_ps256(four(0)), four(1), 1);
+#endif
+    if constexpr (N == 4) return four(0);
+}
+/// The i-th run of four lanes.
+template <int i> FloatBatch<4> four(FloatBatch<4> lanes) { return lanes; }
+#if XSIMD_WITH_AVX
+template <int i> FloatBatch<4> four(FloatBatch<8> lanes) { return _mm256_extractf128_ps(lanes, i); }
+#endif
+#if XSIMD_WITH_AVX512F
+template <int i> FloatBatch<4> four(FloatBatch<16> lanes) { return _mm512_extractf32x4_ps(lanes, i); }
+#endif
+/// The runs of four lanes, each to its place.
+template <typename Batch, typename At> void scatter_fours(Batch fours, const At& at) {
+    four<0>(fours).store_unaligned(at(0));
+    if constexpr (sizeof(Batch) >= 32) four<1>(fours).store_unaligned(at(1));
+    if constexpr (sizeof(Batch) == 64) {
+        four<2>(fours).store_unaligned(at(2));
+        four<3>(fours).store_unaligned(at(3));
+    }
+}
+
+/// Rows become columns in each run of four lanes: of four batches, the k-th gets what was the k-th of four in all.
+template <typename Batch> std::array<Batch, 4> transpose_fours(const std::array<Batch, 4>& r) {
+    const Batch a = zip_low(r[0], r[1]), b = zip_low(r[2], r[3]), c = zip_high(r[0], r[1]), d = zip_high(r[2], r[3]);
+    return {pair_low(a, b), pair_high(a, b), pair_low(c, d), pair_high(c, d)};
+}
+
+} // namespace detail
+
+/// Structure of arrays out of an array of structures: lane i of the k-th batch is the k-th of four numbers at row(i).
+template <std::size_t N, typename Row> std::array<FloatBatch<N>, 4> load_columns(const Row& row) {
+    std::array<FloatBatch<N>, 4> rows;
+    for (std::size_t k = 0; k < 4; ++k)
+        rows[k] = detail::gather_fours<N>([&](std::size_t i) { return row(4 * i + k); });
+    return detail::transpose_fours(rows);
+}
+/// And back.
+template <std::size_t N, typename Row> void store_columns(const std::array<FloatBatch<N>, 4>& columns, const Row& row) {
+    const std::array<FloatBatch<N>, 4> rows = detail::transpose_fours(columns);
+    for (std::size_t k = 0; k < 4; ++k) detail::scatter_fours(rows[k], [&](std::size_t i) { return row(4 * i + k); });
+}
+
+/// The least of each batch's lanes, side by side: cheaper than one by one. Of NaN any may come out.
+template <typename Batch> FloatBatch<4> lowest_of_each(const std::array<Batch, 4>& batches) {
+    const auto [a, b, c, d] = detail::transpose_fours(batches);
+    const Batch fours = xsimd::min(xsimd::min(a, b), xsimd::min(c, d));
+    FloatBatch<4> result = detail::four<0>(fours);
+    if constexpr (sizeof(Batch) >= 32) result = xsimd::min(result, detail::four<1>(fours));
+    if constexpr (sizeof(Batch) == 64)
+        result = xsimd::min(result, xsimd::min(detail::four<2>(fours), detail::four<3>(fours)));
+    return result;
 }
 
 /// The least of the lanes; of NaN any may come out.

@@ -12,27 +12,38 @@ namespace duet::compare {
 Range range_of(std::vector<double> values) {
     DUET_CHECK(!values.empty());
     std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    const double median = values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-    return {values.front(), median, values.back()};
+    return {values.front(), values[(values.size() - 1) / 2], values.back()};
 }
+
+namespace {
+
+struct Pair {
+    double ours, theirs;
+    double ratio() const { return theirs / ours; }
+};
+
+Versus versus(std::vector<Pair> pairs) {
+    std::ranges::sort(pairs, {}, &Pair::ratio);
+    const Pair& middle = pairs[(pairs.size() - 1) / 2];
+    return {{pairs.front().ratio(), middle.ratio(), pairs.back().ratio()}, middle.ours, middle.theirs};
+}
+
+} // namespace
 
 Interleaved interleave(const Timed& ours, const std::vector<Timed>& peers, int repeats, double time_limit,
                        const Control& control) {
-    constexpr int kLeast = 3;
     std::vector<double> our_seconds;
-    std::vector<std::vector<double>> seconds(peers.size()), ratios(peers.size());
+    std::vector<std::vector<Pair>> pairs(peers.size());
     const Stopwatch watch;
     int round = 0;
-    for (; round < repeats && (round < kLeast || watch.seconds() < time_limit) && !control.stopped(); ++round) {
+    for (; round < repeats && (round < kLeastForVerdict || watch.seconds() < time_limit) && !control.stopped(); ++round) {
         our_seconds.push_back(ours());
         for (std::size_t first = 0; first < peers.size() && !control.stopped(); first += 2) {
-            seconds[first].push_back(peers[first]());
-            ratios[first].push_back(seconds[first].back() / our_seconds.back());
+            pairs[first].push_back({our_seconds.back(), peers[first]()});
             if (first + 1 == peers.size()) break;
-            seconds[first + 1].push_back(peers[first + 1]());
+            const double theirs = peers[first + 1]();
             our_seconds.push_back(ours());
-            ratios[first + 1].push_back(seconds[first + 1].back() / our_seconds.back());
+            pairs[first + 1].push_back({our_seconds.back(), theirs});
         }
         control.report(static_cast<double>(round + 1) / repeats);
     }
@@ -40,8 +51,7 @@ Interleaved interleave(const Timed& ours, const std::vector<Timed>& peers, int r
     if (control.stopped()) return result;
     result.seconds = range_of(our_seconds).median;
     result.repeats = round;
-    for (std::size_t i = 0; i < peers.size(); ++i)
-        result.peers.push_back({range_of(seconds[i]).median, range_of(ratios[i])});
+    for (const std::vector<Pair>& of_peer : pairs) result.peers.push_back(versus(of_peer));
     return result;
 }
 
@@ -64,7 +74,7 @@ Portion portion_of(std::size_t rays, double rate, double seconds) {
 }
 
 double trace_seconds(const Tracer& tracer, const Portion& portion, int threads, std::vector<AnswerBlock>& answers) {
-    const Stopwatch watch;
+    const WorkWatch watch(threads);
     for (int pass = 0; pass < portion.passes; ++pass)
         parallel_for(portion.groups.size(), threads, [&](std::size_t i) {
             const std::size_t first = portion.groups[i] * Portion::kGroup;

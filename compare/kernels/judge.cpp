@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kGrazing = 1e-3; ///< the cosine below which a ray runs in a surface rather than through it
 constexpr int kDirections = 16;   ///< in which a ray is displaced to look for what it just misses
+constexpr int kAround = 32;       ///< the same, to look for a way past what it hits
 
 Rayd in_double(const Ray& ray) {
     return {Vec3d(ray.origin), Vec3d(ray.direction), static_cast<double>(ray.t_min), static_cast<double>(ray.t_max),
@@ -29,11 +30,29 @@ double distance_to_segment(Vec3d a, Vec3d b) { // from the origin
     return length(a + along * s);
 }
 
-std::array<Vec3d, 3> triangle_seen_from(const Scene& scene, const Rayd& ray, std::uint32_t triangle) {
-    const Mesh& mesh = std::get<Mesh>(scene.shapes.front());
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {Vec3d(mesh.positions[a]) - ray.origin, Vec3d(mesh.positions[b]) - ray.origin,
-            Vec3d(mesh.positions[c]) - ray.origin};
+/// The corners of a triangle in the world, from the ray's origin.
+std::array<Vec3d, 3> seen_from(const ExactTracer& exact, const Rayd& ray, std::uint32_t object, std::uint32_t triangle) {
+    const std::vector<Vec3d> p = exact.corners(object, triangle);
+    DUET_CHECK_EQ(p.size(), std::size_t{3});
+    return {p[0] - ray.origin, p[1] - ray.origin, p[2] - ray.origin};
+}
+
+/// Distance between the line of the ray and the nearest edge of the triangle, seen along the ray.
+double edge_distance(const Rayd& ray, std::array<Vec3d, 3> p) {
+    for (Vec3d& q : p) q = q - ray.direction * (dot(q, ray.direction) / dot(ray.direction, ray.direction));
+    return min(min(distance_to_segment(p[0], p[1]), distance_to_segment(p[1], p[2])), distance_to_segment(p[2], p[0]));
+}
+
+/// Distance of the ray's origin from the triangle's plane.
+double plane_distance(const std::array<Vec3d, 3>& p) {
+    const Vec3d n = cross(p[1] - p[0], p[2] - p[0]);
+    return length(n) > 0 ? std::abs(dot(p[0], n)) / length(n) : 0;
+}
+
+/// A direction across the ray, of unit length, the i-th of `count` around it.
+Vec3d aside(const FrameT<double>& frame, int i, int count) {
+    const double angle = 2 * kPiDouble * i / count;
+    return frame.s * std::cos(angle) + frame.t * std::sin(angle);
 }
 
 } // namespace
@@ -43,94 +62,133 @@ const ExactTracer& Judge::exact() const {
     return *exact_;
 }
 
-double Judge::edge_distance(const Rayd& ray, std::uint32_t triangle) const {
-    std::array<Vec3d, 3> p = triangle_seen_from(scene_, ray, triangle);
-    for (Vec3d& q : p) q = q - ray.direction * (dot(q, ray.direction) / dot(ray.direction, ray.direction));
-    return min(min(distance_to_segment(p[0], p[1]), distance_to_segment(p[1], p[2])), distance_to_segment(p[2], p[0]));
-}
-
-double Judge::plane_distance(const Rayd& ray, std::uint32_t triangle) const {
-    const auto [a, b, c] = triangle_seen_from(scene_, ray, triangle);
-    const Vec3d n = cross(b - a, c - a);
-    return length(n) > 0 ? std::abs(dot(a, n)) / length(n) : 0;
-}
-
 // Whether the triangle is where the answer says, on the ray or as near as rounding allows.
 bool Judge::nearly_meets(const Rayd& ray, const Answer& answer) const {
     const double t = answer.t;
     Rayd line = ray; // the surface that a ray starts from may be found on either side of its start
     line.t_min = -slack(ray, 0) / kGrazing;
-    const ExactHit hit = exact().intersect(line, 0, answer.triangle);
+    const ExactHit hit = exact().intersect(line, answer.object, answer.triangle);
     if (hit.valid()) {
-        const double cosine = exact().cosine(ray, 0, answer.triangle, hit.t);
+        const double cosine = exact().cosine(ray, answer.object, answer.triangle, hit.t);
         if (std::abs(hit.t - t) * cosine <= slack(ray, t)) return true;
     }
-    if (edge_distance(ray, answer.triangle) > slack(ray, t)) return false;
+    const std::array<Vec3d, 3> corners = seen_from(exact(), ray, answer.object, answer.triangle);
+    if (edge_distance(ray, corners) > slack(ray, t)) return false;
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-    for (const Vec3d& p : triangle_seen_from(scene_, ray, answer.triangle)) {
+    for (const Vec3d& p : corners) {
         nearest = min(nearest, dot(p, ray.direction));
         farthest = max(farthest, dot(p, ray.direction));
     }
     return nearest - slack(ray, t) <= t && t <= farthest + slack(ray, t);
 }
 
-// Whether single precision may miss what double precision hits: at the triangle's edge, or at the ray's ends.
-bool Judge::may_be_passed(const Rayd& ray, const ExactHit& hit) const {
+// Whether single precision may miss what double precision hits, as it lies where the ray begins or ends.
+bool Judge::at_an_end(const Rayd& ray, const ExactHit& hit) const {
     const double room = slack(ray, hit.t), cosine = exact().cosine(ray, hit.object, hit.primitive, hit.t);
-    return edge_distance(ray, hit.primitive) <= room || (hit.t - ray.t_min) * cosine <= room ||
-           (ray.t_max - hit.t) * cosine <= room;
+    return (hit.t - ray.t_min) * cosine <= room || (ray.t_max - hit.t) * cosine <= room;
+}
+
+// The same, as the ray meets the triangle's edge.
+bool Judge::at_an_edge(const Rayd& ray, const ExactHit& hit) const {
+    return edge_distance(ray, seen_from(exact(), ray, hit.object, hit.primitive)) <= slack(ray, hit.t);
+}
+
+// Whether there is no way past what the ray hits at an edge, to `end`: rays displaced by roundings to any side are
+// stopped, too. So the edge is no outline, and a kernel whose triangles close up does not get through. Displaced by
+// several lengths, as a longer one may run into something else; a way past at any of them is one.
+bool Judge::goes_on_around(const Rayd& ray, const ExactHit& hit, double end) const {
+    const double room = slack(ray, hit.t);
+    const FrameT<double> frame = frame_from_normal(normalize(ray.direction));
+    for (const double part : {1.0, 0.25, 0.0625})
+        for (int i = 0; i < kAround; ++i) {
+            Rayd beside = ray;
+            beside.origin = ray.origin + aside(frame, i, kAround) * (room * part);
+            beside.t_min = max(ray.t_min, hit.t - room / kGrazing);
+            beside.t_max = std::isfinite(end) ? (hit.t + end) / 2 : end;
+            if (!exact().nearest(beside).valid()) return false;
+        }
+    return true;
 }
 
 Finding Judge::closest(const Ray& ray, const Answer& answer) const {
+    return closest(ray, answer, first_hit(ray));
+}
+
+ExactHit Judge::first_hit(const Ray& ray) const { return exact().nearest(in_double(ray)); }
+
+Finding Judge::closest(const Ray& ray, const Answer& answer, const ExactHit& first) const {
     const Rayd r = in_double(ray);
+    const auto is_answer = [&](const ExactHit& hit) {
+        return hit.object == answer.object && hit.primitive == answer.triangle;
+    };
+    const double t = answer.t;
+    if (answer.hit() && first.valid() && is_answer(first) && // for the most part
+        std::abs(first.t - t) * exact().cosine(r, first.object, first.primitive, first.t) <= slack(r, t))
+        return Finding::kRight;
     if (answer.hit() && !nearly_meets(r, answer)) return Finding::kWrong;
     Rayd rest = r;
-    bool passed = false;
-    while (true) { // whatever lies before the answer must be possible to miss
-        const ExactHit hit = exact().nearest(rest);
-        if (!hit.valid()) return passed || answer.hit() ? Finding::kEdge : Finding::kRight;
+    bool passed = false, slipped = false;
+    const auto in_that_case = [&](Finding finding) {
+        return slipped ? Finding::kFault : passed ? Finding::kEdge : finding;
+    };
+    for (ExactHit hit = first;; hit = exact().nearest(rest)) { // whatever lies before the answer must be possible to miss
+        if (!hit.valid()) return in_that_case(answer.hit() ? Finding::kEdge : Finding::kRight);
         if (answer.hit()) {
-            if (hit.primitive == answer.triangle) return passed ? Finding::kEdge : Finding::kRight;
-            const double before = (static_cast<double>(answer.t) - hit.t) * exact().cosine(r, 0, hit.primitive, hit.t);
-            if (before < -slack(r, hit.t)) return Finding::kEdge;
-            if (before <= slack(r, hit.t)) return passed ? Finding::kEdge : Finding::kTie;
+            if (is_answer(hit)) return in_that_case(Finding::kRight);
+            const double before = (t - hit.t) * exact().cosine(r, hit.object, hit.primitive, hit.t);
+            if (before < -slack(r, hit.t)) return in_that_case(Finding::kEdge);
+            if (before <= slack(r, hit.t)) return in_that_case(Finding::kTie);
         }
-        if (!may_be_passed(r, hit)) return Finding::kWrong;
+        if (!at_an_end(r, hit)) {
+            if (!at_an_edge(r, hit)) return Finding::kWrong;
+            slipped = slipped || goes_on_around(r, hit, answer.hit() ? t : r.t_max);
+        }
         passed = true;
         rest.t_min = hit.t;
     }
 }
 
 Finding Judge::occluded(const Ray& ray, bool blocked) const {
-    const Rayd r = in_double(ray);
+    Hit end;
+    end.t = ray.t_max;
+    return occluded(ray, end, blocked);
+}
+
+Finding Judge::occluded(const Ray& ray, const Hit& end, bool blocked) const {
+    Rayd r = in_double(ray);
+    r.t_max = end.t;
     Rayd rest = r;
-    bool passed = false;
+    bool passed = false, slipped = false;
     while (true) {
         const ExactHit hit = exact().nearest(rest);
         if (!hit.valid()) break;
-        if (blocked) return Finding::kRight;
-        if (!may_be_passed(r, hit)) return Finding::kWrong;
-        passed = true;
         rest.t_min = hit.t;
+        if (hit.same_as(end)) continue;
+        if (blocked) return Finding::kRight;
+        if (!at_an_end(r, hit)) {
+            if (!at_an_edge(r, hit)) return Finding::kWrong;
+            slipped = slipped || goes_on_around(r, hit, r.t_max);
+        }
+        passed = true;
     }
-    if (!blocked) return passed ? Finding::kEdge : Finding::kRight;
-    return nearly_occluded(r) ? Finding::kEdge : Finding::kWrong;
+    if (!blocked) return slipped ? Finding::kFault : passed ? Finding::kEdge : Finding::kRight;
+    return nearly_occluded(r, end) ? Finding::kEdge : Finding::kWrong;
 }
 
 // Nothing is in the way: is there something just beside it, or just beyond the end? A ray beside it starts behind the
 // surface that the ray itself starts on, which is no reason to be blocked.
-bool Judge::nearly_occluded(const Rayd& ray) const {
+bool Judge::nearly_occluded(const Rayd& ray, const Hit& end) const {
     const double reach = std::isfinite(ray.t_max) ? ray.t_max : length(scene_.bounds.diagonal());
     const double room = slack(ray, reach);
     const FrameT<double> frame = frame_from_normal(normalize(ray.direction));
     for (int i = 0; i <= kDirections; ++i) {
-        const double angle = 2 * kPiDouble * i / kDirections;
-        const Vec3d aside = i == kDirections ? Vec3d() : frame.s * std::cos(angle) + frame.t * std::sin(angle);
         Rayd near = ray;
-        near.origin = ray.origin + aside * room;
+        if (i < kDirections) near.origin = ray.origin + aside(frame, i, kDirections) * room;
         near.t_max = ray.t_max + room;
         for (ExactHit hit = exact().nearest(near); hit.valid(); hit = exact().nearest(near)) {
-            if (plane_distance(ray, hit.primitive) > slack(ray, 0)) return true;
+            const bool blocks = !hit.same_as(end) &&
+                                plane_distance(seen_from(exact(), ray, hit.object, hit.primitive)) > slack(ray, 0);
+            if (blocks) return true;
             near.t_min = hit.t;
         }
     }
@@ -139,29 +197,32 @@ bool Judge::nearly_occluded(const Rayd& ray) const {
 
 namespace {
 
-Finding judged(const Judge& judge, Question question, const Ray& ray, const Answer& answer) {
-    return question == Question::kClosest ? judge.closest(ray, answer) : judge.occluded(ray, answer.hit());
+Finding judged(const Judge& judge, const Questions& questions, std::size_t i, const Answer& answer) {
+    const Ray& ray = questions.rays[i];
+    return questions.closest() ? judge.closest(ray, answer) : judge.occluded(ray, questions.ends[i], answer.hit());
 }
 
 } // namespace
 
-Judged judge_answers(const Judge& judge, Question question, std::span<const Ray> rays, std::span<const Answer> answers,
+Faults judge_answers(const Judge& judge, const Questions& questions, std::span<const Answer> answers,
                      std::size_t stride, int threads) {
-    DUET_CHECK_EQ(rays.size(), answers.size());
-    std::vector<char> wrong((rays.size() + stride - 1) / stride);
-    parallel_for(wrong.size(), threads, [&](std::size_t k) {
-        wrong[k] = judged(judge, question, rays[k * stride], answers[k * stride]) == Finding::kWrong;
-    });
-    return {std::ssize(wrong), std::ranges::count(wrong, 1)};
+    DUET_CHECK_EQ(questions.rays.size(), answers.size());
+    std::vector<Finding> findings((answers.size() + stride - 1) / stride);
+    parallel_for(findings.size(), threads,
+                 [&](std::size_t k) { findings[k] = judged(judge, questions, k * stride, answers[k * stride]); });
+    Faults faults;
+    for (const Finding finding : findings) faults.count(finding);
+    return faults;
 }
 
-Mismatches compare_answers(const Judge& judge, Question question, std::span<const Ray> rays,
-                           std::span<const Answer> ours, std::span<const Answer> peers, int threads) {
+Mismatches compare_answers(const Judge& judge, const Questions& questions, std::span<const Answer> ours,
+                           std::span<const Answer> peers, int threads) {
+    const std::span<const Ray> rays = questions.rays;
     DUET_CHECK_EQ(rays.size(), ours.size());
     DUET_CHECK_EQ(rays.size(), peers.size());
     const auto equal = [&](std::size_t i) {
-        if (ours[i].triangle != peers[i].triangle) return false;
-        if (!ours[i].hit() || question == Question::kOccluded) return true;
+        if (ours[i].triangle != peers[i].triangle || ours[i].object != peers[i].object) return false;
+        if (!ours[i].hit() || !questions.closest()) return true;
         const double t = ours[i].t;
         return std::abs(t - static_cast<double>(peers[i].t)) <= slack(in_double(rays[i]), t);
     };
@@ -172,19 +233,29 @@ Mismatches compare_answers(const Judge& judge, Question question, std::span<cons
     std::vector<std::pair<Finding, Finding>> findings(different.size());
     parallel_for(different.size(), threads, [&](std::size_t k) {
         const std::size_t i = different[k];
-        findings[k] = {judged(judge, question, rays[i], ours[i]), judged(judge, question, rays[i], peers[i])};
+        findings[k].first = judged(judge, questions, i, ours[i]);
+        findings[k].second = questions.closest() ? judge.closest(rays[i], peers[i])
+                                                 : judge.occluded(rays[i], peers[i].hit()); // as it was asked
     });
     Mismatches result;
-    result.rays = static_cast<std::int64_t>(rays.size());
+    result.rays = std::ssize(rays);
     for (const auto& [a, b] : findings) {
-        result.ours_wrong += a == Finding::kWrong;
-        result.peer_wrong += b == Finding::kWrong;
-        if (a == Finding::kWrong || b == Finding::kWrong)
+        result.ours.count(a);
+        result.peer.count(b);
+        switch (std::max(a, b)) {
+        case Finding::kWrong:
             ++result.unexplained;
-        else if (a == Finding::kEdge || b == Finding::kEdge)
+            break;
+        case Finding::kFault:
+            ++result.fault;
+            break;
+        case Finding::kEdge:
             ++result.edge;
-        else
+            break;
+        case Finding::kTie:
+        case Finding::kRight:
             ++result.tie;
+        }
     }
     return result;
 }

@@ -3,6 +3,7 @@
 #include "common/system/error.h"
 
 #include <algorithm>
+#include <array>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,9 @@ namespace {
 using nlohmann::json;
 
 bool is_rate(const KernelRow& row) { return row.work != "build" && row.work != "memory"; }
+
+/// Whether the path tracer asks just so: it has camera rays traced in bulk.
+bool as_rendered(const KernelRow& row) { return row.work != "camera"; }
 
 std::string figure(const KernelRow& row, double value) {
     std::ostringstream out;
@@ -45,6 +49,10 @@ std::string grouped(std::int64_t number) {
 
 json range_json(const Range& range) { return {{"min", range.min}, {"median", range.median}, {"max", range.max}}; }
 
+json faults_json(const Faults& faults) {
+    return {{"rays", faults.rays}, {"edge_faults", faults.edge}, {"wrong", faults.wrong}};
+}
+
 json row_json(const KernelTable& table, const KernelRow& row) {
     const bool peer = !row.peer_name.empty();
     json result = {{"mesh", table.mesh},
@@ -58,65 +66,92 @@ json row_json(const KernelTable& table, const KernelRow& row) {
                    {"ratio", peer ? range_json(row.ratio) : json(nullptr)},
                    {"best", row.best},
                    {"repeats", row.repeats}};
-    if (is_rate(row)) result["rays"] = row.rays;
+    if (is_rate(row)) {
+        result["rays"] = row.rays;
+        result["as_rendered"] = as_rendered(row);
+    }
     if (row.mismatches) {
         const Mismatches& m = *row.mismatches;
         result["mismatches"] = {{"rays", m.rays},
                                 {"differ", m.differ()},
                                 {"tie", m.tie},
                                 {"edge", m.edge},
+                                {"edge_fault", m.fault},
                                 {"unexplained", m.unexplained},
-                                {"ours_wrong", m.ours_wrong},
-                                {"peer_wrong", m.peer_wrong}};
+                                {"ours_edge_faults", m.ours.edge},
+                                {"peer_edge_faults", m.peer.edge},
+                                {"ours_wrong", m.ours.wrong},
+                                {"peer_wrong", m.peer.wrong}};
     }
     if (row.leaks)
         result["leaks"] = {{"ours", row.leaks->ours}, {"peer", peer ? json(row.leaks->peer) : json(nullptr)}};
     return result;
 }
 
-/// Whether the peer did better in a than in b.
-bool better(const KernelRow& a, const KernelRow& b) { return is_rate(a) ? a.peer > b.peer : a.peer < b.peer; }
+/// How much there is to explain: what nothing explains above all.
+std::array<std::int64_t, 4> gravity(const KernelRow& row) {
+    std::array<std::int64_t, 4> result{};
+    if (row.mismatches) result = {row.mismatches->unexplained, row.mismatches->fault, 0, row.mismatches->differ()};
+    if (row.leaks) result[2] = row.leaks->ours + row.leaks->peer;
+    return result;
+}
 
-/// The row of most differences, or none.
-const KernelRow* most_different(const KernelTable& table) {
-    const KernelRow* worst = nullptr;
-    for (const KernelRow& row : table.rows)
-        if (row.mismatches && (worst == nullptr || row.mismatches->differ() > worst->mismatches->differ()))
-            worst = &row;
+/// Of each work the row with the most to explain, and of these the most first. (Answers do not depend on threads.)
+std::vector<const KernelRow*> rows_to_explain(const KernelTable& table) {
+    std::vector<const KernelRow*> worst;
+    for (const KernelRow& row : table.rows) {
+        if (!row.mismatches && !row.leaks) continue;
+        const auto same = std::ranges::find(worst, row.work, [](const KernelRow* r) { return r->work; });
+        if (same == worst.end())
+            worst.push_back(&row);
+        else if (gravity(row) > gravity(**same))
+            *same = &row;
+    }
+    std::ranges::stable_sort(worst, [](const KernelRow* a, const KernelRow* b) { return gravity(*a)[0] > gravity(*b)[0]; });
     return worst;
 }
 
-/// Whether the answers are right: ours by the judge, ours beside the peer's, leaks, misses.
-void print_checks(std::ostream& out, const KernelTable& table) {
-    Judged judged;
-    for (const KernelTable::JudgedWork& work : table.judged) {
-        judged.rays += work.found.rays;
-        judged.wrong += work.found.wrong;
+void print_differences(std::ostream& out, const KernelTable& table) {
+    const std::vector<const KernelRow*> rows = rows_to_explain(table);
+    if (rows.empty()) return;
+    const auto line = [&](const std::string& work, const std::array<std::string, 9>& cells, const std::string& name) {
+        out << "  " << std::left << std::setw(12) << work << std::right;
+        constexpr std::array<int, 9> kWidths{11, 8, 8, 10, 10, 11, 11, 10, 10};
+        for (std::size_t i = 0; i < cells.size(); ++i) out << std::setw(kWidths[i]) << cells[i];
+        out << "  " << name << '\n';
+    };
+    out << "  where both differ: ties, outlines and ends within rounding; edge faults and wrong answers of each; rays lost "
+           "from the closed room\n";
+    line("work", {"rays", "ties", "edges", "our e.f.", "its e.f.", "our wrong", "its wrong", "we lose", "it loses"},
+         "the peer's setting with the most");
+    for (const KernelRow* row : rows) {
+        const Mismatches m = row->mismatches.value_or(Mismatches{});
+        const Leaks leaks = row->leaks.value_or(Leaks{});
+        const auto if_peer = [&](std::int64_t n) { return row->mismatches ? grouped(n) : "-"; };
+        const auto if_closed = [&](std::int64_t n) { return row->leaks ? grouped(n) : "-"; };
+        line(row->work + (m.unexplained > 0 ? " !" : ""),
+             {if_peer(m.rays), if_peer(m.tie), if_peer(m.edge), if_peer(m.ours.edge), if_peer(m.peer.edge),
+              if_peer(m.ours.wrong), if_peer(m.peer.wrong), if_closed(leaks.ours),
+              row->mismatches ? if_closed(leaks.peer) : "-"},
+             row->peer_name);
     }
+}
+
+/// Whether the answers are right: ours by the judge, ours beside the peer's, and aimed at edges.
+void print_checks(std::ostream& out, const KernelTable& table) {
+    print_differences(out, table);
+    Faults judged;
+    for (const KernelTable::JudgedWork& work : table.judged) judged += work.found;
     if (judged.rays > 0)
         out << "  " << grouped(judged.rays) << " of our answers judged in double precision: " << grouped(judged.wrong)
-            << " wrong\n";
-    if (const KernelRow* worst = most_different(table)) {
-        const Mismatches& m = *worst->mismatches;
-        out << "  differences from the peer, most with " << worst->work << ", " << worst->peer_name << ": "
-            << grouped(m.tie) << " ties, " << grouped(m.edge) << " at edges, " << grouped(m.unexplained)
-            << " unexplained (" << grouped(m.ours_wrong) << " ours, " << grouped(m.peer_wrong) << " the peer's) of "
-            << grouped(m.rays) << '\n';
-    }
-    std::optional<std::int64_t> peer_leaks;
-    for (const KernelRow& row : table.rows)
-        if (row.leaks) peer_leaks = std::max(peer_leaks.value_or(0), row.leaks->peer);
-    if (peer_leaks) {
-        out << "  rays lost from the closed room: ours " << grouped(table.our_leaks);
-        if (most_different(table) != nullptr) out << ", the peer's at most " << grouped(*peer_leaks);
-        out << '\n';
-    }
+            << " wrong, " << grouped(judged.edge) << " edge faults\n";
     if (table.watertight.empty()) return;
-    out << "  " << grouped(table.watertight.front().rays)
-        << " rays aimed at points, edges and vertices from within, lost:";
-    for (const KernelTable::Missed& m : table.watertight)
-        out << (&m == &table.watertight.front() ? " " : ", ") << m.kernel << ' ' << grouped(m.misses);
-    out << '\n';
+    out << "  " << grouped(table.watertight.front().faults.rays)
+        << " rays aimed at points, edges and vertices from within, each judged (lost, edge faults, wrong):\n";
+    for (const KernelTable::Aimed& aimed : table.watertight)
+        out << "    " << std::left << std::setw(32) << aimed.kernel << std::right << std::setw(10)
+            << grouped(aimed.misses) << std::setw(10) << grouped(aimed.faults.edge) << std::setw(10)
+            << grouped(aimed.faults.wrong) << '\n';
 }
 
 } // namespace
@@ -125,11 +160,15 @@ void mark_best(std::vector<KernelRow>& rows) {
     for (KernelRow& row : rows)
         row.best = !row.peer_name.empty() && std::ranges::none_of(rows, [&](const KernelRow& other) {
             const bool rival = other.work == row.work && other.threads == row.threads && !other.peer_name.empty();
-            return rival && (better(other, row) || (&other < &row && !better(row, other))); // of equals the first
+            return rival && (other.ratio.median < row.ratio.median ||
+                             (&other < &row && other.ratio.median == row.ratio.median)); // of equals the first
         });
 }
 
-std::string verdict(const Range& ratio) { return ratio.min > 1 ? "ahead" : ratio.max < 1 ? "behind" : "even"; }
+std::string verdict(const Range& ratio, int repeats) {
+    if (repeats < kLeastForVerdict) return "too few";
+    return ratio.min > 1 ? "ahead" : ratio.max < 1 ? "behind" : "even";
+}
 
 json rows_json(const KernelTable& table) {
     json rows = json::array();
@@ -139,24 +178,25 @@ json rows_json(const KernelTable& table) {
 
 json watertight_json(const KernelTable& table) {
     json list = json::array();
-    for (const KernelTable::Missed& m : table.watertight)
-        list.push_back({{"mesh", table.mesh},
-                        {"scene", table.scene},
-                        {"triangles", table.triangles},
-                        {"kernel", m.kernel},
-                        {"rays", m.rays},
-                        {"misses", m.misses}});
+    for (const KernelTable::Aimed& aimed : table.watertight) {
+        json entry = {{"mesh", table.mesh},
+                      {"scene", table.scene},
+                      {"triangles", table.triangles},
+                      {"kernel", aimed.kernel},
+                      {"misses", aimed.misses}};
+        entry.update(faults_json(aimed.faults));
+        list.push_back(entry);
+    }
     return list;
 }
 
 json judged_json(const KernelTable& table) {
     json list = json::array();
-    for (const KernelTable::JudgedWork& judged : table.judged)
-        list.push_back({{"mesh", table.mesh},
-                        {"scene", table.scene},
-                        {"work", judged.work},
-                        {"rays", judged.found.rays},
-                        {"wrong", judged.found.wrong}});
+    for (const KernelTable::JudgedWork& judged : table.judged) {
+        json entry = {{"mesh", table.mesh}, {"scene", table.scene}, {"work", judged.work}};
+        entry.update(faults_json(judged.found));
+        list.push_back(entry);
+    }
     return list;
 }
 
@@ -166,37 +206,55 @@ void print_table(std::ostream& out, const KernelTable& table) {
     if (table.left_out > 0) out << ", " << table.left_out << " spheres left out";
     out << "; million rays a second\n";
     const auto line = [&](const std::string& work, const std::string& threads, const std::string& ours,
-                          const std::string& peer, const std::string& ratio, const std::string& verdict_text,
-                          const std::string& name) {
+                          const std::string& peer, const std::string& ratio, const std::string& repeats,
+                          const std::string& verdict_text, const std::string& name) {
         out << "  " << std::left << std::setw(12) << work << std::right << std::setw(8) << threads << std::setw(11)
-            << ours << std::setw(11) << peer << "  " << std::left << std::setw(21) << ratio << std::setw(8)
-            << verdict_text << name << '\n';
+            << ours << std::setw(11) << peer << "  " << std::left << std::setw(21) << ratio << std::right
+            << std::setw(7) << repeats << "  " << std::left << std::setw(9) << verdict_text << name << '\n';
     };
-    line("work", "threads", "ours", "peer", "min - median - max", "ours is", "the peer's best");
+    line("work", "threads", "ours", "peer", "min - median - max", "repeats", "ours is", "the peer's best");
     for (const KernelRow& row : table.rows) {
         const std::string threads = row.work == "memory" ? "" : std::to_string(row.threads);
-        if (row.peer_name.empty()) line(row.work, threads, figure(row, row.ours), "-", "", "", "");
+        const std::string work = row.work + (is_rate(row) && !as_rendered(row) ? " *" : "");
+        const bool timed = row.work != "memory";
+        const std::string repeats = timed ? std::to_string(row.repeats) : "";
+        if (row.peer_name.empty()) line(work, threads, figure(row, row.ours), "-", "", repeats, "", "");
         if (row.best)
-            line(row.work, threads, figure(row, row.ours), figure(row, row.peer), ratio_text(row.ratio),
-                 verdict(row.ratio), row.peer_name);
+            line(work, threads, figure(row, row.ours), figure(row, row.peer), ratio_text(row.ratio), repeats,
+                 timed ? verdict(row.ratio, row.repeats) : "", row.peer_name);
     }
+    if (std::ranges::any_of(table.rows, [](const KernelRow& row) { return is_rate(row) && !as_rendered(row); }))
+        out << "  * one by one, for comparison with other kernels: the path tracer traces camera rays in bulk\n";
     print_checks(out, table);
 }
 
 std::vector<std::string> faults(const KernelTable& table) {
     std::vector<std::string> found;
-    const std::string where = table.mesh + ", " + table.scene + ": ";
-    if (table.our_leaks > 0) found.push_back(where + message(table.our_leaks, " of our rays left the closed room"));
-    if (!table.watertight.empty() && table.watertight.front().misses > 0)
-        found.push_back(where + message(table.watertight.front().misses, " of our rays left the closed mesh"));
-    for (const KernelTable::JudgedWork& judged : table.judged)
-        if (judged.found.wrong > 0)
-            found.push_back(where + message(judged.found.wrong, " of ", judged.found.rays, " of our answers to ",
-                                            judged.work, " rays are wrong"));
-    for (const KernelRow& row : table.rows)
-        if (row.mismatches && row.mismatches->ours_wrong > 0 && row.threads == 1)
-            found.push_back(where + message(row.mismatches->ours_wrong, " of our answers to ", row.work,
-                                            " rays are wrong (found beside ", row.peer_name, ")"));
+    const auto add = [&](std::int64_t count, const auto&... what) {
+        if (count > 0) found.push_back(message(table.mesh, ", ", table.scene, ": ", count, what...));
+    };
+    for (const KernelTable::Aimed& aimed : table.watertight) {
+        if (!aimed.kernel.starts_with("duet")) continue;
+        add(aimed.misses, " of our rays left the closed scene (", aimed.kernel, ")");
+        add(aimed.faults.edge, " of our rays slipped through edges that they were aimed at (", aimed.kernel, ")");
+        add(aimed.faults.wrong, " of our answers to rays aimed at edges are wrong (", aimed.kernel, ")");
+    }
+    for (const KernelTable::JudgedWork& judged : table.judged) {
+        add(judged.found.wrong, " of ", judged.found.rays, " of our answers to ", judged.work, " rays are wrong");
+        add(judged.found.edge, " of ", judged.found.rays, " of our ", judged.work, " rays slipped through edges");
+    }
+    std::vector<std::string> leaked; // works
+    for (const KernelRow& row : table.rows) {
+        if (row.leaks && row.leaks->ours > 0 && std::ranges::count(leaked, row.work) == 0) {
+            leaked.push_back(row.work);
+            add(row.leaks->ours, " of our ", row.work, " rays left the closed room");
+        }
+        if (!row.mismatches || row.threads != 1) continue;
+        add(row.mismatches->ours.wrong, " of our answers to ", row.work, " rays are wrong (found beside ", row.peer_name,
+            ")");
+        add(row.mismatches->ours.edge, " of our ", row.work, " rays slipped through edges (found beside ",
+            row.peer_name, ")");
+    }
     return found;
 }
 

@@ -13,7 +13,7 @@
 
 namespace duet::compare {
 
-/// Rays that got out of a closed room.
+/// Rays of one work that got out of a closed room.
 struct Leaks {
     std::int64_t ours = 0, peer = 0;
 };
@@ -22,13 +22,14 @@ struct Leaks {
 struct KernelRow {
     std::string work; ///< "camera", "camera-bulk", "bounce", "shadow", "build", "memory"
     int threads = 1;
-    double ours = 0;       ///< million rays a second; seconds (build); bytes a triangle (memory)
     std::string peer_name; ///< "embree 3.13.5 medium packets 16"; empty: no peer
-    double peer = 0;
+    /// Million rays a second; seconds (build); bytes a triangle (memory). Of the pair of neighbouring measurements that
+    /// has the median ratio; without a peer our median.
+    double ours = 0, peer = 0;
     Range ratio;          ///< above 1: ours is ahead
-    bool best = false;    ///< of the peer's settings for this work and number of threads
+    bool best = false;    ///< the peer's best setting for this work and number of threads: our lowest median ratio
     std::size_t rays = 0; ///< of one measurement
-    int repeats = 0;      ///< measurements of the peer
+    int repeats = 0;      ///< pairs of measurements
     std::optional<Mismatches> mismatches;
     std::optional<Leaks> leaks;
 };
@@ -39,24 +40,25 @@ struct KernelTable {
     std::size_t triangles = 0, left_out = 0;
     int width = 0, height = 0;
     std::vector<KernelRow> rows;
-    struct Missed {
+    struct Aimed {
         std::string kernel;
-        std::int64_t rays, misses;
+        std::int64_t misses;
+        Faults faults;
     };
-    std::vector<Missed> watertight; ///< ours first; empty where the mesh is not closed, or no ray was asked for
+    std::vector<Aimed> watertight; ///< ours first; empty where the scene is not closed, or no ray was asked for
     struct JudgedWork {
         std::string work;
-        Judged found;
+        Faults found;
     };
     std::vector<JudgedWork> judged; ///< a sample of our answers, by the double-precision judge
-    std::int64_t our_leaks = 0;     ///< of camera and bounce rays in a closed room
 };
 
-/// Marks, among rows of the same work and threads, the one in which the peer did best.
+/// Marks, among rows of the same work and threads, the one of our lowest median ratio.
 void mark_best(std::vector<KernelRow>& rows);
 
-/// "ahead" where every repeat was above 1, "behind" where every one was below, else "even".
-std::string verdict(const Range& ratio);
+/// "ahead" where every repeat was above 1, "behind" where every one was below, else "even"; of fewer repeats than
+/// kLeastForVerdict "too few".
+std::string verdict(const Range& ratio, int repeats);
 
 /// Rows as in design: mesh, scene, triangles, work, threads, ours, peer, peer_name, ratio {min, median, max} (null
 /// where there is no peer), best, rays, repeats, mismatches, leaks.
@@ -64,10 +66,11 @@ nlohmann::json rows_json(const KernelTable& table);
 nlohmann::json watertight_json(const KernelTable& table);
 nlohmann::json judged_json(const KernelTable& table);
 
-/// One line for each work and number of threads: ours against the peer's best.
+/// One line for each work and number of threads, ours against the peer's best; then one for each work with what differs
+/// and what leaks, of the peer's setting with the most to explain. Lines with something unexplained come first.
 void print_table(std::ostream& out, const KernelTable& table);
 
-/// What is wrong with ours, a line each: leaks, misses, wrong answers. Empty: nothing.
+/// What is wrong with ours, a line each: leaks, misses, edge faults, wrong answers. Empty: nothing.
 std::vector<std::string> faults(const KernelTable& table);
 
 } // namespace duet::compare

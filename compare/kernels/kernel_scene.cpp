@@ -5,12 +5,13 @@
 #include "common/system/file.h"
 
 #include <array>
+#include <optional>
 
 namespace duet::compare {
 
 namespace {
 
-constexpr std::array<const char*, 3> kNames{"alone", "room", "clutter"};
+constexpr std::array<const char*, 4> kNames{"alone", "room", "clutter", "instances"};
 
 Box3d bounds_of(const Mesh& mesh) {
     Box3d box;
@@ -25,34 +26,57 @@ void append(Mesh& all, const std::vector<Vec3>& positions, const std::vector<std
     for (const auto& [a, b, c] : triangles) all.triangles.push_back({first + a, first + b, first + c});
 }
 
-/// Everything in the scene but spheres, in the world, as the shutter opens; `left_out` counts those.
-Mesh flattened(const Scene& scene, std::size_t& left_out) {
-    Mesh all;
+/// The corners of a quad and its two halves.
+void append(Mesh& all, const std::array<Vec3, 4>& quad) {
+    append(all, {quad.begin(), quad.end()}, {{0, 1, 2}, {0, 2, 3}});
+}
+
+/// A scene's triangles.
+struct Flattened {
+    Mesh mesh;
+    std::vector<std::optional<std::uint32_t>> first; ///< of each object; none of a sphere
+    std::size_t left_out = 0;                        ///< spheres
+};
+
+/// Everything in the scene but spheres, in the world, as the shutter opens.
+Flattened flattened(const Scene& scene) {
+    Flattened all;
     for (const Object& object : scene.objects) {
         const Shape& shape = scene.shapes[object.shape];
         if (std::holds_alternative<Sphere>(shape)) {
-            ++left_out;
+            ++all.left_out;
+            all.first.emplace_back();
             continue;
         }
+        all.first.emplace_back(static_cast<std::uint32_t>(all.mesh.triangles.size()));
         const Mat4 to_world = object_transform(object, static_cast<float>(scene.camera.shutter_open)).to_world;
         const bool still = object.identity && !object.moving;
         const auto placed = [&](Vec3 p) { return still ? p : transform_point(to_world, p); };
-        std::vector<Vec3> positions;
-        std::vector<std::array<std::uint32_t, 3>> triangles;
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            std::vector<Vec3> positions;
             for (const Vec3& p : mesh->positions) positions.push_back(placed(p));
-            triangles = mesh->triangles;
+            append(all.mesh, positions, mesh->triangles);
         } else {
             for (const Quad& quad : std::get<QuadList>(shape).quads) {
-                const auto first = static_cast<std::uint32_t>(positions.size());
-                for (const Vec3& p : corners(quad)) positions.push_back(placed(p));
-                triangles.push_back({first, first + 1, first + 2});
-                triangles.push_back({first, first + 2, first + 3});
+                std::array<Vec3, 4> p = corners(quad);
+                for (Vec3& q : p) q = placed(q);
+                append(all.mesh, p);
             }
         }
-        append(all, positions, triangles);
     }
     return all;
+}
+
+/// The scene's lights; those that are triangles of the flattened mesh are so by its numbers.
+std::vector<Light> lights_on(const Flattened& flat, std::vector<Light> lights) {
+    for (Light& light : lights)
+        if (auto* surface = std::get_if<SurfaceLight>(&light)) {
+            const auto first = surface->object == kNoObject ? std::nullopt : flat.first[surface->object];
+            const std::uint32_t triangles = std::holds_alternative<Quad>(surface->shape) ? 2 : 1;
+            surface->object = first ? 0 : kNoObject;
+            surface->primitive = first ? *first + triangles * surface->primitive : 0;
+        }
+    return lights;
 }
 
 /// A rotation, uniform over all (Shoemake 1992, «Uniform Random Rotations»): a random unit quaternion.
@@ -77,24 +101,90 @@ Camera clutter_camera() {
 }
 
 /// A square lamp above everything, facing down: just below the ceiling where there is one.
-Light lamp_above(const Box3d& box, bool enclosed) {
+SurfaceLight lamp_above(const Box3d& box, bool enclosed) {
     const Vec3d size = box.diagonal();
     const double side = 0.3 * max(size.x, size.z);
     const double height = enclosed ? box.high.y - 0.02 * size.y : box.high.y + max_component(size);
     const Vec3d corner = Vec3d(box.center().x - side / 2, height, box.center().z - side / 2);
     // u × v points down: x × z = −y.
     const Quad quad{Vec3(corner), Vec3(Vec3d(side, 0, 0)), Vec3(Vec3d(0, 0, side))};
-    return SurfaceLight{quad, false, Rgb(1.0f), kNoObject, 0};
+    return {quad, false, Rgb(1.0f), kNoObject, 0};
+}
+
+/// Hangs the lamp into a room, as part of the mesh that is the room's: object number `object`.
+SurfaceLight hang_lamp(Mesh& room, std::uint32_t object) {
+    SurfaceLight lamp = lamp_above(bounds_of(room), true);
+    lamp.object = object;
+    lamp.primitive = static_cast<std::uint32_t>(room.triangles.size());
+    append(room, corners(std::get<Quad>(lamp.shape)));
+    return lamp;
+}
+
+/// The 27 places of clutter for a mesh.
+std::vector<Mat4d> clutter_places(const Mesh& mesh) {
+    constexpr double kScale = 0.7, kGrid = 1.1;
+    const Box3d box = bounds_of(mesh);
+    const double scale = kScale * 2 / max_component(box.diagonal());
+    std::vector<Mat4d> places;
+    for (int copy = 0; copy < 27; ++copy) {
+        const Mat4d turned = random_rotation(mix_bits(static_cast<std::uint64_t>(copy) + 1));
+        const Vec3d place = Vec3d(copy % 3 - 1, copy / 3 % 3 - 1, copy / 9 - 1) * kGrid;
+        places.push_back(translation(place) * turned * scaling(Vec3d(scale, scale, scale)) * translation(-box.center()));
+    }
+    return places;
+}
+
+Object placed(std::uint32_t shape, const Mat4d& to_world) {
+    Object object;
+    object.name = message("object ", shape);
+    object.shape = shape;
+    object.materials = {0};
+    object.to_world = object.to_world_end = Mat4(to_world);
+    object.to_object = Mat4(inverse_affine(to_world));
+    object.identity = to_world == Mat4d();
+    return object;
+}
+
+KernelScene kernel_scene(std::string name, Arrangement arrangement, std::vector<Mesh> meshes,
+                         std::vector<Object> objects, const Camera& camera) {
+    KernelScene result;
+    result.mesh = std::move(name);
+    result.arrangement = arrangement;
+    result.camera = camera;
+    result.enclosed = arrangement != Arrangement::kAlone;
+    auto scene = std::make_unique<Scene>();
+    scene->path = result.mesh;
+    scene->camera = camera;
+    scene->materials.emplace_back(Diffuse{});
+    scene->material_names.emplace_back("clay");
+    scene->objects = std::move(objects);
+    for (Mesh& mesh : meshes) scene->shapes.emplace_back(std::move(mesh));
+    finish_scene(*scene);
+    result.scene = std::move(scene);
+    return result;
+}
+
+/// The copies of clutter as instances; the room is the last object.
+KernelScene instanced(std::string name, Mesh mesh) {
+    std::vector<Object> objects;
+    for (const Mat4d& place : clutter_places(mesh)) objects.push_back(placed(0, place));
+    objects.push_back(placed(1, Mat4d()));
+    Mesh room = enclosed({}, Vec3(), kClutterHalf);
+    const SurfaceLight lamp = hang_lamp(room, 27);
+    KernelScene result = kernel_scene(std::move(name), Arrangement::kInstances, {std::move(mesh), std::move(room)},
+                                      std::move(objects), clutter_camera());
+    result.lights = {lamp};
+    return result;
 }
 
 KernelScene of_scene_file(const Scene& loaded) {
-    std::size_t left_out = 0;
-    Mesh mesh = flattened(loaded, left_out);
-    if (mesh.triangles.empty()) throw Error(loaded.path.string() + ": found spheres at most, expected triangles");
+    Flattened flat = flattened(loaded);
+    if (flat.mesh.triangles.empty()) throw Error(loaded.path.string() + ": found spheres at most, expected triangles");
+    std::vector<Light> lights = lights_on(flat, loaded.lights);
     KernelScene result =
-        make_kernel_scene(loaded.path.stem().string(), Arrangement::kAlone, std::move(mesh), loaded.camera);
-    result.left_out = left_out;
-    if (!loaded.lights.empty()) result.lights = loaded.lights;
+        make_kernel_scene(loaded.path.stem().string(), Arrangement::kAlone, std::move(flat.mesh), loaded.camera);
+    result.left_out = flat.left_out;
+    if (!lights.empty()) result.lights = std::move(lights);
     return result;
 }
 
@@ -103,7 +193,7 @@ KernelScene of_scene_file(const Scene& loaded) {
 Arrangement parse_arrangement(const std::string& name) {
     for (std::size_t i = 0; i < kNames.size(); ++i)
         if (name == kNames[i]) return static_cast<Arrangement>(i);
-    throw Error("--scene: found " + name + ", expected alone, room or clutter");
+    throw Error("--scene: found " + name + ", expected alone, room, clutter or instances");
 }
 
 const char* name_of(Arrangement arrangement) { return kNames[static_cast<std::size_t>(arrangement)]; }
@@ -127,40 +217,27 @@ Mesh enclosed(Mesh mesh, Vec3 center, float half) {
 }
 
 Mesh cluttered(const Mesh& mesh) {
-    constexpr double kScale = 0.7, kGrid = 1.1;
-    const Box3d box = bounds_of(mesh);
-    const double scale = kScale * 2 / max_component(box.diagonal());
     Mesh all;
-    for (int copy = 0; copy < 27; ++copy) {
-        const Mat4d turned = random_rotation(mix_bits(static_cast<std::uint64_t>(copy) + 1));
-        const Vec3d place = Vec3d(copy % 3 - 1, copy / 3 % 3 - 1, copy / 9 - 1) * kGrid;
+    for (const Mat4d& place : clutter_places(mesh)) {
         std::vector<Vec3> positions;
-        for (const Vec3& p : mesh.positions)
-            positions.push_back(Vec3(place + transform_vector(turned, Vec3d(p) - box.center()) * scale));
+        for (const Vec3& p : mesh.positions) positions.push_back(Vec3(transform_point(place, Vec3d(p))));
         append(all, positions, mesh.triangles);
     }
     return all;
 }
 
+std::size_t KernelScene::triangle_count() const {
+    std::size_t count = 0;
+    for (std::size_t object = 0; object < scene->objects.size(); ++object) count += mesh_of(object).triangles.size();
+    return count;
+}
+
 KernelScene make_kernel_scene(std::string name, Arrangement arrangement, Mesh mesh, const Camera& camera) {
-    KernelScene result;
-    result.mesh = std::move(name);
-    result.arrangement = arrangement;
-    result.camera = camera;
-    result.enclosed = arrangement != Arrangement::kAlone;
-    result.lights = {lamp_above(bounds_of(mesh), result.enclosed)};
-    auto scene = std::make_unique<Scene>();
-    scene->path = result.mesh;
-    scene->camera = camera;
-    scene->materials.emplace_back(Diffuse{});
-    scene->material_names.emplace_back("clay");
-    Object object;
-    object.name = result.mesh;
-    object.materials = {0};
-    scene->objects = {object};
-    scene->shapes.emplace_back(std::move(mesh));
-    finish_scene(*scene);
-    result.scene = std::move(scene);
+    const bool room = arrangement != Arrangement::kAlone;
+    const SurfaceLight lamp = room ? hang_lamp(mesh, 0) : lamp_above(bounds_of(mesh), false);
+    KernelScene result =
+        kernel_scene(std::move(name), arrangement, {std::move(mesh)}, {placed(0, Mat4d())}, camera);
+    result.lights = {lamp};
     return result;
 }
 
@@ -176,6 +253,7 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
     Mesh mesh;
     append(mesh, given.positions, given.triangles);
     const std::string name = file.stem().string();
+    if (arrangement == Arrangement::kInstances) return instanced(name, std::move(mesh));
     if (arrangement == Arrangement::kClutter)
         return make_kernel_scene(name, arrangement, enclosed(cluttered(mesh), Vec3(), kClutterHalf), clutter_camera());
     if (arrangement == Arrangement::kRoom) { // as large as it must be to hold the camera, and a little more

@@ -13,12 +13,14 @@ enum class Arrangement {
     kAlone,   ///< as the file has it
     kRoom,    ///< within a closed box, the camera too
     kClutter, ///< 27 copies, each rotated in its own way, on a grid within a closed box: the honest incoherent test
+    kInstances, ///< the same, but the copies are instances of one mesh: a hierarchy of two levels
 };
-/// "alone", "room" or "clutter"; throws Error for another name.
+/// "alone", "room", "clutter" or "instances"; throws Error for another name.
 Arrangement parse_arrangement(const std::string& name);
 const char* name_of(Arrangement arrangement);
 
-/// One mesh of triangles in world space, the single object of its scene.
+/// One mesh of triangles in world space, the single object of its scene; or instances of one, and then a mesh in world
+/// space.
 struct KernelScene {
     std::string mesh; ///< the file's name without its ending
     Arrangement arrangement = Arrangement::kAlone;
@@ -28,14 +30,18 @@ struct KernelScene {
     bool enclosed = false;     ///< every ray from the camera or a surface meets a triangle
     std::size_t left_out = 0;  ///< the file's spheres: what is compared is triangles
 
-    const Mesh& triangles() const { return std::get<Mesh>(scene->shapes.front()); }
+    const Mesh& mesh_of(std::size_t object) const { return std::get<Mesh>(scene->shapes[scene->objects[object].shape]); }
+    const Mesh& triangles() const { return mesh_of(0); }
+    std::size_t triangle_count() const; ///< of all objects
+    /// Whether a ray that starts within must hit something: a single closed mesh, or all in a closed room.
+    bool closed() const { return enclosed || (scene->objects.size() == 1 && triangles().closed); }
 };
 
 /// Whether the file is a bare mesh, which can be arranged; a scene file stands as it is.
 bool is_bare_mesh(const std::filesystem::path& file);
 
 /// A bare mesh as the loader frames it (without its ground), or a scene file with its own camera and lights: instances
-/// in their places as the shutter opens, quads cut in two. Throws Error as load_scene does, where nothing is left, and
+/// in their places as the shutter opens, quads cut in two; a light that is a triangle there names it. Throws Error as load_scene does, where nothing is left, and
 /// where a scene file is to be arranged.
 KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arrangement);
 
@@ -46,7 +52,8 @@ Mesh enclosed(Mesh mesh, Vec3 center, float half);
 /// angles of its own, at the points of a grid of 1.1.
 Mesh cluttered(const Mesh& mesh);
 
-/// A mesh that is there already, with a camera; the light is a square above it.
+/// A mesh that is there already, with a camera; the light is a square above it, below the ceiling where there is one:
+/// then it is two more triangles, the last.
 KernelScene make_kernel_scene(std::string name, Arrangement arrangement, Mesh mesh, const Camera& camera);
 
 } // namespace duet::compare

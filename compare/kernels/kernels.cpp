@@ -35,20 +35,20 @@ std::vector<std::string> chosen_works(const std::vector<std::string>& works) {
 }
 
 std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
-    const std::vector<EmbreeQuality> all{{false, false}, {true, false}, {false, true}, {true, true}};
+    if (names == std::vector<std::string>{"none"}) return {};
+    const std::vector<EmbreeQuality> all = embree_qualities();
+    if (all.empty()) {
+        if (!names.empty()) throw Error("--peers: found " + names.front() + ", but " + kHowToGetThePeer);
+        return {};
+    }
     std::vector<std::string> known;
     for (const EmbreeQuality& quality : all) known.push_back(name_of(quality));
-    if (names == std::vector<std::string>{"none"}) return {};
     std::vector<EmbreeQuality> chosen;
     for (const std::string& name : names) {
         const auto found = std::ranges::find(known, name);
         if (found == known.end())
             throw Error("--peers: found " + name + ", expected none, or some of " + listed(known));
         chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
-    }
-    if (embree_version().empty()) {
-        if (!names.empty()) throw Error(std::string("--peers: ") + kHowToGetThePeer);
-        return {};
     }
     return names.empty() ? all : chosen;
 }
@@ -84,6 +84,7 @@ json report_json(const KernelsOptions& options, const MeasureKernels& settings,
     return {{"program", "compare kernels"},
             {"version", DUET_VERSION},
             {"peer", peer ? json(embree_version()) : json(nullptr)},
+            {"bvh", options.bvh},
             {"width", options.size.width},
             {"height", options.size.height},
             {"threads", settings.threads},
@@ -100,6 +101,7 @@ int kernels(const KernelsOptions& options) {
     MeasureKernels settings;
     settings.works = chosen_works(options.works);
     settings.peers = chosen_peers(options.peers);
+    settings.quality = raytrace::bvh_quality(options.bvh);
     settings.size = options.size;
     settings.threads = options.threads > 0 ? options.threads : available_threads();
     settings.repeats = options.repeats;

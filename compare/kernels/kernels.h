@@ -16,11 +16,12 @@ struct KernelsOptions {
     std::vector<std::string> scenes{"alone", "room"}; ///< of bare meshes; a scene file is always alone
     std::vector<std::string> works;                   ///< of kWorks; empty: all
     std::vector<std::string> peers;                   ///< Embree's qualities (name_of), or "none"; empty: all
+    std::string bvh = "default";                      ///< the quality of our hierarchy
     PictureSize size{1920, 1080};                     ///< one camera ray a pixel
     int threads = 0;                                  ///< of the rows for many threads; 0: all
     int repeats = 7;
     double seconds = 0.15;               ///< a measurement's length
-    std::int64_t watertight = 1'000'000; ///< rays aimed from within closed meshes; 0: none
+    std::int64_t watertight = 1'000'000; ///< rays aimed from within closed scenes; 0: none
     std::uint64_t seed = 0;
     std::string stats; ///< a file for the rows as JSON, "-" for standard output, empty: none
     bool quiet = false;

@@ -21,30 +21,32 @@ Subcommand add_kernels(CLI::App& app) {
     kernels
         ->add_option("--scene", options.scenes,
                      "How a bare mesh stands: alone (as framed), room (in a closed box), clutter (27 rotated copies in "
-                     "a closed box); default alone,room")
+                     "a closed box), instances (the same copies as instances of one mesh); default alone,room")
         ->delimiter(',');
     kernels
         ->add_option("--work", options.works,
-                     "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets, where a "
-                     "kernel has them), bounce, shadow (default: all)")
+                     "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and streams), "
+                     "bounce, shadow (default: all)")
         ->delimiter(',');
     kernels
         ->add_option("--peers", options.peers,
-                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, or none (default: "
-                     "all four)")
+                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is AVX-512 "
+                     "medium-avx2 and high-avx2, or none (default: all)")
         ->delimiter(',');
+    kernels->add_option("--bvh", options.bvh, "Quality of our hierarchy, as of raytrace: default or high (default: default)");
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
     kernels
         ->add_option("--threads", options.threads,
                      "Threads of the second set of rows, after one thread's (default: all)")
         ->check(CLI::Range(1, 1024));
-    kernels->add_option("--repeats", options.repeats, "Measurements of each, in turns (default 7)")
+    kernels->add_option("--repeats", options.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
         ->check(CLI::Range(1, 10000));
     kernels->add_option("--seconds", options.seconds, "Length of one measurement of rays (default 0.15)")
         ->check(CLI::Range(1e-4, 1e4));
     kernels
         ->add_option("--watertight", options.watertight,
-                     "Rays aimed at points, edges and vertices from within, where the mesh is closed; 0: none (default "
+                     "Rays aimed at points, edges and vertices from within, each judged in double precision, where the mesh "
+                     "or room is closed; 0: none (default "
                      "1000000)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
     kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)");
@@ -54,8 +56,8 @@ Subcommand add_kernels(CLI::App& app) {
         std::string("Example:\n  compare kernels bunny.obj models/cornell.json --scene room,clutter --stats "
                     "kernels.json\n\nThe table sets ours against the best of the peer's settings, --stats "
                     "against each. A ratio above 1 is ours ahead. The exit code is 1 where one of our "
-                    "answers is wrong by the double-precision judge, or a ray of ours leaks out of a closed "
-                    "room or mesh.") +
+                    "answers is wrong by the double-precision judge, or a ray of ours slips through an edge "
+                    "or leaks out of a closed room or mesh.") +
         kExitCodes);
     return {kernels, [all, size] {
                 if (!size->empty()) all->size = parse_picture_size(*size);

@@ -1,7 +1,6 @@
 #include "compare/kernels/measure_kernels.h"
 
 #include "common/system/parallel.h"
-#include "common/system/stopwatch.h"
 #include "compare/kernels/kernels.h"
 #include "compare/kernels/ray_sets.h"
 #include "compare/kernels/watertight.h"
@@ -35,11 +34,25 @@ private:
     double share_, done_ = 0;
 };
 
+/// Embree's devices that the settings ask for.
+class Devices {
+public:
+    Devices(const std::vector<EmbreeQuality>& qualities, const Scene& scene, int threads) {
+        for (const EmbreeQuality& quality : qualities)
+            if (auto& device = quality.avx2 ? avx2_ : widest_; !device) device.emplace(scene, threads, quality.avx2);
+    }
+    const EmbreeDevice& of(EmbreeQuality quality) const { return quality.avx2 ? *avx2_ : *widest_; }
+
+private:
+    std::optional<EmbreeDevice> widest_, avx2_;
+};
+
 /// Rays, the question they ask, and all who answer.
 struct Work {
     std::string name;
-    Question question = Question::kClosest;
     std::vector<Ray> rays;
+    std::vector<Hit> ends; ///< of shadow rays
+    Questions questions() const { return {rays, ends}; }
     Tracer ours;
     std::vector<Tracer> peers;
     // From the answers to all rays:
@@ -54,7 +67,7 @@ public:
           steps_(control, thread_counts().size() * settings.works.size() + 2) {
         table_.mesh = scene.mesh;
         table_.scene = name_of(scene.arrangement);
-        table_.triangles = scene.triangles().triangles.size();
+        table_.triangles = scene.triangle_count();
         table_.left_out = scene.left_out;
         table_.width = settings.size.width;
         table_.height = settings.size.height;
@@ -65,13 +78,12 @@ public:
             for (const int threads : thread_counts()) measure_builds(threads);
         if (control_.stopped()) return table_;
         build_all();
+        works_.reserve(kWorks.size());
         make_works();
         steps_.next().report(1);
         for (const Work& work : works_)
             for (const int threads : thread_counts()) measure_rays(work, threads);
-        // A box around a mesh faces inwards and is not closed in this sense: its rays are watched by the counts of lost
-        // ones instead.
-        if (settings_.watertight > 0 && scene_.triangles().closed && !control_.stopped()) aim_at_weak_places();
+        if (settings_.watertight > 0 && scene_.closed() && !control_.stopped()) aim_at_weak_places();
         mark_best(table_.rows);
         return std::move(table_);
     }
@@ -86,17 +98,16 @@ private:
     void measure_builds(int threads) {
         const Control control = steps_.next();
         const Timed ours = [&] {
-            const Stopwatch watch;
-            const raytrace::Accelerator built(*scene_.scene, threads);
+            const WorkWatch watch(threads);
+            const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
             return watch.seconds();
         };
-        std::optional<EmbreeDevice> device;
-        if (!settings_.peers.empty()) device.emplace(scene_.triangles(), threads);
+        const Devices devices(settings_.peers, *scene_.scene, threads);
         std::vector<Timed> peers;
         for (const EmbreeQuality& quality : settings_.peers)
-            peers.push_back([&device, quality] {
-                const Stopwatch watch;
-                const EmbreeScene built(*device, quality);
+            peers.push_back([&devices, quality, threads] {
+                const WorkWatch watch(threads);
+                const EmbreeScene built(devices.of(quality), quality);
                 return watch.seconds();
             });
         const Interleaved found = interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
@@ -107,14 +118,14 @@ private:
     }
 
     void build_all() {
-        accelerator_.emplace(*scene_.scene, settings_.threads);
+        accelerator_.emplace(*scene_.scene, settings_.threads, settings_.quality);
         if (settings_.peers.empty()) {
             if (wanted("build")) table_.rows.push_back(memory_row());
             return;
         }
-        device_.emplace(scene_.triangles(), settings_.threads);
+        devices_.emplace(settings_.peers, *scene_.scene, settings_.threads);
         for (const EmbreeQuality& quality : settings_.peers) {
-            embree_.push_back(std::make_unique<EmbreeScene>(*device_, quality));
+            embree_.push_back(std::make_unique<EmbreeScene>(devices_->of(quality), quality));
             if (!wanted("build")) continue;
             KernelRow row = memory_row();
             row.peer_name = full_name(name_of(quality));
@@ -141,69 +152,63 @@ private:
         const auto [width, height] = settings_.size;
         std::vector<Ray> camera = camera_rays(scene_.camera, width, height, PixelOrder::kRows, threads);
         if (wanted("bounce"))
-            add_work({"bounce",
-                      Question::kClosest,
-                      bounce_rays(scene_, *accelerator_, camera, settings_.seed, threads),
-                      {},
-                      {},
-                      {},
-                      {}},
-                     {1});
-        if (wanted("shadow"))
-            add_work({"shadow",
-                      Question::kOccluded,
-                      shadow_rays(scene_, *accelerator_, camera, settings_.seed, threads),
-                      {},
-                      {},
-                      {},
-                      {}},
-                     {1});
-        if (wanted("camera")) add_work({"camera", Question::kClosest, std::move(camera), {}, {}, {}, {}}, {1});
+            add_work("bounce", bounce_rays(scene_, *accelerator_, camera, settings_.seed, threads), {});
+        if (wanted("shadow")) {
+            ShadowRays shadow = shadow_rays(scene_, *accelerator_, camera, settings_.seed, threads);
+            add_work("shadow", std::move(shadow.rays), std::move(shadow.ends));
+        }
+        if (wanted("camera")) add_work("camera", std::move(camera), {});
         if (wanted("camera-bulk"))
-            add_work({"camera-bulk",
-                      Question::kClosest,
-                      camera_rays(scene_.camera, width, height, PixelOrder::kZCurve, threads),
-                      {},
-                      {},
-                      {},
-                      {}},
-                     {16, 8});
+            add_work("camera-bulk", camera_rays(scene_.camera, width, height, PixelOrder::kZCurve, threads), {});
         const auto place = [](const Work& work) { return std::ranges::find(kWorks, work.name); };
         std::ranges::sort(works_, {}, place);
     }
 
     /// Asks everybody about all rays, and counts where they differ and what leaks. A work without rays is none.
-    void add_work(Work work, const std::vector<int>& widths) {
-        if (work.rays.empty() || control_.stopped()) return;
-        works_.push_back(std::move(work));
-        Work& added = works_.back();
-        const bool any = added.question == Question::kOccluded;
-        added.ours = any                           ? our_occluded(*accelerator_, added.rays)
-                     : added.name == "camera-bulk" ? our_bulk(*accelerator_, added.rays)
-                                                   : our_closest(*accelerator_, added.rays);
-        const std::vector<Answer> ours = all_answers(added.ours, added.rays.size(), settings_.threads);
-        const std::size_t stride = (added.rays.size() + kJudged - 1) / kJudged;
-        table_.judged.push_back(
-            {added.name, judge_answers(judge_, added.question, added.rays, ours, stride, settings_.threads)});
-        const std::int64_t our_leaks = leaks_of(added, ours);
-        table_.our_leaks += our_leaks;
-        for (std::size_t i = 0; i < embree_.size(); ++i)
-            for (const int width : widths) {
-                const bool coherent = added.name.starts_with("camera");
-                Tracer tracer =
-                    any ? embree_[i]->occluded(added.rays) : embree_[i]->closest(added.rays, width, coherent);
-                tracer.name = full_name(name_of(settings_.peers[i])) + (tracer.name.empty() ? "" : " " + tracer.name);
-                const std::vector<Answer> theirs = all_answers(tracer, added.rays.size(), settings_.threads);
-                added.mismatches.push_back(
-                    compare_answers(judge_, added.question, added.rays, ours, theirs, settings_.threads));
-                added.leaks.push_back({our_leaks, leaks_of(added, theirs)});
-                added.peers.push_back(std::move(tracer));
+    void add_work(std::string name, std::vector<Ray> rays, std::vector<Hit> ends) {
+        if (rays.empty() || control_.stopped()) return;
+        works_.push_back({std::move(name), std::move(rays), std::move(ends), {}, {}, {}, {}});
+        Work& work = works_.back(); // does not move: there is room for all
+        const Questions questions = work.questions();
+        work.ours = !questions.closest()         ? our_occluded(*accelerator_, work.rays, work.ends)
+                    : work.name == "camera-bulk" ? our_bulk(*accelerator_, work.rays)
+                                                 : our_closest(*accelerator_, work.rays);
+        const std::vector<Answer> ours = all_answers(work.ours, work.rays.size(), settings_.threads);
+        const std::size_t stride = (work.rays.size() + kJudged - 1) / kJudged;
+        table_.judged.push_back({work.name, judge_answers(judge_, questions, ours, stride, settings_.threads)});
+        const std::int64_t our_leaks = leaks_of(work, ours);
+        work.peers = peers_at(work);
+        for (const Tracer& peer : work.peers) {
+            const std::vector<Answer> theirs = all_answers(peer, work.rays.size(), settings_.threads);
+            work.mismatches.push_back(compare_answers(judge_, questions, ours, theirs, settings_.threads));
+            work.leaks.push_back({our_leaks, leaks_of(work, theirs)});
+        }
+        if (work.peers.empty()) work.leaks.push_back({our_leaks, 0});
+    }
+
+    /// Every way in which the peer can do a work.
+    std::vector<Tracer> peers_at(const Work& work) const {
+        std::vector<Tracer> tracers;
+        const auto add = [&](std::size_t i, Tracer tracer, const std::string& more) {
+            tracer.name = full_name(name_of(settings_.peers[i])) + (tracer.name.empty() ? "" : " " + tracer.name) + more;
+            tracers.push_back(std::move(tracer));
+        };
+        for (std::size_t i = 0; i < embree_.size(); ++i) {
+            const EmbreeScene& embree = *embree_[i];
+            if (!work.questions().closest()) {
+                add(i, embree.occluded(work.rays), "");
+            } else if (work.name == "camera-bulk") {
+                for (const EmbreeForm form : embree_bulk_forms()) add(i, embree.closest(work.rays, form, true), "");
+                add(i, embree.closest(work.rays, EmbreeForm::kPackets16, false), " incoherent");
+            } else {
+                add(i, embree.closest(work.rays, EmbreeForm::kSingle, work.name == "camera"), "");
             }
-        if (embree_.empty()) added.leaks.push_back({our_leaks, 0});
+        }
+        return tracers;
     }
 
     std::int64_t leaks_of(const Work& work, const std::vector<Answer>& answers) const {
-        if (!scene_.enclosed || work.question == Question::kOccluded) return 0;
+        if (!scene_.enclosed || !work.questions().closest()) return 0;
         return std::ranges::count_if(answers, [](const Answer& a) { return !a.hit(); });
     }
 
@@ -233,7 +238,7 @@ private:
             KernelRow& row = table_.rows[i];
             row.rays = portion.rays;
             if (!work.peers.empty()) row.mismatches = work.mismatches[i - first];
-            if (scene_.enclosed && work.question == Question::kClosest) row.leaks = work.leaks[i - first];
+            if (scene_.enclosed && work.questions().closest()) row.leaks = work.leaks[i - first];
         }
     }
 
@@ -249,23 +254,25 @@ private:
         if (names.empty()) table_.rows.push_back(row);
         for (std::size_t i = 0; i < names.size(); ++i) {
             row.peer_name = names[i];
-            row.peer = figure(found.peers[i].seconds);
+            row.ours = figure(found.peers[i].ours);
+            row.peer = figure(found.peers[i].theirs);
             row.ratio = found.peers[i].ratio;
             table_.rows.push_back(row);
         }
     }
 
     void aim_at_weak_places() {
-        std::vector<TracerFor> kernels{[&](std::span<const Ray> rays) { return our_closest(*accelerator_, rays); }};
-        std::vector<std::string> names{"duet"};
+        std::vector<TracerFor> kernels{[&](std::span<const Ray> rays) { return our_closest(*accelerator_, rays); },
+                                       [&](std::span<const Ray> rays) { return our_bulk(*accelerator_, rays); }};
+        std::vector<std::string> names{"duet", "duet bulk"};
         for (std::size_t i = 0; i < embree_.size(); ++i) {
-            kernels.push_back([this, i](std::span<const Ray> rays) { return embree_[i]->closest(rays, 1, false); });
+            kernels.push_back([this, i](std::span<const Ray> rays) { return embree_[i]->closest(rays, EmbreeForm::kSingle, false); });
             names.push_back(full_name(name_of(settings_.peers[i])));
         }
         const Watertight found = test_watertight(scene_, judge_, kernels, settings_.watertight, settings_.seed,
                                                  settings_.threads, steps_.next());
         for (std::size_t i = 0; i < names.size(); ++i)
-            table_.watertight.push_back({names[i], found.rays, found.misses[i]});
+            table_.watertight.push_back({names[i], found.kernels[i].misses, found.kernels[i].faults});
     }
 
     static constexpr double kNoLimit = 1e9; // seconds
@@ -277,7 +284,7 @@ private:
     Steps steps_;
     KernelTable table_;
     std::optional<raytrace::Accelerator> accelerator_;
-    std::optional<EmbreeDevice> device_;
+    std::optional<Devices> devices_;
     std::vector<std::unique_ptr<EmbreeScene>> embree_;
     std::vector<Work> works_;
 };

@@ -15,6 +15,7 @@ namespace duet::compare {
 struct MeasureKernels {
     std::vector<std::string> works;   ///< of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: ours alone
+    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< of our hierarchy
     PictureSize size{1920, 1080};
     int threads = 1; ///< of the second set of rows; 1: there is none
     int repeats = 7;

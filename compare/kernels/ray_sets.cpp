@@ -1,5 +1,7 @@
 #include "compare/kernels/ray_sets.h"
 
+#include "common/geometry/quad.h"
+#include "common/geometry/triangle.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
 #include "common/system/parallel.h"
@@ -30,17 +32,18 @@ std::pair<int, int> place_in_tile(int i, PixelOrder order) {
 }
 
 /// What `make` returns for each ray with its index, the empty left out, in order, for any number of threads.
-std::vector<Ray> collect(std::span<const Ray> rays, int threads,
-                         const std::function<std::optional<Ray>(const Ray&, std::size_t)>& make) {
-    std::vector<std::vector<Ray>> parts((rays.size() + kChunk - 1) / kChunk);
+template <typename Made>
+std::vector<Made> collect(std::span<const Ray> rays, int threads,
+                          const std::function<std::optional<Made>(const Ray&, std::size_t)>& make) {
+    std::vector<std::vector<Made>> parts((rays.size() + kChunk - 1) / kChunk);
     parallel_for(parts.size(), threads, [&](std::size_t part) {
-        std::vector<Ray> made;
+        std::vector<Made> made;
         for (std::size_t i = part * kChunk; i < std::min(rays.size(), (part + 1) * kChunk); ++i)
-            if (const std::optional<Ray> ray = make(rays[i], i)) made.push_back(*ray);
+            if (const std::optional<Made> one = make(rays[i], i)) made.push_back(*one);
         parts[part] = std::move(made);
     });
-    std::vector<Ray> all;
-    for (const std::vector<Ray>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    std::vector<Made> all;
+    for (const std::vector<Made>& part : parts) all.insert(all.end(), part.begin(), part.end());
     return all;
 }
 
@@ -80,7 +83,7 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
 
 std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads) {
-    return collect(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
+    return collect<Ray>(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
         const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
         if (!point) return std::nullopt;
         const Vec3 n = dot(point->ng, ray.direction) > 0 ? -point->ng : point->ng;
@@ -89,10 +92,40 @@ std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerat
     });
 }
 
-std::vector<Ray> shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
-                             std::span<const Ray> rays, std::uint64_t seed, int threads) {
+namespace {
+
+struct Aimed {
+    Ray ray;
+    Hit end;
+};
+
+/// The triangle of the scene that a ray to the light ends on: of a quad's two the one that the ray meets.
+Hit end_on(const SurfaceLight& light, const Ray& ray, float distance) {
+    Hit end;
+    end.t = distance;
+    end.object = light.object;
+    end.primitive = light.primitive;
+    if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape)) {
+        if (const auto hit = intersect_triangle(ShearedRay(ray), t->a, t->b, t->c)) end.t = hit->t;
+    } else if (const auto* quad = std::get_if<Quad>(&light.shape)) {
+        const std::array<Vec3, 4> p = corners(*quad);
+        const ShearedRay sheared(ray);
+        if (const auto first = intersect_triangle(sheared, p[0], p[1], p[2])) {
+            end.t = first->t;
+        } else if (const auto second = intersect_triangle(sheared, p[0], p[2], p[3])) {
+            end.t = second->t;
+            if (end.object != kNoObject) ++end.primitive;
+        }
+    }
+    return end;
+}
+
+} // namespace
+
+ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator, std::span<const Ray> rays,
+                       std::uint64_t seed, int threads) {
     constexpr float kShort = 1 - 1e-4f;
-    return collect(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
+    const auto make = [&](const Ray& ray, std::size_t index) -> std::optional<Aimed> {
         const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
         if (!point) return std::nullopt;
         const Light& light = scene.lights[index % scene.lights.size()];
@@ -100,10 +133,19 @@ std::vector<Ray> shadow_rays(const KernelScene& scene, const raytrace::Accelerat
         if (!s) return std::nullopt;
         const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side that is seen
         if (!lit) return std::nullopt;
-        Ray shadow{offset_origin(*point, s->wi), s->wi};
-        shadow.t_max = s->distance * kShort;
-        return shadow;
-    });
+        Aimed aimed{{offset_origin(*point, s->wi), s->wi}, {}};
+        aimed.end.t = s->distance;
+        if (const auto* surface = std::get_if<SurfaceLight>(&light)) aimed.end = end_on(*surface, aimed.ray, s->distance);
+        aimed.ray.t_max = s->distance * kShort;
+        if (aimed.end.object == kNoObject) aimed.end.t = aimed.ray.t_max;
+        return aimed;
+    };
+    ShadowRays result;
+    for (const Aimed& aimed : collect<Aimed>(rays, threads, make)) {
+        result.rays.push_back(aimed.ray);
+        result.ends.push_back(aimed.end);
+    }
+    return result;
 }
 
 } // namespace duet::compare

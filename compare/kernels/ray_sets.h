@@ -23,10 +23,15 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
 std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads);
 
+/// Rays, and what each is aimed at.
+struct ShadowRays {
+    std::vector<Ray> rays; ///< t_max is just short of the light, for kernels that know no other way not to meet it
+    std::vector<Hit> ends; ///< as in the path tracer: the light's own triangle, which does not block, and its distance
+};
 /// From each first hit one ray to a point on a light: the scene's lights take turns. Hits that face away from the
-/// point, or that the light cannot reach, send none, as in the path tracer. The ray's t_max is just short of the light,
-/// whose own triangle must not shade it.
-std::vector<Ray> shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
-                             std::span<const Ray> rays, std::uint64_t seed, int threads);
+/// point, or that the light cannot reach, send none, as in the path tracer. A light that is no triangle of the scene
+/// (a sun, a lamp above a mesh that stands alone) is a mere distance at the end.
+ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator, std::span<const Ray> rays,
+                       std::uint64_t seed, int threads);
 
 } // namespace duet::compare

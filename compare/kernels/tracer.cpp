@@ -1,12 +1,15 @@
 #include "compare/kernels/tracer.h"
 
+#include "common/system/error.h"
 #include "common/system/parallel.h"
 
 namespace duet::compare {
 
 namespace {
 
-Answer answer_of(const Hit& hit) { return {hit.t, hit.valid() ? hit.primitive : Answer::kNone}; }
+Answer answer_of(const Hit& hit) {
+    return hit.valid() ? Answer{hit.t, hit.primitive, hit.object} : Answer{};
+}
 
 } // namespace
 
@@ -28,12 +31,13 @@ Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> r
             }};
 }
 
-Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays) {
-    return {"duet", [&accelerator, rays](std::size_t block, Answer* answers) {
+Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays, std::span<const Hit> ends) {
+    DUET_CHECK_EQ(rays.size(), ends.size());
+    return {"duet", [&accelerator, rays, ends](std::size_t block, Answer* answers) {
+                const Hit* end = ends.data() + block * kBlock;
                 for (const Ray& ray : block_of(rays, block)) {
-                    Hit end; // a mere distance
-                    end.t = ray.t_max;
-                    *answers++ = {ray.t_max, accelerator.occluded(ray, end) ? 0 : Answer::kNone};
+                    *answers++ = {end->t, accelerator.occluded(ray, *end) ? 0 : Answer::kNone};
+                    ++end;
                 }
             }};
 }

@@ -20,7 +20,8 @@ struct Answer {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
     float t = std::numeric_limits<float>::infinity();
-    std::uint32_t triangle = kNone; ///< a shadow ray that is blocked: 0
+    std::uint32_t triangle = kNone; ///< of its object's mesh; a shadow ray that is blocked: 0
+    std::uint32_t object = 0;
 
     bool hit() const { return triangle != kNone; }
 };
@@ -49,7 +50,8 @@ Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray
 /// kBatch rays at a time, as the path tracer has camera rays traced.
 inline constexpr std::size_t kBatch = 64;
 Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
-Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
+/// `ends`: what each ray is aimed at, which does not block it, as the path tracer has it (`Accelerator::occluded`).
+Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays, std::span<const Hit> ends);
 
 /// A tracer's answers to all rays of a set, in their order.
 std::vector<Answer> all_answers(const Tracer& tracer, std::size_t rays, int threads);

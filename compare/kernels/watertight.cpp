@@ -41,20 +41,58 @@ int winding_number(const ExactTracer& exact, Vec3d p) {
     }
 }
 
-Vec3 target(const Mesh& mesh, Numbers& numbers, std::int64_t kind) {
-    const auto& [a, b, c] = mesh.triangles[numbers.below(mesh.triangles.size())];
-    const Vec3 pa = mesh.positions[a], pb = mesh.positions[b], pc = mesh.positions[c];
-    if (kind == 0) return pa;
-    const float x = numbers.uniform();
-    if (kind == 1) return lerp(pa, pb, x);
-    const Vec2 uv = uniform_triangle(Vec2(x, numbers.uniform()));
-    return pa * (1 - uv.x - uv.y) + pb * uv.x + pc * uv.y;
+/// The triangles of all objects, by one number, with their corners in the world.
+class Targets {
+public:
+    Targets(const KernelScene& scene, const Judge& judge) : exact_(judge.exact()) {
+        for (std::size_t object = 0; object < scene.scene->objects.size(); ++object) {
+            first_.push_back(count_);
+            count_ += scene.mesh_of(object).triangles.size();
+        }
+    }
+    std::size_t count() const { return count_; }
+    Vec3d point(std::size_t number, std::size_t kind, Numbers& numbers) const {
+        const auto object = static_cast<std::size_t>(std::ranges::upper_bound(first_, number) - first_.begin()) - 1;
+        const std::vector<Vec3d> p =
+            exact_.corners(static_cast<std::uint32_t>(object), static_cast<std::uint32_t>(number - first_[object]));
+        if (kind == 0) return p[0];
+        const float x = numbers.uniform();
+        if (kind == 1) return lerp(p[0], p[1], static_cast<double>(x));
+        const Vec2d uv(uniform_triangle(Vec2(x, numbers.uniform())));
+        return p[0] * (1 - uv.x - uv.y) + p[1] * uv.x + p[2] * uv.y;
+    }
+
+private:
+    const ExactTracer& exact_;
+    std::vector<std::size_t> first_;
+    std::size_t count_ = 0;
+};
+
+constexpr std::int64_t kTogether = 16; ///< rays of one start, aimed at neighbours
+
+Ray aimed_ray(const Targets& targets, const std::vector<Vec3>& origins, std::uint64_t seed, std::int64_t number) {
+    Numbers shared(seed, static_cast<std::uint64_t>(number / kTogether));
+    const Vec3 origin = origins[shared.below(origins.size())];
+    const auto place = static_cast<std::size_t>(number % kTogether);
+    const std::size_t triangle = (shared.below(targets.count()) + place / 3) % targets.count();
+    Numbers own(~seed, static_cast<std::uint64_t>(number));
+    const Vec3 target(targets.point(triangle, static_cast<std::size_t>(number) % 3, own));
+    return {origin, normalize_scaled(target - origin)};
 }
 
-Ray aimed_ray(const Mesh& mesh, const std::vector<Vec3>& origins, std::uint64_t seed, std::int64_t number) {
-    Numbers numbers(seed, static_cast<std::uint64_t>(number));
-    const Vec3 origin = origins[numbers.below(origins.size())];
-    return {origin, normalize_scaled(target(mesh, numbers, number % 3) - origin)};
+std::vector<Vec3> starts(const KernelScene& scene, const Judge& judge, std::uint64_t seed) {
+    if (!scene.enclosed) return points_inside(scene, judge, kOrigins, seed);
+    std::vector<Vec3> points;
+    const Box3& box = scene.scene->bounds; // the walls
+    for (std::uint64_t i = 0; i < kOrigins; ++i) {
+        Numbers numbers(~seed, i);
+        const auto along = [&](std::size_t axis) {
+            return box.low[axis] + (0.01f + 0.98f * numbers.uniform()) * (box.high[axis] - box.low[axis]);
+        };
+        const float x = along(0), y = along(1), z = along(2);
+        points.emplace_back(x, y, z);
+    }
+    return points;
 }
 
 } // namespace
@@ -81,27 +119,36 @@ std::vector<Vec3> points_inside(const KernelScene& scene, const Judge& judge, st
 
 Watertight test_watertight(const KernelScene& scene, const Judge& judge, const std::vector<TracerFor>& kernels,
                            std::int64_t rays, std::uint64_t seed, int threads, const Control& control) {
-    const Mesh& mesh = scene.triangles();
-    DUET_CHECK(mesh.closed);
-    const std::vector<Vec3> origins = points_inside(scene, judge, kOrigins, seed);
+    DUET_CHECK(scene.closed());
+    const std::vector<Vec3> origins = starts(scene, judge, seed);
     if (origins.empty()) throw Error(scene.mesh + ": no point inside was found: the mesh is too thin");
+    const Targets targets(scene, judge);
 
-    Watertight result{rays, std::vector<std::int64_t>(kernels.size(), 0)};
+    Watertight result{rays, std::vector<Watertight::Kernel>(kernels.size())};
     std::mutex mutex; // of the sums and the progress
     std::int64_t done = 0;
     parallel_for(static_cast<std::size_t>((rays + kMade - 1) / kMade), threads, [&](std::size_t batch) {
         if (control.stopped()) return;
         const std::int64_t first = static_cast<std::int64_t>(batch) * kMade;
         std::vector<Ray> aimed;
-        for (std::int64_t i = first; i < std::min(first + kMade, rays); ++i)
-            aimed.push_back(aimed_ray(mesh, origins, seed, i));
-        std::vector<std::int64_t> misses;
-        for (const TracerFor& kernel : kernels) {
-            const std::vector<Answer> answers = all_answers(kernel(aimed), aimed.size(), 1);
-            misses.push_back(std::ranges::count_if(answers, [](const Answer& a) { return !a.hit(); }));
+        std::vector<ExactHit> truth;
+        for (std::int64_t i = first; i < std::min(first + kMade, rays); ++i) {
+            aimed.push_back(aimed_ray(targets, origins, seed, i));
+            truth.push_back(judge.first_hit(aimed.back()));
+        }
+        std::vector<Watertight::Kernel> found(kernels.size());
+        for (std::size_t k = 0; k < kernels.size(); ++k) {
+            const std::vector<Answer> answers = all_answers(kernels[k](aimed), aimed.size(), 1);
+            for (std::size_t i = 0; i < aimed.size(); ++i) {
+                found[k].misses += !answers[i].hit();
+                found[k].faults.count(judge.closest(aimed[i], answers[i], truth[i]));
+            }
         }
         const std::lock_guard lock(mutex);
-        for (std::size_t i = 0; i < misses.size(); ++i) result.misses[i] += misses[i];
+        for (std::size_t k = 0; k < kernels.size(); ++k) {
+            result.kernels[k].misses += found[k].misses;
+            result.kernels[k].faults += found[k].faults;
+        }
         done += std::ssize(aimed);
         control.report(static_cast<double>(done) / static_cast<double>(rays));
     });

@@ -1,4 +1,4 @@
-// Rays aimed where a surface of triangles is weakest, from inside a closed mesh: none may get out.
+// Rays aimed where a surface of triangles is weakest, from within a closed scene: none may get out or slip through.
 #pragma once
 
 #include "common/system/control.h"
@@ -13,15 +13,21 @@ namespace duet::compare {
 /// A kernel for any rays.
 using TracerFor = std::function<Tracer(std::span<const Ray>)>;
 
-/// How many of the rays found nothing, by kernel. A third each is aimed at random points of random triangles, at points
-/// of their edges, and at vertices; they start at points within the mesh, where a surface lies in every direction.
+/// What became of the rays, by kernel. A third each is aimed at random points of random triangles, at points of their
+/// edges, and at vertices. They start within: at points inside a closed mesh, anywhere in a closed room; everything
+/// that they meet, outlines too, is judged by the double-precision ray. Sixteen on end start at one point and are aimed
+/// at neighbours in the mesh, so that packets are tried as packets.
 struct Watertight {
+    struct Kernel {
+        std::int64_t misses = 0; ///< rays that found nothing, and so got out
+        Faults faults;           ///< of all rays: slipped through an edge to what lies behind, or wrong otherwise
+    };
     std::int64_t rays = 0;
-    std::vector<std::int64_t> misses; ///< one a kernel
+    std::vector<Kernel> kernels; ///< in the order given
 };
 
-/// The mesh must be closed (Mesh::closed). Rays depend on the seed and their number alone. What is found means nothing
-/// where `control` was stopped. Throws Error where no point inside was found: the mesh is too thin.
+/// The scene must be closed (KernelScene::closed). Rays depend on the seed and their number alone. What is found means
+/// nothing where `control` was stopped. Throws Error where no point inside was found: the mesh is too thin.
 Watertight test_watertight(const KernelScene& scene, const Judge& judge, const std::vector<TracerFor>& kernels,
                            std::int64_t rays, std::uint64_t seed, int threads, const Control& control);
 

@@ -18,7 +18,7 @@
 namespace duet::compare {
 
 std::string name_of(EmbreeQuality quality) {
-    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "");
+    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "") + (quality.avx2 ? "-avx2" : "");
 }
 
 #if defined(DUET_EMBREE)
@@ -30,8 +30,8 @@ std::string embree_version() {
 struct EmbreeDevice::Handle {
     RTCDevice device = nullptr;
     std::atomic<std::int64_t> bytes{0};
-    std::vector<Vec3> positions;
-    const Mesh* mesh = nullptr;
+    std::vector<std::vector<Vec3>> positions; // of each shape
+    const Scene* scene = nullptr;
 
     ~Handle() {
         if (device != nullptr) rtcReleaseDevice(device);
@@ -96,7 +96,16 @@ void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit8& rays)
 void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &query.context, &rays);
 }
+void intersect_stream(RTCScene scene, Query& query, std::span<RTCRayHit> rays) {
+    rtcIntersect1M(scene, &query.context, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRayHit));
+}
 #endif
+
+/// Embree names the instance, where there is one, and the geometry: both by the object's number.
+Answer answer_of(float t, unsigned geometry, unsigned instance, unsigned triangle) {
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
+    return {t, triangle, instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance};
+}
 
 /// Embree's rays include their start, ours do not: what matters where they start at 0, on a surface.
 float start_of(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
@@ -157,14 +166,14 @@ void trace_packets(RTCScene scene, Query& query, const std::vector<PacketRays<kW
     RayHit rays;
     std::memset(&rays, 0, sizeof rays);
     std::memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
-    std::memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
     for (std::size_t p = block * kPackets; p < std::min(packets.size(), (block + 1) * kPackets); ++p) {
         load<kWidth>(packets[p], rays.ray);
         std::memset(rays.hit.geomID, 0xff, sizeof rays.hit.geomID); // RTC_INVALID_GEOMETRY_ID
+        std::memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
         intersect(packets[p].valid, scene, query, rays);
         for (std::size_t lane = 0; lane < kWidth; ++lane)
-            *answers++ = {rays.ray.tfar[lane],
-                          rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? Answer::kNone : rays.hit.primID[lane]};
+            *answers++ = answer_of(rays.ray.tfar[lane], rays.hit.geomID[lane], rays.hit.instID[0][lane],
+                                   rays.hit.primID[lane]);
     }
 }
 
@@ -178,11 +187,82 @@ std::function<void(std::size_t, Answer*)> packet_function(RTCScene scene, std::s
     };
 }
 
+RTCRayHit as_embree_hit(const Ray& ray) {
+    RTCRayHit hit;
+    hit.ray = as_embree(ray);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return hit;
+}
+
+#if DUET_EMBREE == 3
+/// A block's rays as a stream of structures.
+std::function<void(std::size_t, Answer*)> stream_of_structures(RTCScene scene, std::span<const Ray> rays,
+                                                               bool coherent) {
+    const auto laid_out = std::make_shared<std::vector<RTCRayHit>>();
+    for (const Ray& ray : rays) laid_out->push_back(as_embree_hit(ray));
+    return [scene, laid_out, coherent](std::size_t block, Answer* answers) {
+        const FlushToZero flush;
+        Query query(coherent);
+        const std::size_t first = block * kBlock, count = std::min(kBlock, laid_out->size() - first);
+        alignas(64) std::array<RTCRayHit, kBlock> stream;
+        std::memcpy(stream.data(), laid_out->data() + first, count * sizeof(RTCRayHit));
+        intersect_stream(scene, query, std::span(stream).first(count));
+        for (std::size_t i = 0; i < count; ++i) {
+            const RTCRayHit& hit = stream[i];
+            *answers++ = answer_of(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
+        }
+    };
+}
+
+/// A block's rays and hits as arrays of one quantity each.
+struct alignas(64) StreamArrays {
+    using Floats = std::array<float, kBlock>;
+    using Numbers = std::array<unsigned, kBlock>;
+    Floats org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, tfar, time, ng_x, ng_y, ng_z, u, v;
+    Numbers mask, id, flags, prim, geom, instance;
+
+    RTCRayHitNp pointers() {
+        RTCRayHitNp p;
+        p.ray = {org_x.data(), org_y.data(), org_z.data(), tnear.data(), dir_x.data(), dir_y.data(),
+                 dir_z.data(), time.data(),  tfar.data(),  mask.data(),  id.data(),    flags.data()};
+        p.hit = {ng_x.data(), ng_y.data(), ng_z.data(), u.data(), v.data(), prim.data(), geom.data(), {instance.data()}};
+        return p;
+    }
+};
+
+std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene, std::span<const Ray> rays, bool coherent) {
+    const auto laid_out = std::make_shared<std::vector<PacketRays<kBlock>>>(packets_of<kBlock>(rays));
+    const std::size_t size = rays.size();
+    return [scene, laid_out, size, coherent](std::size_t block, Answer* answers) {
+        const FlushToZero flush;
+        Query query(coherent);
+        const PacketRays<kBlock>& from = (*laid_out)[block];
+        const auto count = static_cast<unsigned>(std::min(kBlock, size - block * kBlock));
+        StreamArrays stream;
+        const auto copy = [](auto& to, const auto& lanes) { std::memcpy(to.data(), lanes, sizeof to); };
+        copy(stream.org_x, from.org_x), copy(stream.org_y, from.org_y), copy(stream.org_z, from.org_z);
+        copy(stream.dir_x, from.dir_x), copy(stream.dir_y, from.dir_y), copy(stream.dir_z, from.dir_z);
+        copy(stream.tnear, from.tnear), copy(stream.tfar, from.tfar);
+        stream.time.fill(0);
+        stream.mask.fill(~0u);
+        stream.flags.fill(0);
+        stream.geom.fill(RTC_INVALID_GEOMETRY_ID);
+        stream.instance.fill(RTC_INVALID_GEOMETRY_ID);
+        const RTCRayHitNp pointers = stream.pointers();
+        rtcIntersectNp(scene, &query.context, &pointers, count);
+        for (std::size_t i = 0; i < count; ++i)
+            *answers++ = answer_of(stream.tfar[i], stream.geom[i], stream.instance[i], stream.prim[i]);
+    };
+}
+#endif
+
 } // namespace
 
-EmbreeDevice::EmbreeDevice(const Mesh& mesh, int threads) : handle_(std::make_shared<Handle>()) {
+EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_(std::make_shared<Handle>()) {
     // simd512: AVX-512 wherever the processor has it, whatever clock frequency Embree thinks it costs there.
-    handle_->device = rtcNewDevice(message("threads=", threads, ",frequency_level=simd512").c_str());
+    const char* const instructions = avx2 ? "isa=avx2" : "frequency_level=simd512";
+    handle_->device = rtcNewDevice(message("threads=", threads, ",", instructions).c_str());
     fail_on_error(handle_->device);
     rtcSetDeviceMemoryMonitorFunction(
         handle_->device,
@@ -191,61 +271,136 @@ EmbreeDevice::EmbreeDevice(const Mesh& mesh, int threads) : handle_(std::make_sh
             return true;
         },
         handle_.get());
-    handle_->mesh = &mesh;
-    handle_->positions = mesh.positions;
-    handle_->positions.emplace_back(); // a vertex is read as 16 bytes
+    handle_->scene = &scene;
+    for (const Shape& shape : scene.shapes) {
+        handle_->positions.push_back(std::get<Mesh>(shape).positions);
+        handle_->positions.back().emplace_back(); // a vertex is read as 16 bytes
+    }
 }
 
 struct EmbreeScene::Built {
     std::shared_ptr<EmbreeDevice::Handle> device;
     RTCScene scene = nullptr;
+    std::vector<RTCScene> of_shapes; // of those that instances show
     std::int64_t bytes = 0;
+
+    Built(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality);
+    ~Built() {
+        for (RTCScene shape : of_shapes)
+            if (shape != nullptr) rtcReleaseScene(shape);
+        rtcReleaseScene(scene);
+    }
+    Built(const Built&) = delete;
+    Built& operator=(const Built&) = delete;
+
+private:
+    RTCScene new_scene() const {
+        RTCScene made = rtcNewScene(device->device);
+        rtcSetSceneBuildQuality(made, build_quality);
+        rtcSetSceneFlags(made, flags);
+        return made;
+    }
+    void attach(RTCScene to, RTCGeometry geometry, std::uint32_t number) const {
+        rtcSetGeometryBuildQuality(geometry, build_quality);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(to, geometry, number);
+        rtcReleaseGeometry(geometry);
+    }
+    void attach_triangles(RTCScene to, std::uint32_t shape, std::uint32_t number) const {
+        RTCGeometry geometry = rtcNewGeometry(device->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        const auto& positions = device->positions[shape];
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                                   sizeof(Vec3), positions.size() - 1);
+        const auto& triangles = std::get<Mesh>(device->scene->shapes[shape]).triangles;
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                                   sizeof triangles[0], triangles.size());
+        attach(to, geometry, number);
+    }
+    void attach_instance(const Object& object, std::uint32_t number) {
+        RTCScene& shown = of_shapes[object.shape];
+        if (shown == nullptr) {
+            shown = new_scene();
+            attach_triangles(shown, object.shape, 0);
+            rtcCommitScene(shown);
+        }
+        RTCGeometry geometry = rtcNewGeometry(device->device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, shown);
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, object.to_world.m.data());
+        attach(scene, geometry, number);
+    }
+
+    RTCBuildQuality build_quality;
+    RTCSceneFlags flags;
 };
 
-EmbreeScene::EmbreeScene(const EmbreeDevice& device, EmbreeQuality quality) : built_(std::make_unique<Built>()) {
-    EmbreeDevice::Handle& handle = *device.handle();
-    built_->device = device.handle();
-    const std::int64_t before = handle.bytes;
-    built_->scene = rtcNewScene(handle.device);
-    rtcSetSceneBuildQuality(built_->scene, quality.high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSceneFlags(built_->scene, quality.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    RTCGeometry geometry = rtcNewGeometry(handle.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(geometry, quality.high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, handle.positions.data(), 0,
-                               sizeof(Vec3), handle.positions.size() - 1);
-    const auto& triangles = handle.mesh->triangles;
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
-                               sizeof triangles[0], triangles.size());
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(built_->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(built_->scene);
-    fail_on_error(handle.device);
-    built_->bytes = handle.bytes - before;
+EmbreeScene::Built::Built(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality)
+    : device(of), of_shapes(of->scene->shapes.size()),
+      build_quality(quality.high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM),
+      flags(quality.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE) {
+    const std::int64_t before = device->bytes;
+    scene = new_scene();
+    const std::vector<Object>& objects = device->scene->objects;
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+        if (objects[i].identity)
+            attach_triangles(scene, objects[i].shape, i);
+        else
+            attach_instance(objects[i], i);
+    }
+    rtcCommitScene(scene);
+    fail_on_error(device->device);
+    bytes = device->bytes - before;
 }
 
-EmbreeScene::~EmbreeScene() { rtcReleaseScene(built_->scene); }
+EmbreeScene::EmbreeScene(const EmbreeDevice& device, EmbreeQuality quality)
+    : built_(std::make_unique<Built>(device.handle(), quality)) {}
+
+EmbreeScene::~EmbreeScene() = default;
 
 std::int64_t EmbreeScene::memory_bytes() const { return built_->bytes; }
 
-Tracer EmbreeScene::closest(std::span<const Ray> rays, int width, bool coherent) const {
+std::vector<EmbreeQuality> embree_qualities() {
+    std::vector<EmbreeQuality> all{{false, false}, {true, false}, {false, true}, {true, true}};
+    RTCDevice device = rtcNewDevice("threads=1");
+    const bool avx512 = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    rtcReleaseDevice(device);
+    if (avx512) all.insert(all.end(), {{false, false, true}, {true, false, true}});
+    return all;
+}
+
+std::vector<EmbreeForm> embree_bulk_forms() {
+#if DUET_EMBREE == 3
+    return {EmbreeForm::kPackets16, EmbreeForm::kPackets8, EmbreeForm::kStreamM, EmbreeForm::kStreamNp};
+#else
+    return {EmbreeForm::kPackets16, EmbreeForm::kPackets8};
+#endif
+}
+
+Tracer EmbreeScene::closest(std::span<const Ray> rays, EmbreeForm form, bool coherent) const {
     RTCScene scene = built_->scene;
-    if (width == 16) return {"packets 16", packet_function<16, RTCRayHit16>(scene, rays, coherent)};
-    if (width == 8) return {"packets 8", packet_function<8, RTCRayHit8>(scene, rays, coherent)};
-    DUET_CHECK_EQ(width, 1);
-    return {
-        "", [scene, rays, coherent](std::size_t block, Answer* answers) {
-            const FlushToZero flush;
-            Query query(coherent);
-            for (const Ray& ray : block_of(rays, block)) {
-                RTCRayHit hit;
-                hit.ray = as_embree(ray);
-                hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-                hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                intersect1(scene, query, hit);
-                *answers++ = {hit.ray.tfar, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Answer::kNone : hit.hit.primID};
-            }
-        }};
+    switch (form) {
+    case EmbreeForm::kPackets16:
+        return {"packets 16", packet_function<16, RTCRayHit16>(scene, rays, coherent)};
+    case EmbreeForm::kPackets8:
+        return {"packets 8", packet_function<8, RTCRayHit8>(scene, rays, coherent)};
+#if DUET_EMBREE == 3
+    case EmbreeForm::kStreamM:
+        return {"stream M", stream_of_structures(scene, rays, coherent)};
+    case EmbreeForm::kStreamNp:
+        return {"stream Np", stream_of_arrays(scene, rays, coherent)};
+#endif
+    default:
+        break;
+    }
+    DUET_CHECK(form == EmbreeForm::kSingle);
+    return {"", [scene, rays, coherent](std::size_t block, Answer* answers) {
+                const FlushToZero flush;
+                Query query(coherent);
+                for (const Ray& ray : block_of(rays, block)) {
+                    RTCRayHit hit = as_embree_hit(ray);
+                    intersect1(scene, query, hit);
+                    *answers++ = answer_of(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
+                }
+            }};
 }
 
 Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
@@ -266,14 +421,16 @@ Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
 // Without Embree nobody gets as far as this: the version is empty.
 std::string embree_version() { return {}; }
 struct EmbreeDevice::Handle {};
-EmbreeDevice::EmbreeDevice(const Mesh&, int) { throw Error("this program was built without Embree", 1); }
+std::vector<EmbreeQuality> embree_qualities() { return {}; }
+EmbreeDevice::EmbreeDevice(const Scene&, int, bool) { throw Error("this program was built without Embree", 1); }
 struct EmbreeScene::Built {};
 EmbreeScene::EmbreeScene(const EmbreeDevice&, EmbreeQuality) {
     throw Error("this program was built without Embree", 1);
 }
 EmbreeScene::~EmbreeScene() = default;
 std::int64_t EmbreeScene::memory_bytes() const { return 0; }
-Tracer EmbreeScene::closest(std::span<const Ray>, int, bool) const { return {}; }
+std::vector<EmbreeForm> embree_bulk_forms() { return {}; }
+Tracer EmbreeScene::closest(std::span<const Ray>, EmbreeForm, bool) const { return {}; }
 Tracer EmbreeScene::occluded(std::span<const Ray>) const { return {}; }
 
 #endif

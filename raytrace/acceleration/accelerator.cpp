@@ -1,5 +1,6 @@
 #include "raytrace/acceleration/accelerator.h"
 
+#include "common/sampling/hash.h"
 #include "common/scene/holes.h"
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
@@ -131,28 +132,53 @@ private:
         }
     }
 
-    // Triangles with the very same corners are hit at the very same distance, where the lowest (object, primitive) wins:
-    // that of the lowest index here.
+    // Primitives with the very same corners, or spheres with the same centre and radius, are hit at the very same
+    // distance, where the lowest (object, primitive) wins: that of the lowest index here. A table of hashes finds them
+    // in one walk, whatever their number. Instances are no twins: they may move.
     std::size_t first_of_twins(std::span<BuildItem> items) const {
-        if (std::any_of(items.begin(), items.end(),
-                        [](const BuildItem& item) { return item.kind != PrimitiveKind::kTriangle; }))
-            return items.size();
-        using Corners = std::array<std::uint32_t, 9>;
-        const auto corners = [&](const BuildItem& item) {
-            const MeshTriangle& triangle = triangles_[item.index];
-            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
-            std::array<Vec3, 3> p;
-            for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[triangle.primitive][k]];
-            return std::bit_cast<Corners>(p);
+        std::vector<std::uint32_t> seats(std::bit_ceil(2 * items.size()), kFree); // of `items`, by hash
+        std::size_t kept = 0;
+        for (const BuildItem& item : items) {
+            const Form form = form_of(item);
+            std::size_t seat = hash_of(form) & (seats.size() - 1);
+            while (seats[seat] != kFree && form_of(items[seats[seat]]) != form) seat = (seat + 1) & (seats.size() - 1);
+            if (seats[seat] != kFree) {
+                std::uint32_t& index = items[seats[seat]].index;
+                index = std::min(index, item.index);
+                continue;
+            }
+            seats[seat] = static_cast<std::uint32_t>(kept);
+            items[kept++] = item;
+        }
+        return kept;
+    }
+
+    /// All that decides where a primitive is hit: its kind and the bits of its numbers; an instance's index.
+    using Form = std::array<std::uint32_t, 13>;
+    static constexpr std::uint32_t kFree = ~0u;
+
+    Form form_of(const BuildItem& item) const {
+        Form form{static_cast<std::uint32_t>(item.kind)};
+        std::size_t next = 1;
+        const auto add = [&](Vec3 p) {
+            for (std::size_t axis = 0; axis < 3; ++axis) form[next++] = std::bit_cast<std::uint32_t>(p[axis]);
         };
-        std::sort(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
-            const Corners ca = corners(a), cb = corners(b);
-            return ca != cb ? ca < cb : a.index < b.index;
-        });
-        const auto end = std::unique(items.begin(), items.end(), [&](const BuildItem& a, const BuildItem& b) {
-            return corners(a) == corners(b);
-        });
-        return static_cast<std::size_t>(end - items.begin());
+        if (item.kind == PrimitiveKind::kSphere) {
+            const Sphere& sphere = spheres_[item.index].sphere;
+            add(sphere.center);
+            form[next] = std::bit_cast<std::uint32_t>(sphere.radius);
+        } else if (item.kind == PrimitiveKind::kInstance) {
+            form[next] = item.index;
+        } else {
+            const Outline polygon = outline(item);
+            for (std::size_t i = 0; i < polygon.count; ++i) add(polygon.corners[i]);
+        }
+        return form;
+    }
+    static std::uint64_t hash_of(const Form& form) {
+        std::uint64_t hash = 0;
+        for (const std::uint32_t word : form) hash = stream_number(hash ^ word, 0);
+        return hash;
     }
 
     template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
@@ -221,26 +247,57 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
     world_ = world.build();
 }
 
+// A ray in an instance's space, at its time.
+Ray Accelerator::inside(const BvhInstance& instance, const Ray& ray) const {
+    const Object& object = scene_.objects[instance.object];
+    if (!object.moving) return to_object_space(ray, object.to_world, object.to_object);
+    const ObjectTransform transform = object_transform(object, ray.time);
+    return to_object_space(ray, transform.to_world, transform.to_object);
+}
+
 // What an instance's hits are in its shape's hierarchy.
 template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
     return [this, &ray](const BvhInstance& instance, Hit& so_far) {
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
-        const Object& object = scene_.objects[instance.object];
-        Ray inside;
-        if (object.moving) {
-            const ObjectTransform transform = object_transform(object, ray.time);
-            inside = to_object_space(ray, transform.to_world, transform.to_object);
-        } else {
-            inside = to_object_space(ray, object.to_world, object.to_object);
-        }
-        if (!traceable(inside)) return false;
+        const Ray its = inside(instance, ray);
+        if (!traceable(its)) return false;
         const Bvh& shape = shapes_[instance.shape];
         if constexpr (kAny)
-            return find_any(shape, inside, instance.object, so_far, no_instance);
+            return find_any(shape, its, instance.object, so_far, no_instance);
         else
-            return find_closest(shape, inside, instance.object, so_far, no_instance);
+            return find_closest(shape, its, instance.object, so_far, no_instance);
     };
 }
+
+// The same for a packet.
+struct Accelerator::PacketInstances {
+    static constexpr std::size_t kSize = RayPacket::kSize;
+    const Accelerator& scene;
+    std::span<const Ray, kSize> rays;
+
+    auto operator()(const Ray& ray) const { return scene.instance_test<false>(ray); }
+
+    void operator()(const BvhInstance& instance, unsigned active, PacketHits& best) const {
+        const Bvh& shape = scene.shapes_[instance.shape];
+        std::array<Ray, kSize> its;
+        its.fill(scene.inside(instance, rays[static_cast<std::size_t>(std::countr_zero(active))])); // of all not active
+        for (unsigned some = active & (active - 1); some != 0; some &= some - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(some));
+            its[ray] = scene.inside(instance, rays[ray]);
+        }
+        const RayPacket packet(its, shape.bounds);
+        if (packet.coherent()) {
+            PacketTraversal(shape, packet, its, active, instance.object, NoInstances(), best).run();
+            return;
+        }
+        for (; active != 0; active &= active - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(active));
+            Hit hit = best.get(ray);
+            scene.instance_test<false>(rays[ray])(instance, hit);
+            best.set(ray, hit);
+        }
+    }
+};
 
 // Whole surfaces and holes alike.
 Hit Accelerator::first(const Ray& ray) const {
@@ -282,7 +339,8 @@ bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
 
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
-    const auto instance = [this](const Ray& ray) { return instance_test<false>(ray); };
+    constexpr unsigned kAll = (1u << kSize) - 1;
+    const RayPacket::Batch most(std::numeric_limits<float>::max()); // a distance that overflowed is none
     std::size_t done = 0;
     for (; rays.size() - done >= kSize; done += kSize) {
         const auto some = rays.subspan(done).first<kSize>();
@@ -292,7 +350,9 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
             for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = first(some[i]);
             continue;
         }
-        PacketTraversal(world_, packet, some, instance).run(their_hits);
+        PacketHits best(xsimd::min(packet.t_max(), most));
+        PacketTraversal(world_, packet, some, kAll, kNoObject, PacketInstances{*this, some}, best).run();
+        best.store(their_hits);
     }
     for (; done < rays.size(); ++done) hits[done] = first(rays[done]);
     if (holes_)

@@ -37,6 +37,8 @@ private:
     Hit first(const Ray& ray) const;
     Hit beyond_holes(const Ray& ray, Hit hit) const;
     bool occluded_beyond_holes(Ray ray, const Hit& end) const;
+    struct PacketInstances;
+    Ray inside(const BvhInstance& instance, const Ray& ray) const;
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;

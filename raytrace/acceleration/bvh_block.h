@@ -18,7 +18,7 @@ public:
     /// Of one ray and many polygons or the other way round; ends: of the rays.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
-        test({ray, p[0], p[1], p[2]}, ends, 0);
+        test({ray, p[0], p[1], p[2]}, ray.speed, ends, 0);
         first_ = ~0u;
     }
     template <typename S, typename Vertex>
@@ -34,7 +34,8 @@ public:
         const auto half = [&](const auto& of_first, const auto& of_second) {
             return select(first, of_first, of_second);
         };
-        test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ends, lane_bits(first & second));
+        test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ray.speed, ends,
+             lane_bits(first & second));
         if (candidates_ == 0) return;
         first_ = lane_bits(first);
         const Batch sum = xsimd::min(u_ + v_, Batch(1.0f));
@@ -63,15 +64,16 @@ private:
     }
 
     // unsure: lanes that are candidates whatever the triangle says.
-    [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, Batch ends, unsigned unsure) {
+    template <typename S>
+    [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, const S& speed, Batch ends, unsigned unsure) {
         const Batch zero(0.0f);
         const Batch low = xsimd::min(xsimd::min(test.e0, test.e1), test.e2);
         const Batch high = xsimd::max(xsimd::max(test.e0, test.e1), test.e2);
         candidates_ = lane_bits((low >= zero) | (high <= zero));
         if (candidates_ == 0) return;
         const Batch inv_det = Batch(1.0f) / test.det();
-        const Batch t = test.distance(inv_det), error = test.distance_error(inv_det);
-        unsure |= lane_bits(test.is_needle(inv_det));
+        const Batch t = test.distance(inv_det), error = test.distance_error(inv_det, speed);
+        unsure |= lane_bits(test.is_needle(inv_det, speed));
         const auto outside = (t < -error) | (t - error > ends); // and not NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;

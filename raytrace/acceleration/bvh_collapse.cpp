@@ -13,7 +13,8 @@ namespace {
 // node is its area, which is the odds that a ray meets it; the leaves are given, and cost what they cost.
 class Forests {
 public:
-    Forests(const BinaryTree& tree, int threads) : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
+    Forests(const BinaryTree& tree, int threads)
+        : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
         // Subtrees by all threads at once, then what is above them.
         constexpr int kTop = 8;
         std::vector<std::uint32_t> subtrees;
@@ -84,13 +85,15 @@ private:
         return best;
     }
 
-    void cut(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+    void cut(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
+             std::size_t& count) const {
         const BinaryNode& node = tree_.nodes[index];
         const std::size_t left = share(forests_[node.left], forests_[node.right], n).left;
         take(node.left, left, roots, count);
         take(node.right, n - left, roots, count);
     }
-    void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots, std::size_t& count) const {
+    void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
+              std::size_t& count) const {
         const auto& cost = forests_[node].cost;
         while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // no better than fewer
         if (n == 1)
@@ -106,7 +109,8 @@ private:
 
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, int threads, Collapsed& result) : tree_(tree), forests_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
+    Collapser(const BinaryTree& tree, int threads, Collapsed& result)
+        : tree_(tree), forests_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
@@ -132,9 +136,10 @@ private:
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
         const std::size_t count = forests_.children(index, children);
-        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint32_t a, std::uint32_t b) {
-            return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
-        });
+        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
+                         [&](std::uint32_t a, std::uint32_t b) {
+                             return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
+                         });
         check_index(bvh_.nodes.size() * (sizeof(BvhNode) / BvhRef::kNodeUnit));
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.push_back(BvhNode{});

@@ -85,8 +85,7 @@ private:
         return false;
     }
 
-    template <typename Block>
-    bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
+    template <typename Block> bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
         return consider({name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
     bool consider(const Hit& hit, Hit& best) {

@@ -11,8 +11,8 @@ namespace {
 // What it takes, in nanoseconds, measured (Zen 5, 8 lanes) on 2 to 64 triangles, quads, spheres and mixtures of these,
 // small and large, in the open and in a room: between these the rule's choice was the faster one or within a tenth of
 // it. Only ratios count.
-constexpr double kStep = 25;      // a node's boxes
-constexpr double kLeafVisit = 12; // a branch the processor has not foreseen, for the most part
+constexpr double kStep = 25;                       // a node's boxes
+constexpr double kLeafVisit = 12;                  // a branch the processor has not foreseen, for the most part
 constexpr std::array kBlockTest{10.0, 22.0, 12.0}; // by PrimitiveKind
 
 constexpr std::size_t number(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }

@@ -25,7 +25,7 @@ public:
     static constexpr float kSmallest = 1e-12f;
     /// And no product of a reciprocal with a coordinate is infinite: the fused form would take it for a plane.
     template <typename B> static B least_divisor(B coordinates) {
-        return xsimd::max(coordinates * B(0x1p-120f), B(0x1p-125f));
+        return max(coordinates * B(0x1p-120f), B(0x1p-125f));
     }
 
     SlabRay(const Ray& ray, const Box3& bounds) {
@@ -39,7 +39,8 @@ public:
         const Four sign = xsimd::bitwise_and(direction, Four(-0.0f));
         const Vec3 extents = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin));
         const Four largest(max_component(extents));
-        const Four error = (extent + extent + largest + xsimd::abs(origin)) * Four(relative) + Four(std::numeric_limits<float>::min());
+        const Four error =
+            (extent + extent + largest + xsimd::abs(origin)) * Four(relative) + Four(std::numeric_limits<float>::min());
         const Four divisor = xsimd::max(xsimd::max(xsimd::abs(direction), Four(kSmallest * max_component(size))),
                                         least_divisor(extent + xsimd::abs(origin)));
         const Four reciprocal = xsimd::bitwise_or(Four(1.0f) / divisor, sign);
@@ -71,8 +72,12 @@ public:
         };
         // A NaN (of numbers out of range) comes first in min and max, which then return the second: that slab does not
         // count.
-        const Batch nx = slab(near_plane_[0], scale_[0], near_offset_[0]), ny = slab(near_plane_[1], scale_[1], near_offset_[1]), nz = slab(near_plane_[2], scale_[2], near_offset_[2]);
-        const Batch fx = slab(far_plane_[0], scale_[0], far_offset_[0]), fy = slab(far_plane_[1], scale_[1], far_offset_[1]), fz = slab(far_plane_[2], scale_[2], far_offset_[2]);
+        const Batch nx = slab(near_plane_[0], scale_[0], near_offset_[0]),
+                    ny = slab(near_plane_[1], scale_[1], near_offset_[1]),
+                    nz = slab(near_plane_[2], scale_[2], near_offset_[2]);
+        const Batch fx = slab(far_plane_[0], scale_[0], far_offset_[0]),
+                    fy = slab(far_plane_[1], scale_[1], far_offset_[1]),
+                    fz = slab(far_plane_[2], scale_[2], far_offset_[2]);
         const Batch near = xsimd::max(xsimd::max(nx, ny), xsimd::max(nz, t_min));
         const Batch far = xsimd::min(xsimd::min(fx, fy), xsimd::min(fz, t_max));
         return {near, lane_bits(near <= far)};

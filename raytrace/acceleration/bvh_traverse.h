@@ -43,7 +43,8 @@ inline bool traceable(const Ray& ray) {
 class Waiting {
 public:
     Waiting() = default; // without a value: nobody should clear a stack of these for each ray
-    Waiting(float entry, BvhRef child) : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | child.bits()) {}
+    Waiting(float entry, BvhRef child)
+        : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | child.bits()) {}
 
     float entry() const { return std::bit_cast<float>(static_cast<std::uint32_t>(bits_ >> 32)); }
     BvhRef child() const { return BvhRef::from_bits(static_cast<std::uint32_t>(bits_)); }
@@ -62,7 +63,8 @@ private:
 
 /// Where there is no tree to go through.
 template <bool kAny, typename Instance>
-[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
+                                    const Instance& instance) {
     LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
     for (const BvhRef leaf : bvh.list)
         if (test_leaf(leaf, best)) return true;

@@ -14,6 +14,8 @@ expect 2 "$bin/compare" kernels models/meshes/bowl.obj --work reflection
 one_line_error reflection
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --peers optix
 one_line_error optix
+expect 2 "$bin/compare" kernels models/meshes/bowl.obj --bvh best
+one_line_error best
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --repeats 0
 one_line_error --repeats
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --stats "$scratch/no/such/folder.json"
@@ -21,17 +23,18 @@ one_line_error --stats
 
 short="--size 64x48 --repeats 1 --seconds 0.001"
 # A closed mesh, so that rays are aimed at its weak places, too.
-expect 0 "$bin/compare" kernels models/meshes/pear.obj models/cornell.json $short --scene alone,room,clutter --threads 2 \
+expect 0 "$bin/compare" kernels models/meshes/pear.obj models/cornell.json $short --scene alone,room,clutter,instances --threads 2 \
     --watertight 20000 --stats "$scratch/all.json"
-for text in "pear, alone" "pear, room" "pear, clutter" "cornell, alone" "camera-bulk" "bounce" "shadow" "build" "memory" \
-    "rays aimed at points, edges and vertices" "judged in double precision: 0 wrong" "lost from the closed room: ours 0"; do
+for text in "pear, alone" "pear, room" "pear, clutter" "pear, instances" "cornell, alone" "camera-bulk" "bounce" "shadow" "build" "memory" \
+    "rays aimed at points, edges and vertices" "judged in double precision: 0 wrong, 0 edge faults" "duet bulk  *0  *0  *0" \
+    "camera \*" "too few" "repeats"; do
     grep -q "$text" "$scratch/stdout" || fail "the table lacks «$text»"
 done
-for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged wrong leaks; do
+for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged wrong edge_faults leaks as_rendered; do
     grep -q "\"$key\":" "$scratch/all.json" || fail "--stats lacks $key"
 done
 if grep -q '"peer": "embree' "$scratch/all.json"; then
-    for text in '"peer_name": "embree.* medium"' '"peer_name": "embree.* high-robust packets 16"' '"unexplained": 0'; do
+    for text in '"peer_name": "embree.* medium"' '"peer_name": "embree.* high-robust packets 16"' '"unexplained": 0' '"ours_edge_faults": 0'; do
         grep -q "$text" "$scratch/all.json" || fail "--stats lacks $text"
     done
     expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --scene alone --work bounce --peers high --stats -
@@ -44,9 +47,10 @@ else
     one_line_error libembree
 fi
 
-expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --quiet --stats "$scratch/alone.json"
+expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --bvh high --quiet --stats "$scratch/alone.json"
 [ ! -s "$scratch/stdout" ] && [ ! -s "$scratch/stderr" ] || fail "--quiet is not quiet"
 grep -q '"peer": null' "$scratch/alone.json" || fail "--peers none: a peer is in the rows"
+grep -q '"bvh": "high"' "$scratch/alone.json" || fail "--bvh high: not found in --stats"
 grep -q '"ratio": null' "$scratch/alone.json" || fail "--peers none: a ratio is in the rows"
 
 "$bin/compare" kernels models/meshes/pear.obj --peers none --repeats 10000 --quiet --stats "$scratch/interrupted.json" &

@@ -139,6 +139,21 @@ TEST_SUITE("unit") {
         CHECK(std::abs(static_cast<double>(glass) - 0.05 * 480) < 20);
     }
 
+    TEST_CASE("hall.json is seen from within a large mesh, open to the outside") {
+        const Scene scene = load("hall.json");
+        const Mesh& mesh = std::get<Mesh>(scene.shapes.front());
+        CHECK(mesh.triangles.size() > 100'000);
+        CHECK(mesh.triangles.size() < 300'000);
+        CHECK_FALSE(mesh.closed);
+        int flat = 0;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const Vec3d p(mesh.positions[a]), q(mesh.positions[b]), r(mesh.positions[c]);
+            flat += !(length(cross(q - p, r - p)) > 1e-7);
+        }
+        CHECK(flat == 0);
+        CHECK(Box3d{Vec3d(scene.bounds.low), Vec3d(scene.bounds.high)}.contains(scene.camera.eye));
+    }
+
     TEST_CASE("furnace.json is white, closed and lit evenly") {
         const Scene scene = load("furnace.json");
         for (const char* name : {"sphere", "box"}) check_albedo(scene, name, Rgb(1));

@@ -76,6 +76,81 @@ TEST_SUITE("unit") {
         CHECK(hits > 0.9 * tried);
     }
 
+    TEST_CASE("the distance is within its error bound of a double-precision plane's, for rays of any length") {
+        Random random;
+        std::array<int, 13> tried{}; // by the length's power of ten, from −6 to 6
+        double worst = 0;
+        for (int trial = 0; trial < 400000; ++trial) {
+            const float scale = std::pow(10.0f, random.uniform(-3, 3)), away = trial % 3 ? 1.0f : 30.0f;
+            const Vec3 a = random.vector() * scale, b = random.vector() * scale;
+            // Every other one thin, seen from anywhere: where the bound is tight, and where it gives up.
+            const Vec3 c = trial % 2 ? random.vector() * scale
+                                     : lerp(a, b, random.uniform(0, 1)) + random.vector() * (scale * 1e-2f);
+            const float u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+            const Vec3 target = a * (1 - u - v) + b * u + c * v, origin = random.vector() * (away * scale);
+            const int power = trial % 13 - 6;
+            const Ray ray{origin, normalize(target - origin) * std::pow(10.0f, static_cast<float>(power))};
+            const ShearedRay sheared(ray);
+            const TriangleTest<float> test(sheared.shear, a, b, c);
+            const float low = min(min(test.e0, test.e1), test.e2), high = max(max(test.e0, test.e1), test.e2);
+            if (!(low > 0 || high < 0)) continue;
+            const float inv_det = 1 / test.det();
+            if (test.is_needle(inv_det, sheared.shear.speed)) continue;
+            const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+            const double exact = dot(n, Vec3d(a) - Vec3d(origin)) / dot(n, Vec3d(ray.direction));
+            const double error = std::abs(static_cast<double>(test.distance(inv_det)) - exact);
+            worst = max(worst, error / static_cast<double>(test.distance_error(inv_det, sheared.shear.speed)));
+            ++tried[static_cast<std::size_t>(power + 6)];
+        }
+        CHECK(worst <= 1);
+        CHECK(worst > 0.01); // the bound says something
+        for (const int count : tried) CHECK(count > 10000);
+    }
+
+    TEST_CASE("a ray of any length finds the very triangles that one of length 1 does, or touches them") {
+        Random random;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const Vec3 a = random.vector(), b = random.vector(), c = random.vector();
+            const Ray unit = towards(random.vector() * 3.0f, a * 0.3f + b * 0.3f + c * 0.4f);
+            const auto expected = intersect_triangle(ShearedRay(unit), a, b, c);
+            for (const int power : {-20, -10, 10, 20}) { // of two: all numbers are the same but for the exponent
+                Ray ray = unit;
+                ray.direction = unit.direction * std::ldexp(1.0f, power);
+                const auto found = intersect_triangle(ShearedRay(ray), a, b, c);
+                REQUIRE(found.has_value() == expected.has_value());
+                if (!found) continue;
+                REQUIRE(found->t == std::ldexp(expected->t, -power));
+                REQUIRE(found->u == expected->u);
+                REQUIRE(found->v == expected->v);
+            }
+        }
+    }
+
+    TEST_CASE("a triangle seen almost edge-on is hit where it is, not far beside it in its plane") {
+        Random random;
+        int hits = 0;
+        double worst = 0;
+        for (int trial = 0; trial < 200000; ++trial) {
+            const Vec3 origin = random.vector() * 3.0f, a = random.vector();
+            const Vec3 along = normalize(a - origin), aside = normalize(cross(along, random.vector()));
+            const Vec3 off = cross(along, aside) * (1e-5f * random.uniform());
+            const Vec3 b = a + (along + aside * random.uniform() + off) * 0.03f, c = a + (along - aside + off) * 0.02f;
+            const ShearedRay ray(towards(origin, a));
+            const auto hit = intersect_triangle(ray, a, b, c);
+            if (!hit) continue;
+            ++hits;
+            const Vec3d d(ray.direction);
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            for (const Vec3& p : {a, b, c}) {
+                const double t = dot(Vec3d(p) - Vec3d(origin), d) / dot(d, d);
+                low = min(low, t), high = max(high, t);
+            }
+            worst = max(worst, max(low - static_cast<double>(hit->t), static_cast<double>(hit->t) - high));
+        }
+        CHECK(hits > 1000);
+        CHECK(worst < 4e-6); // of distances up to 5, some roundings
+    }
+
     TEST_CASE("degenerate triangles and rays are missed, not hit at NaN") {
         const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
         const Ray down{{0.2f, 0.2f, 1}, {0, 0, -1}};

@@ -96,8 +96,9 @@ TEST_SUITE("unit") {
         const Judge judge(*scene.scene);
         const auto rays = camera_rays(scene.camera, 64, 64, PixelOrder::kRows, 1);
         const std::vector<Answer> right = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+        const Questions questions{rays, {}};
         const auto compared = [&](const std::vector<Answer>& ours, const std::vector<Answer>& theirs) {
-            return compare_answers(judge, Question::kClosest, rays, ours, theirs, 2);
+            return compare_answers(judge, questions, ours, theirs, 2);
         };
         CHECK(compared(right, right).differ() == 0);
         CHECK(compared(right, right).rays == 64 * 64);
@@ -109,26 +110,81 @@ TEST_SUITE("unit") {
         Mismatches found = compared(faulty, right);
         CHECK(found.unexplained == 3);
         CHECK(found.differ() == 3);
-        CHECK(found.ours_wrong == 3);
-        CHECK(found.peer_wrong == 0);
+        CHECK(found.ours.wrong == 3);
+        CHECK(found.peer.wrong == 0);
         found = compared(right, faulty);
-        CHECK(found.ours_wrong == 0);
-        CHECK(found.peer_wrong == 3);
+        CHECK(found.ours.wrong == 0);
+        CHECK(found.peer.wrong == 3);
 
-        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 1, 2).wrong == 3);
-        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 10, 1).wrong == 2);
-        CHECK(judge_answers(judge, Question::kClosest, rays, faulty, 10, 1).rays == 410);
+        CHECK(judge_answers(judge, questions, faulty, 1, 2).wrong == 3);
+        CHECK(judge_answers(judge, questions, faulty, 10, 1).wrong == 2);
+        CHECK(judge_answers(judge, questions, faulty, 10, 1).rays == 410);
 
         // The double-precision judge finds no fault with ours.
         for (std::size_t i = 0; i < rays.size(); ++i) REQUIRE(judge.closest(rays[i], right[i]) != Finding::kWrong);
-        const auto shadow = shadow_rays(scene, accelerator, rays, 0, 1);
-        const auto blocked = all_answers(our_occluded(accelerator, shadow), shadow.size(), 1);
-        for (std::size_t i = 0; i < shadow.size(); ++i)
-            REQUIRE(judge.occluded(shadow[i], blocked[i].hit()) != Finding::kWrong);
+        const ShadowRays shadow = shadow_rays(scene, accelerator, rays, 0, 1);
+        const Questions in_the_way{shadow.rays, shadow.ends};
+        const auto blocked = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
+        const Faults ours = judge_answers(judge, in_the_way, blocked, 1, 2);
+        CHECK(ours.rays == std::ssize(shadow.rays));
+        CHECK_FALSE(ours.any());
         std::vector<Answer> flipped = blocked;
         flipped[5].triangle = blocked[5].hit() ? Answer::kNone : 0;
-        const Mismatches one = compare_answers(judge, Question::kOccluded, shadow, blocked, flipped, 1);
+        const Mismatches one = compare_answers(judge, in_the_way, blocked, flipped, 1);
         CHECK(one.unexplained == 1);
-        CHECK(one.peer_wrong == 1);
+        CHECK(one.peer.wrong == 1);
+    }
+
+    TEST_CASE("between two triangles of one surface nothing gets through; past an outline it may") {
+        const Scene scene = squares(); // their diagonal, (0, 0) to (1, 1), is an edge within
+        const Judge judge(scene);
+        for (const float off : {-0x1p-21f, 0.0f, 0x1p-21f}) {
+            const Ray inside = down(0.5f + off, 0.5f);
+            CHECK(judge.closest(inside, kMiss) == Finding::kFault);
+            CHECK(judge.closest(inside, {2, 2}) == Finding::kFault);
+            CHECK(judge.closest(inside, {2, 3}) == Finding::kFault);
+            CHECK(judge.occluded(inside, false) == Finding::kFault);
+            CHECK(judge.closest(inside, {1, 1}) != Finding::kFault);
+            const Ray outline = down(off, 0.5f);
+            CHECK(judge.closest(outline, kMiss) != Finding::kFault);
+            CHECK(judge.closest(outline, {2, 3}) != Finding::kFault);
+            CHECK(judge.occluded(outline, false) != Finding::kFault);
+            const Ray corner = down(1 + off, 1);
+            CHECK(judge.closest(corner, kMiss) != Finding::kFault);
+        }
+        Faults faults;
+        for (const Finding finding : {Finding::kRight, Finding::kFault, Finding::kWrong, Finding::kFault, Finding::kEdge})
+            faults.count(finding);
+        CHECK(faults.rays == 5);
+        CHECK(faults.edge == 2);
+        CHECK(faults.wrong == 1);
+    }
+
+    TEST_CASE("the triangle that a shadow ray ends on does not block it; what lies before it does") {
+        const Scene scene = squares();
+        const Judge judge(scene);
+        const Ray ray = down(0.7f, 0.3f);
+        const Hit lamp{0, 2, 0, 0, 2}; // of the lower square
+        CHECK(judge.occluded(ray, lamp, true) == Finding::kRight); // by the upper one
+        CHECK(judge.occluded(ray, lamp, false) == Finding::kWrong);
+        Ray below = ray;
+        below.origin.z = -0.5f;
+        CHECK(judge.occluded(below, Hit{0, 2, 0, 0, 0.5f}, false) == Finding::kRight);
+        CHECK(judge.occluded(below, Hit{0, 3, 0, 0, 0.6f}, false) == Finding::kWrong); // another's, which lies behind
+    }
+
+    TEST_CASE("instances are judged where they stand") {
+        const Scene scene = make_scene(ball(2), {translation(Vec3(-2, 0, 0)), translation(Vec3(2, 0, 0)) * scaling(Vec3(2, 2, 2))});
+        const Judge judge(scene);
+        const raytrace::Accelerator accelerator(scene, 1);
+        std::vector<Ray> rays;
+        for (const float x : {-2.1f, 2.1f}) rays.push_back({{x, 0.1f, 5}, {0, 0, -1}});
+        std::vector<Answer> answers = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+        CHECK(answers[0].object == 0);
+        CHECK(answers[1].object == 1);
+        const Questions questions{rays, {}};
+        CHECK_FALSE(judge_answers(judge, questions, answers, 1, 1).any());
+        std::swap(answers[0].object, answers[1].object);
+        CHECK(judge_answers(judge, questions, answers, 1, 1).wrong == 2);
     }
 }

@@ -1,5 +1,6 @@
 #include "compare/kernels/kernel_scene.h"
 
+#include "common/geometry/quad.h"
 #include "common/system/error.h"
 #include "compare/hits/exact_trace.h"
 #include "compare/stress/stage.h"
@@ -43,13 +44,14 @@ TEST_SUITE("unit") {
     TEST_CASE("the rooms of a bare mesh hold its camera and are closed; alone it has no ground") {
         const std::filesystem::path bowl = kModels / "meshes/bowl.obj";
         const std::size_t triangles = load_kernel_scene(bowl, Arrangement::kAlone).triangles().triangles.size();
-        for (const Arrangement arrangement : {Arrangement::kRoom, Arrangement::kClutter}) {
+        for (const Arrangement arrangement : {Arrangement::kRoom, Arrangement::kClutter, Arrangement::kInstances}) {
             const KernelScene scene = load_kernel_scene(bowl, arrangement);
             CAPTURE(name_of(arrangement));
             CHECK(scene.enclosed);
             CHECK(Box3d{Vec3d(scene.scene->bounds.low), Vec3d(scene.scene->bounds.high)}.contains(scene.camera.eye));
             const std::size_t copies = arrangement == Arrangement::kRoom ? 1 : 27;
-            CHECK(scene.triangles().triangles.size() == copies * triangles + 12);
+            CHECK(scene.triangle_count() == copies * triangles + 12 + 2); // the room's, and the lamp in it
+            CHECK(scene.closed());
         }
         const auto is_quad = [](const Shape& shape) { return std::holds_alternative<QuadList>(shape); };
         const Scene loaded = load_scene(bowl);
@@ -72,6 +74,35 @@ TEST_SUITE("unit") {
                 REQUIRE(a.valid() == b.valid());
                 if (a.valid()) REQUIRE(a.t == doctest::Approx(b.t).epsilon(1e-6));
             }
+    }
+
+    TEST_CASE("instances stand where the flattened copies do, and are one mesh") {
+        const std::filesystem::path bowl = kModels / "meshes/bowl.obj";
+        const KernelScene flat = load_kernel_scene(bowl, Arrangement::kClutter);
+        const KernelScene instanced = load_kernel_scene(bowl, Arrangement::kInstances);
+        CHECK(instanced.scene->objects.size() == 28);
+        CHECK(instanced.scene->shapes.size() == 2);
+        const ExactTracer a(*flat.scene, 0), b(*instanced.scene, 0);
+        const auto copy = static_cast<std::uint32_t>(instanced.triangles().triangles.size());
+        for (std::uint32_t i = 0; i < flat.triangle_count(); i += 97) {
+            const auto p = a.corners(0, i), q = b.corners(min(i / copy, 27u), i - min(i / copy, 27u) * copy);
+            for (std::size_t k = 0; k < 3; ++k) REQUIRE(length(p[k] - q[k]) < 2e-6);
+        }
+    }
+
+    TEST_CASE("a scene file's lamps are triangles of the flattened mesh") {
+        const KernelScene flat = load_kernel_scene(kModels / "cornell.json", Arrangement::kAlone);
+        const ExactTracer exact(*flat.scene, 0);
+        int lamps = 0;
+        for (const Light& light : flat.lights) {
+            const auto* surface = std::get_if<SurfaceLight>(&light);
+            if (surface == nullptr || surface->object == kNoObject) continue;
+            ++lamps;
+            const auto p = exact.corners(surface->object, surface->primitive);
+            const auto expected = corners(std::get<Quad>(surface->shape));
+            for (std::size_t k = 0; k < 3; ++k) CHECK(length(p[k] - Vec3d(expected[k])) < 1e-6);
+        }
+        CHECK(lamps > 0);
     }
 
     TEST_CASE("spheres are counted as left out; a scene of nothing else is refused, and so is its clutter") {

@@ -79,7 +79,9 @@ TEST_SUITE("unit") {
         CHECK(bounce.size() == camera.size()); // a closed room: every camera ray hits
         CHECK(same(bounce, bounce_rays(scene, accelerator, camera, 1, 3)));
         CHECK_FALSE(same(bounce, bounce_rays(scene, accelerator, camera, 2, 1)));
-        CHECK(same(shadow_rays(scene, accelerator, camera, 1, 1), shadow_rays(scene, accelerator, camera, 1, 3)));
+        const ShadowRays one = shadow_rays(scene, accelerator, camera, 1, 1), three = shadow_rays(scene, accelerator, camera, 1, 3);
+        CHECK(same(one.rays, three.rays));
+        CHECK(one.ends == three.ends);
     }
 
     TEST_CASE("in a closed room no ray is lost: from the camera, nor after a bounce, nor after ten") {
@@ -111,11 +113,21 @@ TEST_SUITE("unit") {
             const raytrace::Accelerator accelerator(*scene.scene, 1);
             const auto rays = camera_rays(scene.camera, 64, 64, PixelOrder::kRows, 1);
             const auto shadow = shadow_rays(scene, accelerator, rays, 0, 1);
-            REQUIRE(shadow.size() > rays.size() / 2);
+            REQUIRE(shadow.rays.size() > rays.size() / 2);
+            const auto answers = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
             std::size_t blocked = 0;
-            for (const Answer& a : all_answers(our_occluded(accelerator, shadow), shadow.size(), 1)) blocked += a.hit();
-            CHECK(blocked == (lid ? shadow.size() : 0));
-            for (const Ray& ray : shadow) REQUIRE(ray.at(ray.t_max).y == doctest::Approx(3 - 0.02 * 6).epsilon(1e-3));
+            for (const Answer& a : answers) blocked += a.hit();
+            CHECK(blocked == (lid ? answers.size() : 0));
+            for (std::size_t i = 0; i < shadow.rays.size(); ++i) { // each ends on one of the lamp's two triangles, the last
+                const Ray& ray = shadow.rays[i];
+                const Hit& end = shadow.ends[i];
+                REQUIRE(ray.at(ray.t_max).y == doctest::Approx(3 - 0.02 * 6).epsilon(1e-3));
+                REQUIRE(end.object == 0);
+                REQUIRE(end.primitive >= scene.triangle_count() - 2);
+                REQUIRE(end.t > ray.t_max);
+                REQUIRE(end.t == doctest::Approx(ray.t_max).epsilon(2e-4));
+                if (!lid) REQUIRE(accelerator.closest(Ray{ray.origin, ray.direction}).primitive == end.primitive);
+            }
         }
     }
 }

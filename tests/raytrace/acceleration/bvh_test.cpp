@@ -273,6 +273,34 @@ TEST_SUITE("unit") {
         CHECK(accelerator.primitives() == 2000000);
     }
 
+    TEST_CASE("identical quads and identical spheres are one, the first; what differs in the last bit stays") {
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        for (int i = 0; i < 2000; ++i) builder.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), grey);
+        builder.add(quad({1, 1, 0}, {-2, 0, 0}, {0, -2, 0}), grey); // the same square from another corner
+        for (int i = 0; i < 2000; ++i) builder.add(Sphere{{0, 0, 0}, 0.5f}, grey);
+        for (int i = 0; i < 20; ++i) builder.add(Sphere{{0, 0, 0}, std::nextafter(0.5f, 1.0f)}, grey);
+        const Scene scene = builder.finish();
+        const Accelerator accelerator(scene, 2);
+        const auto present = [](const auto& blocks) {
+            std::size_t count = 0;
+            for (const auto& block : blocks)
+                for (std::size_t lane = 0; lane < kBlockSize; ++lane) count += block.object[lane] != kNoObject;
+            return count;
+        };
+        CHECK(present(accelerator.world().quads) == 2);
+        CHECK(present(accelerator.world().spheres) == 2);
+        Random random(41);
+        for (int i = 0; i < 300; ++i) {
+            const Ray ray{{random.uniform(-1.2f, 1.2f), random.uniform(-1.2f, 1.2f), 3}, {0, 0, -1}};
+            const Hit hit = accelerator.closest(ray);
+            REQUIRE(hit == brute_force(scene, ray));
+            if (!hit.valid()) continue;
+            CHECK_FALSE(accelerator.occluded(ray, hit));
+            CHECK(accelerator.occluded(ray, Hit{hit.object + 1, 0, 0, 0, hit.t}));
+        }
+    }
+
     TEST_CASE("a ray in the plane of flat boxes passes them without harm") {
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{});

@@ -1,0 +1,172 @@
+// hall.obj: a vaulted hall of three aisles, seen from within: long thin walls and finely cut columns, with openings to
+// the outside at one end, in the walls and above. In metres; the nave runs along z.
+#include "models/field.h"
+#include "models/generate.h"
+#include "models/mesh_builder.h"
+#include "models/profile.h"
+
+#include <array>
+
+namespace duet::models {
+namespace {
+
+constexpr double kPi = kPiDouble;
+constexpr double kHalfNave = 5, kHalfWidth = 9;          // in x: the columns' axes, the outer walls
+constexpr double kEnd = 18, kBay = 6;                    // in z: the end walls; from column to column
+constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6; // heights: of arches' feet, of the nave's walls, of the aisles' roofs
+constexpr double kThick = 0.5;                           // of walls
+constexpr int kBays = 6;
+
+/// A flat patch corner + s u + t v, cut into cells.
+void add_patch(MeshBuilder& mesh, Vec3d corner, Vec3d u, Vec3d v, int columns, int rows) {
+    Sheet sheet{.columns = columns, .rows = rows, .point = {}};
+    sheet.point = [=](double s, double t) { return corner + u * s + v * t; };
+    add_sheet(mesh, sheet);
+}
+
+void add_box(MeshBuilder& mesh, Vec3d low, Vec3d high, int cells) {
+    const Vec3d d = high - low, x(d.x, 0, 0), y(0, d.y, 0), z(0, 0, d.z);
+    add_patch(mesh, low, y, x, 2, cells);
+    add_patch(mesh, low + z, x, y, cells, 2);
+    add_patch(mesh, low, z, y, cells, 2);
+    add_patch(mesh, low + x, y, z, 2, cells);
+    add_patch(mesh, low, x, z, cells, cells / 2);
+    add_patch(mesh, low + y, z, x, cells / 2, cells);
+}
+
+/// An arched opening's outline over s in [0, 1]: up one jamb (if there is any), around, down the other. In (along,
+/// height), about along = 0.
+Vec2d arch(double s, double half, double foot, double spring) {
+    const double jamb = foot < spring ? 0.25 : 0; // the part of s that each takes
+    if (s < jamb) return {-half, lerp(foot, spring, s / jamb)};
+    if (s > 1 - jamb) return {half, lerp(spring, foot, (s - (1 - jamb)) / jamb)};
+    const double angle = kPi * (1 - (s - jamb) / (1 - 2 * jamb));
+    return Vec2d(half * std::cos(angle), spring + half * std::sin(angle));
+}
+
+/// A wall in the plane x = `x` with an arched opening, a bay long about z = `middle`: both faces, and the opening's own.
+struct ArchedWall {
+    double x, middle;
+    double half, foot, spring; ///< of the opening
+    double low, high;          ///< of the wall
+
+    void add(MeshBuilder& mesh) const {
+        for (const double side : {-0.5, 0.5}) {
+            Sheet face{.columns = 48, .rows = 10, .point = {}};
+            face.point = [*this, side](double s, double t) {
+                s = side > 0 ? 1 - s : s; // outwards
+                return lerp(at(arch(s, half, foot, spring), side), at(border(s), side), t);
+            };
+            add_sheet(mesh, face);
+        }
+        Sheet reveal{.columns = 48, .rows = 4, .point = {}};
+        reveal.point = [*this](double s, double t) { return at(arch(s, half, foot, spring), t - 0.5); };
+        add_sheet(mesh, reveal);
+        if (foot > low) // below the sill
+            for (const double side : {-0.5, 0.5})
+                add_patch(mesh, at({-kBay / 2, low}, side), Vec3d(0, 0, kBay), Vec3d(0, foot - low, 0), 16, 4);
+    }
+
+private:
+    Vec3d at(Vec2d along_and_height, double side) const {
+        return {x + side * kThick, along_and_height.y, middle + along_and_height.x};
+    }
+    /// Where the wall ends, seen from the outline's point s: at its sides and its top.
+    Vec2d border(double s) const {
+        constexpr double kSide = 0.25;
+        if (s < kSide) return {-kBay / 2, lerp(foot, high, s / kSide)};
+        if (s > 1 - kSide) return {kBay / 2, lerp(high, foot, (s - (1 - kSide)) / kSide)};
+        return {lerp(-kBay / 2, kBay / 2, (s - kSide) / (1 - 2 * kSide)), high};
+    }
+};
+
+/// A fluted column with base and capital.
+void add_column(MeshBuilder& mesh, double x, double z) {
+    constexpr std::array kProfile = {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
+                                     Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
+                                     Vec2d(0.62, 4.0), Vec2d(0.62, kSpring)};
+    constexpr int kRows = 32, kFlutes = 16;
+    const std::vector<Vec2d> profile = sample_profile(kProfile, kRows);
+    const std::size_t first = mesh.positions.size();
+    add_revolution(mesh, profile, 4 * kFlutes, [](std::size_t row) { return static_cast<double>(row) / kRows; });
+    for (std::size_t i = first; i < mesh.positions.size(); ++i) {
+        Vec3d& p = mesh.positions[i];
+        const double shaft = smooth_step(0.5, 0.7, p.y) * (1 - smooth_step(3.2, 3.4, p.y));
+        const double flute = 1 - 0.05 * shaft * (0.5 + 0.5 * std::cos(kFlutes * std::atan2(p.z, p.x)));
+        p = {x + p.x * flute, p.y, z + p.z * flute};
+    }
+}
+
+/// The nave's vault, a half cylinder with coffers, open along the crown between the middle bays.
+void add_vault(MeshBuilder& mesh) {
+    for (const double side : {-1.0, 1.0}) {
+        Sheet sheet{.columns = 40, .rows = 240, .point = {}};
+        sheet.point = [side](double s, double t) {
+            const double z = lerp(-kEnd, kEnd, t);
+            const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z)); // of the angle, on each side of the crown
+            const double angle = kPi / 2 * (side > 0 ? s * (1 - gap) : 1 - (1 - s) * (1 - gap));
+            const double coffer = std::max(std::sin(12 * angle) * std::sin(2 * kPi * z / kBay * 3), 0.0);
+            const double radius = kHalfNave + 0.18 * std::sqrt(coffer);
+            const double around = side > 0 ? angle : kPi / 2 + angle;
+            return Vec3d(radius * std::cos(around), kArcadeTop + radius * std::sin(around), z);
+        };
+        add_sheet(mesh, sheet);
+    }
+}
+
+/// The far end, with a round window.
+void add_end_wall(MeshBuilder& mesh) {
+    Sheet sheet{.columns = 96, .rows = 24, .closed_s = true, .point = {}};
+    sheet.point = [](double s, double t) {
+        const double angle = 2 * kPi * s;
+        const Vec2d direction(std::cos(angle), std::sin(angle));
+        const double up = direction.y >= 0 ? kHalfNave // the vault's edge above, a rectangle's below
+                                           : std::min(kArcadeTop / -direction.y, kHalfNave / std::max(std::abs(direction.x), 1e-9));
+        const double r = lerp(1.6, up, t);
+        return Vec3d(r * direction.x, kArcadeTop + r * direction.y, -kEnd);
+    };
+    add_sheet(mesh, sheet);
+    for (const double side : {-1.0, 1.0})
+        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, 0, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, kRoof, 0}, 16, 16);
+}
+
+void add_floor(MeshBuilder& mesh) {
+    Sheet sheet{.columns = 60, .rows = 120, .point = {}};
+    sheet.point = [](double s, double t) { // trodden slabs
+        const double x = lerp(-kHalfWidth, kHalfWidth, s), z = lerp(kEnd, -kEnd, t);
+        return Vec3d(x, 0.012 * gradient_noise(Vec3d(x, 0, z) * 1.3), z);
+    };
+    add_sheet(mesh, sheet);
+}
+
+void add_bench(MeshBuilder& mesh, double x, double z) {
+    constexpr double kHalf = 1.6;
+    add_box(mesh, {x - kHalf, 0.42, z}, {x + kHalf, 0.46, z + 0.45}, 8);        // seat
+    add_box(mesh, {x - kHalf, 0.5, z + 0.42}, {x + kHalf, 0.95, z + 0.46}, 8);  // back
+    for (const double end : {-kHalf, kHalf})
+        add_box(mesh, {x + end - 0.04, 0, z - 0.02}, {x + end + 0.04, 1, z + 0.48}, 4);
+}
+
+} // namespace
+
+void write_hall(const std::filesystem::path& folder) {
+    MeshBuilder mesh;
+    add_floor(mesh);
+    add_vault(mesh);
+    add_end_wall(mesh);
+    for (const double side : {-1.0, 1.0}) {
+        for (int bay = 0; bay < kBays; ++bay) {
+            const double middle = -kEnd + kBay * (bay + 0.5);
+            ArchedWall{side * kHalfNave, middle, 2.4, kSpring, kSpring, kSpring, kArcadeTop}.add(mesh);
+            ArchedWall{side * kHalfWidth, middle, 1.1, 1.6, 3.4, 0, kRoof}.add(mesh);
+        }
+        for (int i = 0; i <= kBays; ++i) add_column(mesh, side * kHalfNave, -kEnd + kBay * i);
+        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, kRoof, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, 0, 2 * kEnd}, 20, 90);
+        for (int row = 0; row < 12; ++row) add_bench(mesh, side * 2.4, -kEnd + 4 + 2.1 * row);
+    }
+    mesh.uvs.clear(); // stone needs none
+    compute_normals(mesh, 40);
+    write_obj(folder / kHallFile, mesh, "A vaulted hall, made by models/hall.cpp.");
+}
+
+} // namespace duet::models
