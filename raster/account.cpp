@@ -17,6 +17,9 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     because(!needs.textures, "textures", "no material has one");
     because(!needs.lens, "lens", "the camera is a pinhole: all samples share one view");
     because(!needs.motion, "motion", "nothing moves: all samples share one moment");
+    because(!needs.footprints, "texture footprints", "no material has a picture that is filtered");
+    because(!needs.normal_maps, "normal maps", "no material has one");
+    because(!needs.alpha, "transparent layers", "no material has holes or lets light through");
     because(!needs.spheres, "spheres", "the scene has none");
     because(!needs.instances, "instances", "every object stands in world space");
     if (settings.shading == Shading::kLit) {
@@ -71,6 +74,7 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Rough metal sees each light surface as a distant light in its centre's direction.");
     name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
+    name(parts.direct && needs.lamp_textures, "Surfaces that emit a picture light others by its mean.");
     name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
     return result;
 }

@@ -2,6 +2,8 @@
 
 #include "raster/solve.h"
 
+#include <utility>
+
 namespace duet::raster {
 namespace {
 
@@ -62,6 +64,12 @@ Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t
     const Interpolated at = interpolate(whole, pixel);
     const double depth = at.depth_sum > near * at.sum ? at.depth_sum / at.sum : near;
     return make_hit(object, primitive, whole.piece, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
+}
+
+Hit HitTile::exchange(int x, int y, const Hit& hit) {
+    const std::size_t i = index(x, y);
+    nearness_[i] = hit.valid() ? static_cast<float>(pinhole_.near * distance_per_depth_[i] / static_cast<double>(hit.t)) : 0;
+    return std::exchange(hits_[i], hit);
 }
 
 Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, Vec2d pixel) {
@@ -132,7 +140,8 @@ void HitTile::make_room() {
     hits_.resize(count);
 }
 
-HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view) : rect_(tile.rect()) {
+HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
+    : rect_(tile.rect()), pinhole_(view.pinhole) {
     make_room();
     Filler filler(*this, geometry, view);
     for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kStripRows)
@@ -140,7 +149,7 @@ HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView
 }
 
 HitTile::HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()) {
+    : rect_(tile.rect()), pinhole_(view.pinhole) {
     make_room();
     Filler filler(*this, geometry, view);
     LayeredTile::Strip strip;

@@ -5,6 +5,7 @@
 #include "raster/geometry.h"
 #include "raster/multisample.h"
 
+#include "common/camera/pixel_footprint.h"
 #include "common/geometry/hit.h"
 
 #include <vector>
@@ -37,8 +38,15 @@ public:
     const PixelRect& rect() const { return rect_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
+    double distance_per_depth(int x, int y) const { return distance_per_depth_[index(x, y)]; }
+    /// Lets a sample see something else; what it saw.
+    Hit exchange(int x, int y, const Hit& hit);
     /// Camera-space −z of what the sample sees, in metres; infinity where that is nothing.
     double depth(int x, int y) const { return static_cast<double>(hit(x, y).t) / distance_per_depth_[index(x, y)]; }
+    /// Of a sample that sees something, where a pixel takes a number of them.
+    RayFootprint footprint(int x, int y, int samples_per_pixel) const {
+        return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
+    }
     /// near / depth; 0 where nothing is seen.
     float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
@@ -51,6 +59,7 @@ private:
     }
 
     PixelRect rect_;
+    Pinhole pinhole_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;

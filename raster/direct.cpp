@@ -33,20 +33,20 @@ Polygon above(const Polygon& polygon, Vec3 p, Vec3 n) {
     return result;
 }
 
-/// Irradiance where shading and geometric normal differ: the light is cut at the geometric horizon, then, in the closed
+/// Irradiance where the shading normal is not the horizon's: the light is cut at the horizon, then, in the closed
 /// form, at the shading normal's.
 template <typename Shape>
 Rgb irradiance_above(const SurfaceLight& light, const Shape& shape, const ShadingPoint& point) {
     const Vec3 p = point.surface.p;
     if (!emits_towards(light, p)) return {};
-    const Polygon visible = above(outline(shape), p, point.ng);
+    const Polygon visible = above(outline(shape), p, point.horizon);
     if (visible.count < 3) return {};
     const std::span<const Vec3> vertices(visible.v.data(), visible.count);
     return light.radiance * static_cast<float>(polygon_form_factor_times_pi(p, point.ns, vertices));
 }
-/// A sphere counts in full unless all of it is below the geometric horizon.
+/// A sphere counts in full unless all of it is below the horizon.
 Rgb irradiance_above(const SurfaceLight& light, const Sphere& sphere, const ShadingPoint& point) {
-    const float height = dot(point.ng, sphere.center - point.surface.p);
+    const float height = dot(point.horizon, sphere.center - point.surface.p);
     return height > -sphere.radius ? surface_light_irradiance(light, point.surface.p, point.ns) : Rgb();
 }
 
@@ -86,12 +86,13 @@ ShadingPoint::ShadingPoint(const SurfacePoint& point, Vec3 to_viewer)
     const float side = dot(point.ng, to_viewer) < 0 ? -1.0f : 1.0f;
     ng = point.ng * side;
     ns = point.ns * side;
+    horizon = point.horizon * side;
     wo = lifted_above_horizon(frame.to_local(to_viewer), side);
 }
 
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
     if (is_own(light, point.surface)) return {};
-    if (point.ng == point.ns) return surface_light_irradiance(light, point.surface.p, point.ns);
+    if (point.horizon == point.ns) return surface_light_irradiance(light, point.surface.p, point.ns);
     return std::visit([&](const auto& shape) { return irradiance_above(light, shape, point); }, light.shape);
 }
 

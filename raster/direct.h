@@ -15,14 +15,15 @@ namespace duet::raster {
 struct ShadingPoint {
     const SurfacePoint& surface;
     Vec3 ng;     ///< geometric normal, on the viewer's side: light from its other side doesn't arrive
+    Vec3 horizon; ///< SurfacePoint::horizon, on the viewer's side
     Vec3 ns;     ///< shading normal, in the hemisphere of ng
     Frame frame; ///< about the surface's own shading normal (+z is the outside), in which materials work
     Vec3 wo;     ///< to the viewer, unit, in that frame; always on the side that is seen
 
     /// to_viewer: unit, in the world.
     ShadingPoint(const SurfacePoint& point, Vec3 to_viewer);
-    /// Whether light from w (in the world) arrives on the side of the geometric surface that is seen.
-    bool receives(Vec3 w) const { return dot(ng, w) > 0; }
+    /// Whether light from w (in the world) arrives on the side of the surface that is seen: above its horizon.
+    bool receives(Vec3 w) const { return dot(horizon, w) > 0; }
 };
 
 /// Irradiance from a surface light at a shading point, in closed form: over the directions above the horizons of both

@@ -114,14 +114,17 @@ std::size_t Geometry::memory_bytes() const {
     return bytes;
 }
 
-void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                      Geometry& result) {
+namespace {
+
+void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
+             const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
+             const Settings& settings, Geometry& result) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
         return settings.skips.frustum ? in_frustum(data, objects, view, result.culled) : objects;
     };
-    const std::vector<std::uint32_t> polygonal = visible(data.polygonal);
+    const std::vector<std::uint32_t> polygonal = visible(all_polygonal);
     result.triangles.prepared = &data;
     result.triangles.scene = &data.scene;
     result.triangles.vertices = &data.vertices;
@@ -129,7 +132,7 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
               result.triangles.objects);
     result.transform_seconds = watch.lap();
 
-    result.spheres = set_up_spheres(data.scene, visible(data.spheres), view.pinhole, view.time, view.viewport);
+    result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
     assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only}, settings.threads,
              result);
@@ -139,6 +142,18 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
     result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
     result.sphere_bins = bin(grid, result.spheres);
     result.bin_seconds = watch.lap();
+}
+
+} // namespace
+
+void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                      Geometry& result) {
+    process(data, data.polygonal, data.spheres, grid, view, settings, result);
+}
+
+void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                    Geometry& result) {
+    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, result);
 }
 
 } // namespace duet::raster

@@ -36,6 +36,9 @@ struct Geometry {
 /// The same for any number of threads. Throws Error for more triangles in view than can be numbered (2^31).
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result);
+/// The same of the surfaces that may be seen through.
+void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                    Geometry& result);
 
 /// Memory of geometries, kept from frame to frame: one for each rendering that runs at a time.
 class GeometryPool {

@@ -9,8 +9,13 @@ namespace {
 
 bool all_opaque(const Scene& scene, const Object& object) {
     return std::none_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
-        return std::holds_alternative<Dielectric>(scene.materials[material]);
+        return std::holds_alternative<Dielectric>(scene.materials[material]) || scene.maps[material].cuts_out();
     });
+}
+
+bool can_be_seen_through(const Scene& scene, const Object& object) {
+    return std::any_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return scene.maps[material].cuts_out(); });
 }
 
 bool any_emissive(const Scene& scene, const Object& object) {
@@ -21,6 +26,7 @@ bool any_emissive(const Scene& scene, const Object& object) {
 std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
+    if (scene.maps[object.materials.front()].bends_normals()) return std::nullopt;
     if (texture_slot(material).texture >= 0) return std::nullopt;
     return base_color(material, scene.textures, SurfacePoint{});
 }
@@ -66,7 +72,11 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         data.objects.push_back(prepare_object(scene, object));
-        (std::holds_alternative<Sphere>(shape) ? data.spheres : data.polygonal).push_back(i);
+        const bool sphere = std::holds_alternative<Sphere>(shape);
+        if (can_be_seen_through(scene, object))
+            (sphere ? data.open_spheres : data.open_polygonal).push_back(i);
+        else
+            (sphere ? data.spheres : data.polygonal).push_back(i);
         data.primitives += primitive_count(shape);
         const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
         data.unsampled_emitters =

@@ -35,12 +35,15 @@ struct PreparedData {
     std::vector<PreparedObject> objects;  ///< parallel to Scene::objects
     std::vector<std::uint32_t> polygonal; ///< objects of triangles and quads, in order
     std::vector<std::uint32_t> spheres;   ///< the others
+    std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
+                                                                 ///< above (raster/layers.h)
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;
+    bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
 };
 

@@ -5,6 +5,7 @@
 #include "raster/display.h"
 #include "raster/edges.h"
 #include "raster/geometry.h"
+#include "raster/layers.h"
 #include "raster/lines.h"
 #include "raster/multisample.h"
 #include "raster/picture.h"
@@ -55,6 +56,7 @@ struct Frame {
     const Program* program; ///< null for Shading::kLit
     TileGrid grid;
     Geometry& geometry;
+    Geometry* layers; ///< of the surfaces that may be seen through; null: there are none
     Account& account;
     Progress& progress;
     Control& control;
@@ -75,6 +77,10 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
     const PassView pass_view = pass_view_of(camera, view, pass);
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
+    if (frame.layers != nullptr) {
+        process_layers(frame.data, frame.grid, pass_view, frame.settings, *frame.layers);
+        frame.account.add(*frame.layers);
+    }
     const Stopwatch watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
@@ -102,15 +108,28 @@ void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depth
         }
 }
 
-/// Samples of a tile one by one: all of Shading::kLit, and auxiliary pictures of any shading.
-void shade_samples(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
-    const HitTile tile(depths, frame.geometry, view);
+/// Whether samples are shaded one by one, with surfaces before them that may be seen through: all of Shading::kLit, and
+/// of any scene that has such surfaces.
+bool all_one_by_one(const Frame& frame) { return frame.program == nullptr || frame.layers != nullptr; }
+/// The same, or auxiliary pictures of any shading.
+bool one_by_one(const Frame& frame) { return all_one_by_one(frame) || frame.settings.aovs.any(); }
+
+void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths, Picture& picture) {
+    HitTile tile(depths, frame.geometry, view);
+    std::optional<Layers> layers;
+    if (frame.layers != nullptr)
+        layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
-            const Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
+            Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
+            if (layers) {
+                if (frame.program != nullptr && tile.hit(x, y).valid())
+                    shaded.radiance = frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
+                shaded = layers->over(x, y, shaded);
+            }
             if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
-            if (frame.program == nullptr) picture.add(x, y, shaded.radiance);
+            if (all_one_by_one(frame)) picture.add(x, y, shaded.radiance);
         }
 }
 
@@ -171,8 +190,8 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
         Stopwatch watch;
         cover(frame.geometry, view, offset, rect, index, depths);
         frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (frame.program == nullptr || frame.settings.aovs.any()) shade_samples(frame, view, depths, picture);
-        if (frame.program != nullptr) shade_tile(frame, view, depths, picture);
+        if (one_by_one(frame)) shade_samples(frame, view, index, depths, picture);
+        if (!all_one_by_one(frame)) shade_tile(frame, view, depths, picture);
         frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
@@ -243,7 +262,8 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-            if (frame.settings.multisamples > 0 && !frame.settings.sample_shading)
+            // What may be seen through is sorted for each sample, and so shaded for each.
+            if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
                 render_layers(frame, pass_view, i, picture);
             else
                 render_tile(frame, pass_view, i, picture);
@@ -261,6 +281,17 @@ template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
     if (image.width() != view.width || image.height() != view.height) image = Image<Pixel>(view.width, view.height);
 }
 
+/// Where surfaces have holes: what is partly there counts as not there.
+void keep_layered_nearness(const Frame& frame, const PassView& view, std::size_t index, ImageFloat& picture) {
+    const PixelRect rect = frame.grid.tile(index);
+    DepthTile depths;
+    cover(frame.geometry, view, view.samples.front(), rect, index, depths);
+    HitTile tile(depths, frame.geometry, view);
+    const Layers layers(frame.data, frame.settings, nullptr, *frame.layers, view, view.samples.front(), index, tile);
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) picture(x, y) = tile.nearness(x, y);
+}
+
 /// A single sample a pixel, straight to what a display or a shadow map takes.
 void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                     Rendering& result) {
@@ -273,7 +304,9 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
         frame.account.picture_bytes = result.srgb.size() * sizeof(Rgba8);
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        if (depths_only)
+        if (depths_only && frame.layers != nullptr)
+            keep_layered_nearness(frame, pass_view, i, result.nearness);
+        else if (depths_only)
             keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
         else
             display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
@@ -296,11 +329,14 @@ void render_with(const Prepared& prepared, const View& view, const Settings& set
     Account account;
     Progress progress(control, grid.size() * passes.size());
     GeometryLoan geometry(*data.geometries);
-    const Frame frame{data, used, program, grid, *geometry, account, progress, control};
+    GeometryLoan layers(*data.geometries);
+    const Frame frame{data,    used,     program, grid, *geometry, data.has_layers() ? &*layers : nullptr,
+                      account, progress, control};
 
     const bool overlaid = draws_edges(used) || used.shading == Shading::kLines;
     const bool one_sample = passes.size() == 1 && passes.front().samples.size() == 1;
-    if (used.output == Output::kNearness || (used.output == Output::kSrgb8 && one_sample && !overlaid)) {
+    if (used.output == Output::kNearness ||
+        (used.output == Output::kSrgb8 && one_sample && !overlaid && !data.has_layers())) {
         render_display(frame, camera, view, passes.front(), result);
         result.statistics = {};
     } else {

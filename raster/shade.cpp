@@ -58,7 +58,7 @@ LightParts lit(const PreparedData& data, const Settings& settings, const Shading
     const Scene& scene = data.scene;
     const PartSet& asked = settings.parts;
     LightParts parts;
-    if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], point.surface, to_viewer);
+    if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], scene.textures, point.surface, to_viewer);
     if (asked.direct) parts.direct = std::visit(DirectLight{scene.lights, point}, bsdf);
     const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
     if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
@@ -89,11 +89,12 @@ LightParts shade_surface(const Prepared& prepared, const Settings& settings, con
     return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer);
 }
 
-LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit) {
+LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
+                     const RayFootprint* footprint) {
     const PreparedData& data = prepared.data();
     if (!hit.valid())
         return {.emission = background(data, settings, ray), .direct = {}, .environment = {}, .reflection = {}};
-    const SurfacePoint surface = surface_point(data.scene, ray, hit);
+    const SurfacePoint surface = surface_point(data.scene, ray, hit, footprint);
     return shade_surface(prepared, settings, surface, bsdf_of(data, surface), -ray.direction);
 }
 
@@ -102,7 +103,8 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     const Hit& hit = tile.hit(x, y);
     if (!hit.valid()) return {.radiance = background(data, settings, ray), .normal = {}, .albedo = {}};
     const Scene& scene = data.scene;
-    const SurfacePoint surface = surface_point(scene, ray, hit);
+    const RayFootprint footprint = scene.needs.footprints ? tile.footprint(x, y, settings.samples_per_pixel) : RayFootprint{};
+    const SurfacePoint surface = surface_point(scene, ray, hit, &footprint);
     const ShadingPoint point(surface, -ray.direction);
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};

@@ -19,8 +19,9 @@ struct LightParts {
 };
 
 /// How a picture of these settings would show what `ray`, of unit direction, hits; the background where that is
-/// nothing.
-LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit);
+/// nothing. `footprint`: of the ray at the hit; null: textures are not filtered.
+LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
+                     const RayFootprint* footprint = nullptr);
 /// The same of a surface point whose BSDF the caller has worked out. to_viewer: unit, in the world.
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer);

@@ -1,9 +1,11 @@
 #include "raytrace/aov.h"
 
+#include "raytrace/integrator/vertex.h"
+
 namespace duet::raytrace {
 
-AovBuffers::AovBuffers(const Scene& scene, const View& view, const AovSet& asked)
-    : scene_(scene), forward_(CameraModel(view).through().forward), asked_(asked) {
+AovBuffers::AovBuffers(const RenderPlan& plan, const View& view, const AovSet& asked)
+    : plan_(plan), forward_(CameraModel(view).through().forward), asked_(asked) {
     if (asked_.depth || asked_.normal || asked_.albedo) sums_ = Image<Sums>(view.width, view.height);
     if (asked_.hit) hits_ = Image<Hit>(view.width, view.height);
 }
@@ -15,9 +17,9 @@ void AovBuffers::add(int x, int y, std::uint32_t index, const Ray& ray, const Hi
     ++sums.hits;
     sums.depth += static_cast<double>(hit.t) * dot(Vec3d(ray.direction), forward_);
     if (!asked_.normal && !asked_.albedo) return;
-    const SurfacePoint point = surface_point(scene_, ray, hit);
+    const SurfacePoint point = camera_surface_point(plan_, ray, hit);
     sums.normal += Vec3d(dot(point.ng, ray.direction) > 0 ? -point.ns : point.ns);
-    if (asked_.albedo) sums.albedo += Rgbd(base_color(scene_.materials[point.material], scene_.textures, point));
+    if (asked_.albedo) sums.albedo += Rgbd(base_color(plan_.scene.materials[point.material], plan_.scene.textures, point));
 }
 
 void AovBuffers::finish(const Film& film, Rendering& rendering) {

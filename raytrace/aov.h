@@ -10,7 +10,7 @@ namespace duet::raytrace {
 /// once.
 class AovBuffers {
 public:
-    AovBuffers(const Scene& scene, const View& view, const AovSet& asked);
+    AovBuffers(const RenderPlan& plan, const View& view, const AovSet& asked);
 
     /// Whether anything of a sample is looked at.
     bool any() const { return asked_.depth || asked_.normal || asked_.albedo || asked_.hit; }
@@ -27,7 +27,7 @@ private:
         Rgbd albedo;
         std::uint32_t hits = 0;
     };
-    const Scene& scene_;
+    const RenderPlan& plan_;
     Vec3d forward_; // of the camera
     AovSet asked_;
     Image<Sums> sums_;

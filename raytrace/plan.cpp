@@ -38,7 +38,9 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     : prepared(prepared_), scene(prepared_.scene), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 0) {
     const Skips& skips = settings.skips;
-    lens = CameraModel(view).has_lens() || !skips.lens;
+    const CameraModel camera(view);
+    lens = camera.has_lens() || !skips.lens;
+    if (scene.needs.footprints) pixel.emplace(camera.through(), settings.samples_per_pixel);
     motion = scene.needs.motion || !skips.motion;
     bsdfs = skips.textures ? &prepared.bsdfs : &none_;
     if (!skips.textures) none_.resize(prepared.bsdfs.size());
@@ -66,6 +68,9 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
         skip("textures", "no material has one: each BSDF is made once, not at each hit");
     else if (constant > 0)
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
+    if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
+    if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
+    if (!plan.pixel) skip("texture footprints", "no material has a picture that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");
     if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");

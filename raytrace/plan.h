@@ -1,6 +1,7 @@
 // What a render decides once, before its loop: which parts of path tracing this scene, view and settings need.
 #pragma once
 
+#include "common/camera/pixel_footprint.h"
 #include "common/film/rendering.h"
 #include "raytrace/prepare.h"
 #include "raytrace/render.h"
@@ -23,6 +24,7 @@ struct RenderPlan {
     bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
     int max_depth = 0;
     bool russian_roulette = false;
+    std::optional<PixelFootprint> pixel; ///< of a camera ray; empty where no texture is filtered
     bool lens = false;   ///< rays start all over the lens
     bool motion = false; ///< rays have times of their own
 

@@ -8,7 +8,11 @@ namespace duet::raytrace {
 
 namespace {
 
-bool textured(const Material& material) { return texture_slot(material).texture >= 0; }
+bool textured(const Material& material) {
+    bool found = false;
+    for_each_texture(material, [&](std::int32_t texture) { found = found || texture >= 0; });
+    return found;
+}
 
 bool emits(const Material& material) { return emitter(material) != nullptr; }
 
@@ -34,7 +38,9 @@ PreparedData::PreparedData(const Scene& scene_, int threads, BvhQuality quality)
         bsdfs.push_back(textured(material) ? std::nullopt
                                            : std::optional(bsdf_at(material, scene.textures, SurfacePoint{})));
     scatters_diffusely = any_used_material(scene, [&](const Material& material) {
-        return !is_specular(bsdf_at(material, scene.textures, SurfacePoint{}));
+        const auto* metal = std::get_if<Metal>(&material);
+        return (metal != nullptr && !metal->roughness.constant()) ||
+               !is_specular(bsdf_at(material, scene.textures, SurfacePoint{}));
     });
 }
 

@@ -35,7 +35,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     Stopwatch watch;
     const RenderPlan plan(prepared.data(), view, settings);
     Film film(view.width, view.height);
-    AovBuffers aovs(plan.scene, view, settings.aovs);
+    AovBuffers aovs(plan, view, settings.aovs);
     RayCounts rays;
     const PassTarget target{plan, view, settings, control, film, aovs, rays};
 

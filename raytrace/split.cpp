@@ -21,6 +21,7 @@ CameraSample SplitTracer::sample(int x, int y, std::uint32_t index) const {
     if (result.hit.valid()) {
         const Vertex vertex = make_vertex(plan_, result.ray, result.hit);
         result.surface = FirstSurface{vertex.point, vertex.bsdf};
+        if (plan_.pixel) result.footprint = plan_.pixel->at(result.ray, result.hit.t);
     }
     RayCounts counts;
     result.light = path_parts(plan_, result.ray, result.hit, sampler, counts);

@@ -18,7 +18,8 @@ struct FirstSurface {
 struct CameraSample {
     Ray ray;
     Hit hit;
-    std::optional<FirstSurface> surface; ///< empty where nothing is hit
+    std::optional<FirstSurface> surface;   ///< empty where nothing is hit
+    std::optional<RayFootprint> footprint; ///< of the ray there; empty where no texture is filtered, too
     LightParts light;
 };
 

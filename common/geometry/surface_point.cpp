@@ -17,6 +17,7 @@ struct LocalPoint {
     Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
     Vec3d ng;        // any length
     Vec3d ns;        // any length, or (0, 0, 0): ng
+    Vec3d lift;      // to the smooth surface, on the side that is seen
     Vec2 uv;
     Vec3d dpdu, dpdv;
 };
@@ -49,7 +50,26 @@ LocalPoint on_quad(const Quad& quad, double u, double v) {
     return local;
 }
 
-LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v) {
+// From a point of a triangle to the surface that its vertex normals mean, on the side that `direction` comes from: the
+// mean of its projections onto the vertices' tangent planes (Hanika 2021; Boubekeur and Alexa 2008, «Phong
+// Tessellation»). Zero unless it lies below all of them, but for a tenth of the farthest: where the surface is flat,
+// hollow, a saddle, or its normals merely lean.
+Vec3d lift_to_smooth(Vec3d p, const std::array<Vec3d, 3>& vertices, const std::array<Vec3d, 3>& normals,
+                     const std::array<double, 3>& weights, Vec3d ng, Vec3d direction) {
+    const double side = dot(ng, direction) > 0 ? -1 : 1;
+    Vec3d lift;
+    double farthest = 0, least = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d n = normals[i] * (dot(normals[i], ng) < 0 ? -side : side);
+        const double below = dot(vertices[i] - p, n);
+        farthest = max(farthest, below);
+        least = min(least, below);
+        if (below > 0) lift += n * (below * weights[i]);
+    }
+    return least < -0.1 * farthest ? Vec3d() : lift;
+}
+
+LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v, Vec3d direction) {
     const auto& index = mesh.triangles[primitive];
     const double w = 1 - u - v;
     const Vec3d a(mesh.positions[index[0]]), b(mesh.positions[index[1]]), c(mesh.positions[index[2]]);
@@ -58,9 +78,11 @@ LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, doub
     local.p = a + ab * u + ac * v;
     local.magnitude = abs(local.p);
     local.ng = local.ns = cross(ab, ac);
-    if (!mesh.normals.empty())
-        local.ns =
-            Vec3d(mesh.normals[index[0]]) * w + Vec3d(mesh.normals[index[1]]) * u + Vec3d(mesh.normals[index[2]]) * v;
+    if (!mesh.normals.empty()) {
+        const Vec3d na(mesh.normals[index[0]]), nb(mesh.normals[index[1]]), nc(mesh.normals[index[2]]);
+        local.ns = na * w + nb * u + nc * v;
+        local.lift = lift_to_smooth(local.p, {a, b, c}, {na, nb, nc}, {w, u, v}, local.ng, direction);
+    }
     if (mesh.uvs.empty()) {
         local.uv = {static_cast<float>(u), static_cast<float>(v)};
         local.dpdu = ab;
@@ -94,9 +116,17 @@ Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
 Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
     if (sabotaged(Guard::kOffsetOrigin)) return point.p;
     const float distance = dot(abs(point.ng), point.p_error);
-    Vec3 offset = point.ng * distance;
-    if (dot(w, point.ng) < 0) offset = -offset;
-    Vec3 origin = point.p + offset;
+    Vec3 offset = point.ng * distance, start = point.p;
+    bool below = dot(w, point.ng) < 0;
+    if (point.lift != Vec3()) {
+        const float seen = dot(point.lift, point.ng);
+        if (dot(w, point.horizon) * seen > 0) {
+            start += point.lift;
+            below = seen < 0;
+        }
+    }
+    if (below) offset = -offset;
+    Vec3 origin = start + offset;
     for (std::size_t axis = 0; axis < 3; ++axis) { // the sum's own rounding, away from the surface
         if (offset[axis] > 0)
             origin[axis] = next_up(origin[axis]);
@@ -111,7 +141,10 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
     LocalPoint local;
     if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-        local = on_triangle(*mesh, hit.primitive, u, v);
+        const Vec3d direction(ray.direction);
+        local = on_triangle(*mesh, hit.primitive, u, v,
+                            identity || mesh->normals.empty() ? direction
+                                                              : transform_vector(Mat4d(to_object), direction));
     } else if (const auto* list = std::get_if<QuadList>(&shape)) {
         local = on_quad(list->quads[hit.primitive], u, v);
     } else {
@@ -136,6 +169,7 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         point.ns = unit(local.ns);
         point.dpdu = Vec3(local.dpdu);
         point.dpdv = Vec3(local.dpdv);
+        point.lift = Vec3(local.lift);
     } else {
         const Mat4d m(to_world), inverse(to_object);
         const Vec3d p = transform_point(m, local.p);
@@ -152,9 +186,18 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         point.ns = unit(transform_normal(inverse, local.ns));
         point.dpdu = Vec3(transform_vector(m, local.dpdu));
         point.dpdv = Vec3(transform_vector(m, local.dpdv));
+        point.lift = Vec3(transform_vector(m, local.lift));
     }
     if (!is_finite(point.ns)) point.ns = point.ng;
     if (dot(point.ns, point.ng) < 0) point.ns = -point.ns;
+    point.horizon = point.ng;
+    if (point.lift != Vec3()) { // no farther than the facets' own error, the smooth surface is the flat one
+        const bool bulges = abs(dot(point.lift, point.ng)) > dot(abs(point.ng), point.p_error);
+        if (bulges)
+            point.horizon = point.ns;
+        else
+            point.lift = Vec3();
+    }
     return point;
 }
 

@@ -15,9 +15,9 @@ bool is_specular(const Bsdf& bsdf) {
     return std::holds_alternative<DielectricBsdf>(bsdf);
 }
 
-Rgb emitted(const Material& material, const SurfacePoint& point, Vec3 w) {
+Rgb emitted(const Material& material, const TextureSet& textures, const SurfacePoint& point, Vec3 w) {
     const auto* emissive = std::get_if<Emissive>(&material);
-    return emissive != nullptr ? emissive->emitted(point.ng, w) : Rgb();
+    return emissive != nullptr ? emissive->emitted(textures, point, w) : Rgb();
 }
 
 const Emissive* emitter(const Material& material) {

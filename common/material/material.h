@@ -6,6 +6,8 @@
 #include "common/material/emissive.h"
 #include "common/material/metal.h"
 
+#include <concepts>
+#include <type_traits>
 #include <variant>
 
 namespace duet {
@@ -28,12 +30,20 @@ inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = Transp
 /// Whether the Bsdf has only delta lobes, which light sampling cannot find.
 bool is_specular(const Bsdf& bsdf);
 /// Radiance that the material emits at a point towards w; black but for Emissive.
-Rgb emitted(const Material& material, const SurfacePoint& point, Vec3 w);
+Rgb emitted(const Material& material, const TextureSet& textures, const SurfacePoint& point, Vec3 w);
 /// The material as an emitter: null where it emits nothing, black emission included.
 const Emissive* emitter(const Material& material);
-/// The one slot of a material that can have a texture.
+/// The slot of a material's colour.
 const RgbSlot& texture_slot(const Material& material);
 RgbSlot& texture_slot(Material& material);
+/// Calls visit(texture) for each of the material's references to a texture: an index, or −1.
+template <typename AnyMaterial, typename Visit>
+    requires std::same_as<std::remove_const_t<AnyMaterial>, Material>
+void for_each_texture(AnyMaterial& material, const Visit& visit) {
+    visit(texture_slot(material).texture);
+    if (auto* metal = std::get_if<Metal>(&material)) visit(metal->roughness.texture);
+    if (auto* emissive = std::get_if<Emissive>(&material)) visit(emissive->radiance_texture);
+}
 /// The colour one would paint it with: albedo, reflectance or tint at the point. For the albedo AOV.
 Rgb base_color(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 

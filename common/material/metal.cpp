@@ -57,7 +57,8 @@ float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
 }
 
 MetalBsdf Metal::at(const TextureSet& textures, const SurfacePoint& point) const {
-    return {evaluate_reflectance(textures, reflectance, point), roughness * roughness};
+    return {evaluate_reflectance(textures, reflectance, point),
+            sqr(clamp(evaluate(textures, roughness, point), 0.0f, 1.0f))};
 }
 
 } // namespace duet

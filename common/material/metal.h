@@ -23,7 +23,7 @@ struct MetalBsdf {
 
 struct Metal {
     RgbSlot reflectance{Rgb(0.9f)}; ///< at normal incidence, each channel in [0, 1]
-    float roughness = 0;            ///< perceptual, in [0, 1]; GGX alpha = roughness²
+    ScalarSlot roughness{0};        ///< perceptual, in [0, 1]; GGX alpha = roughness²
 
     MetalBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
 };

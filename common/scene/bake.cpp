@@ -34,13 +34,16 @@ struct TextureUse {
 
 TextureUse texture_use(const Scene& scene, const Object& object) {
     TextureUse use;
-    for (const std::uint32_t index : object.materials) {
-        const std::int32_t texture = texture_slot(scene.materials[index]).texture;
-        if (texture < 0) continue;
+    const auto note = [&](std::int32_t texture) {
+        if (texture < 0) return;
         use.any = true;
         const Texture& t = scene.textures.textures[static_cast<std::size_t>(texture)];
         const auto* checker = std::get_if<CheckerTexture>(&t);
         use.solid = use.solid || std::holds_alternative<NoiseTexture>(t) || (checker != nullptr && checker->solid);
+    };
+    for (const std::uint32_t index : object.materials) {
+        for_each_texture(scene.materials[index], note);
+        if (index < scene.maps.size()) for_each_texture(scene.maps[index], note);
     }
     return use;
 }

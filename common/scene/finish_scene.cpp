@@ -1,5 +1,6 @@
 // What follows from a scene's description, worked out once for both pipelines.
 #include "common/scene/bake.h"
+#include "common/scene/lamp_texture.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -95,7 +96,7 @@ void add_surface_lights(Scene& scene) {
             std::optional<SurfaceLight> light = surface_light(shape, object.to_world, p);
             if (!light) continue;
             light->two_sided = lamp->two_sided;
-            light->radiance = lamp->radiance;
+            light->radiance = mean_radiance(scene, o, p, *lamp);
             light->object = o;
             light->primitive = p;
             scene.lights.push_back(*light);
@@ -111,18 +112,31 @@ void check_power(const Scene& scene) {
                                               "irradiance times the scene's cross-section");
 }
 
+void note_texture(const Scene& scene, std::int32_t index, SceneNeeds& needs) {
+    if (index < 0) return;
+    needs.textures = true;
+    const auto* image = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(index)]);
+    if (image == nullptr) return;
+    needs.image_textures = true;
+    needs.footprints = needs.footprints || uses_footprint(image->filter);
+}
+
 void note_material(const Scene& scene, const Material& material, SceneNeeds& needs) {
     if (const auto* metal = std::get_if<Metal>(&material)) {
-        const bool smooth = sqr(metal->roughness) < MetalBsdf::kSmoothAlpha;
-        needs.specular = needs.specular || smooth;
+        const bool smooth = sqr(metal->roughness.value) < MetalBsdf::kSmoothAlpha, varies = !metal->roughness.constant();
+        needs.specular = needs.specular || smooth || varies;
         needs.glossy = needs.glossy || !smooth;
     }
+    if (const Emissive* lamp = emitter(material); lamp != nullptr && lamp->radiance_texture >= 0)
+        needs.lamp_textures = true;
     if (std::holds_alternative<Dielectric>(material)) needs.specular = needs.transmission = true;
-    const std::int32_t texture = texture_slot(material).texture;
-    if (texture < 0) return;
-    needs.textures = true;
-    if (std::holds_alternative<ImageTexture>(scene.textures.textures[static_cast<std::size_t>(texture)]))
-        needs.image_textures = true;
+    for_each_texture(material, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
+}
+
+void note_maps(const Scene& scene, const SurfaceMaps& maps, SceneNeeds& needs) {
+    needs.normal_maps = needs.normal_maps || maps.bends_normals();
+    needs.alpha = needs.alpha || maps.cuts_out();
+    for_each_texture(maps, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
 }
 
 SceneNeeds find_needs(const Scene& scene) {
@@ -140,7 +154,10 @@ SceneNeeds find_needs(const Scene& scene) {
         needs.motion = needs.motion || object.moving;
     }
     for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i]) note_material(scene, scene.materials[i], needs);
+        if (used[i]) {
+            note_material(scene, scene.materials[i], needs);
+            note_maps(scene, scene.maps[i], needs);
+        }
     needs.lens = scene.camera.aperture_radius > 0;
     needs.environment = !is_black(scene.environment);
     needs.delta_lights = scene.first_surface_light > 0;
@@ -151,7 +168,9 @@ SceneNeeds find_needs(const Scene& scene) {
 } // namespace
 
 void finish_scene(Scene& scene) {
+    scene.maps.resize(scene.materials.size());
     check_references(scene);
+    build_pyramids(scene.textures);
     bake_single_objects(scene);
     find_bounds(scene);
     for (Shape& shape : scene.shapes)

@@ -12,7 +12,9 @@ ObjectTransform object_transform(const Object& object, float time) {
     return {to_world, Mat4(inverse_affine(Mat4d(to_world)))};
 }
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+namespace {
+
+SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
     SurfacePoint point;
@@ -25,6 +27,22 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     point.object = hit.object;
     point.material = material_index(scene, hit.object, hit.primitive);
     return point;
+}
+
+} // namespace
+
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const RayFootprint* footprint) {
+    SurfacePoint point = plain_surface_point(scene, ray, hit);
+    if (scene.needs.footprints && footprint != nullptr) set_footprint(*footprint, ray.direction, point);
+    if (scene.needs.normal_maps) bend_normal(scene.textures, scene.maps[point.material], ray.direction, point);
+    return point;
+}
+
+float opacity(const Scene& scene, const Ray& ray, const Hit& hit) {
+    const SurfaceMaps& maps = scene.maps[material_index(scene, hit.object, hit.primitive)];
+    if (!maps.cuts_out()) return 1;
+    if (maps.opacity.constant()) return opacity(scene.textures, maps, SurfacePoint{});
+    return opacity(scene.textures, maps, plain_surface_point(scene, ray, hit));
 }
 
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive) {

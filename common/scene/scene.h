@@ -2,11 +2,13 @@
 #pragma once
 
 #include "common/camera/camera.h"
+#include "common/geometry/footprint.h"
 #include "common/geometry/shape.h"
 #include "common/geometry/surface_point.h"
 #include "common/light/environment.h"
 #include "common/light/light.h"
 #include "common/material/material.h"
+#include "common/material/surface_maps.h"
 #include "common/system/sabotage.h"
 
 #include <cstdint>
@@ -32,6 +34,10 @@ struct Object {
 /// What the scene asks for: pipelines decide once, from this, what to leave out.
 struct SceneNeeds {
     bool textures = false, image_textures = false;
+    bool footprints = false;   ///< an image texture is filtered over what a sample stands for
+    bool normal_maps = false;  ///< normal or bump maps
+    bool lamp_textures = false; ///< an emissive surface emits a picture
+    bool alpha = false;        ///< cut-outs, or surfaces that stop a part of the light only
     bool motion = false, lens = false;
     bool environment = false; ///< it is not black
     bool delta_lights = false, surface_lights = false;
@@ -53,6 +59,7 @@ struct Scene {
     TextureSet textures;
     std::vector<Material> materials;
     std::vector<std::string> material_names; ///< parallel to materials
+    std::vector<SurfaceMaps> maps;           ///< parallel to materials, or shorter: what is left has none
     std::vector<Shape> shapes;
     std::vector<Object> objects;
     std::vector<Light> lights; ///< as described, then one SurfaceLight for each emissive primitive that stands still
@@ -82,8 +89,12 @@ inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_
     return local;
 }
 
-/// The surface point of a hit, with material, by the one way that both pipelines share.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+/// The surface point of a hit, with material, by the one way that both pipelines share: its normal as the material's
+/// maps have it; with the footprint of its ray at the hit, where one is given and some texture is filtered.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const RayFootprint* footprint = nullptr);
+/// The part of the light that the surface stops at a hit, in [0, 1]; 0 in a hole. 1 without a look at the hit where its
+/// material is whole.
+float opacity(const Scene& scene, const Ray& ray, const Hit& hit);
 /// The material of a primitive.
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
 /// The index in Scene::lights of the SurfaceLight of a primitive, or −1 where it emits nothing or moves.

@@ -5,7 +5,9 @@
 
 namespace duet {
 
-Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, Vec2 uv);
+/// `smaller`: of the image, or empty: then it is not filtered.
+Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& smaller,
+             const SurfacePoint& point);
 Rgb evaluate(const CheckerTexture& texture, const SurfacePoint& point);
 Rgb evaluate(const NoiseTexture& texture, const SurfacePoint& point);
 

@@ -1,5 +1,7 @@
 #include "compare/hits/exact_trace.h"
 
+#include "common/scene/holes.h"
+
 #include <cmath>
 #include <optional>
 
@@ -122,7 +124,7 @@ bool before(const ExactHit& a, const ExactHit& b) {
 
 } // namespace
 
-ExactTracer::ExactTracer(const Scene& scene, double time) : object_tree_({}) {
+ExactTracer::ExactTracer(const Scene& scene, double time) : scene_(scene), time_(static_cast<float>(time)), object_tree_({}) {
     std::vector<Box3d> shape_boxes, object_boxes;
     shape_trees_ = build_trees(scene, shape_boxes);
     for (const Object& object : scene.objects) {
@@ -142,6 +144,22 @@ Rayd ExactTracer::to_object_space(const Rayd& ray, const Placed& placed) const {
     return local;
 }
 
+// `local`: the ray in the object's space.
+bool ExactTracer::goes_through(const Rayd& ray, const Rayd& local, const ExactHit& hit) const {
+    Hit rounded{hit.object, hit.primitive, 0, 0, static_cast<float>(hit.t)};
+    const Shape& shape = *objects_[hit.object].shape;
+    if (!std::holds_alternative<Sphere>(shape)) {
+        const Corners c = primitive_corners(shape, hit.primitive);
+        const Vec3d a(c.p[0]), u = Vec3d(c.p[1]) - a, v = Vec3d(c.p[c.count == 4 ? 3 : 2]) - a, n = cross(u, v);
+        const Vec3d p = local.at(hit.t) - a;
+        rounded.u = static_cast<float>(dot(cross(p, v), n) / dot(n, n));
+        rounded.v = static_cast<float>(dot(cross(u, p), n) / dot(n, n));
+    }
+    Ray as_traced{Vec3(ray.origin), Vec3(ray.direction)};
+    as_traced.time = time_;
+    return passes_through(scene_, as_traced, rounded);
+}
+
 ExactHit ExactTracer::nearest(const Rayd& ray) const {
     ExactHit best;
     object_tree_.visit(ray, [&](std::uint32_t object, double t_max) {
@@ -150,7 +168,13 @@ ExactHit ExactTracer::nearest(const Rayd& ray) const {
         local.t_max = t_max;
         trees_[object]->visit(local, [&](std::uint32_t primitive, double local_t_max) {
             local.t_max = local_t_max;
-            const std::optional<double> t = compare::intersect(local, *placed.shape, primitive);
+            std::optional<double> t = compare::intersect(local, *placed.shape, primitive);
+            if (scene_.needs.alpha && t && goes_through(ray, local, {object, primitive, *t})) {
+                Rayd beyond = local; // a sphere has another side
+                beyond.t_min = *t * (1 + 1e-12);
+                t = compare::intersect(beyond, *placed.shape, primitive);
+                if (t && goes_through(ray, local, {object, primitive, *t})) t.reset();
+            }
             if (!t) return local_t_max;
             const ExactHit hit{object, primitive, *t};
             if (before(hit, best)) best = hit;

@@ -29,7 +29,8 @@ public:
     /// `time` in [0, 1] of the objects' motion.
     ExactTracer(const Scene& scene, double time);
 
-    /// The nearest hit with t in (ray.t_min, ray.t_max]; at equal t the lower (object, primitive).
+    /// The nearest hit with t in (ray.t_min, ray.t_max]; at equal t the lower (object, primitive). What the ray goes
+    /// through by its opacity (common/scene/holes.h) is none.
     ExactHit nearest(const Rayd& ray) const;
     /// The nearest hit of the ray with one primitive, whatever stands before it.
     ExactHit intersect(const Rayd& ray, std::uint32_t object, std::uint32_t primitive) const;
@@ -45,7 +46,10 @@ private:
         Mat4d to_world, to_object;
     };
     Rayd to_object_space(const Rayd& ray, const Placed& placed) const;
+    bool goes_through(const Rayd& ray, const Rayd& local, const ExactHit& hit) const;
 
+    const Scene& scene_;
+    float time_;
     std::vector<Placed> objects_;
     std::vector<BoxTree> shape_trees_;  ///< one a shape of the scene, in the shape's own space
     std::vector<const BoxTree*> trees_; ///< one an object

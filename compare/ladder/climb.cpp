@@ -15,7 +15,8 @@ namespace {
 using Steps = std::array<Rgbd, kRungCount>;
 
 Steps steps(const PreparedPair& pair, const raytrace::CameraSample& sample) {
-    const raster::LightParts hit = raster::shade_hit(pair.raster, pair.raster_settings, sample.ray, sample.hit);
+    const raster::LightParts hit = raster::shade_hit(pair.raster, pair.raster_settings, sample.ray, sample.hit,
+                                                     sample.footprint ? &*sample.footprint : nullptr);
     const raster::LightParts surface =
         sample.surface ? raster::shade_surface(pair.raster, pair.raster_settings, sample.surface->point,
                                                sample.surface->bsdf, -sample.ray.direction)

@@ -71,7 +71,7 @@ private:
         const std::string name = message("texture-", image.image, ".exr");
         write_image(folder_ / name, scene_.textures.images[image.image]);
         return {
-            {"type", "image"}, {"file", name}, {"scale", {image.scale.x, image.scale.y}}, {"bilinear", image.bilinear}};
+            {"type", "image"}, {"file", name}, {"scale", {image.scale.x, image.scale.y}}, {"bilinear", image.filter != TextureFilter::kNearest}};
     }
 
     json material(const Material& m) {
@@ -81,7 +81,8 @@ private:
              {{"value", rgb_json(slot.value)}, {"texture", slot.texture < 0 ? json(nullptr) : texture(slot.texture)}}}};
         if (const auto* metal = std::get_if<Metal>(&m)) {
             result["type"] = "metal";
-            result["roughness"] = metal->roughness;
+            if (!metal->roughness.constant()) refuse("textures of roughness are not exported");
+            result["roughness"] = metal->roughness.value;
             if (!metal->at(scene_.textures, SurfacePoint{}).smooth())
                 notes_.insert("rough metal's Fresnel term is taken at the shading normal, not at the microfacet's");
         } else if (const auto* glass = std::get_if<Dielectric>(&m)) {
@@ -89,6 +90,7 @@ private:
             result["ior"] = glass->ior;
         } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
             result["type"] = "emissive";
+            if (emissive->radiance_texture >= 0) refuse("textures of radiance are not exported");
             result["radiance"] = rgb_json(emissive->radiance);
             result["two_sided"] = emissive->two_sided;
         } else {
@@ -103,6 +105,8 @@ private:
         for (const Object& o : scene_.objects) used.insert(o.materials.begin(), o.materials.end());
         json list = json::array();
         for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
+            if (used.contains(i) && (scene_.maps[i].bends_normals() || scene_.maps[i].cuts_out()))
+                refuse("normal maps, bump maps and opacity are not exported");
             json m = used.contains(i) ? material(scene_.materials[i]) : material(Diffuse{});
             m["name"] = scene_.material_names[i];
             list.push_back(std::move(m));

@@ -1,6 +1,7 @@
 #include "raytrace/acceleration/accelerator.h"
 
 #include "common/sampling/hash.h"
+#include "common/scene/holes.h"
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
@@ -227,7 +228,7 @@ bool stands_in_world(const Object& object) { return object.identity && !object.m
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
-    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()) {
+    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()), holes_(scene.needs.alpha) {
     Gatherer world(quality, threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
@@ -267,11 +268,42 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
     };
 }
 
-Hit Accelerator::closest(const Ray& ray) const {
+// Whole surfaces and holes alike.
+Hit Accelerator::first(const Ray& ray) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
     if (!traceable(ray)) return {};
     return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
+}
+
+Hit Accelerator::closest(const Ray& ray) const {
+    const Hit hit = first(ray);
+    return holes_ ? beyond_holes(ray, hit) : hit;
+}
+
+// From a hit on to the first that the ray does not pass through. Every hit lies beyond the last, so there is an end.
+Hit Accelerator::beyond_holes(const Ray& ray, Hit hit) const {
+    Ray rest = ray;
+    while (hit.valid() && passes_through(scene_, ray, hit)) {
+        rest.t_min = hit.t;
+        hit = first(rest);
+    }
+    return hit;
+}
+
+// As find_any has it, but by way of the nearest hits.
+bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
+    ray.t_max = min(ray.t_max, end.t);
+    const auto before_end = [&](const Hit& hit) {
+        return hit.valid() &&
+               (hit.t < end.t || std::pair(hit.object, hit.primitive) < std::pair(end.object, end.primitive));
+    };
+    for (Hit hit = first(ray); before_end(hit); hit = first(ray)) {
+        const bool is_end = hit.object == end.object && hit.primitive == end.primitive;
+        if (!is_end && !passes_through(scene_, ray, hit)) return true;
+        ray.t_min = hit.t;
+    }
+    return false;
 }
 
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -283,17 +315,20 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
         const auto their_hits = hits.subspan(done).first<kSize>();
         const RayPacket packet(some, world_.bounds);
         if (!packet.coherent()) {
-            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest(some[i]);
+            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = first(some[i]);
             continue;
         }
         PacketTraversal(world_, packet, some, instance).run(their_hits);
     }
-    for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
+    for (; done < rays.size(); ++done) hits[done] = first(rays[done]);
+    if (holes_)
+        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = beyond_holes(rays[i], hits[i]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
     clamped.t = min(end.t, std::numeric_limits<float>::max()); // as above
+    if (holes_) return occluded_beyond_holes(ray, clamped);
     return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
 }
 

@@ -18,7 +18,8 @@ public:
     Accelerator(const Scene& scene, int threads, BvhQuality quality = BvhQuality::kDefault);
 
     /// The first hit with t in (t_min, t_max], t_min not negative; invalid where there is none, or where the ray's
-    /// numbers are out of range (`traceable`) or it has no direction. At equal t the lower (object, primitive).
+    /// numbers are out of range (`traceable`) or it has no direction. At equal t the lower (object, primitive). Holes of
+    /// the surfaces' opacity maps are no hits; what stops a part of the light is one for that part of all rays (holes.h).
     Hit closest(const Ray& ray) const;
     /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
     /// neighbouring pixels do. As many hits as rays.
@@ -33,6 +34,9 @@ public:
     const Bvh& world() const { return world_; }
 
 private:
+    Hit first(const Ray& ray) const;
+    Hit beyond_holes(const Ray& ray, Hit hit) const;
+    bool occluded_beyond_holes(Ray ray, const Hit& end) const;
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
@@ -40,6 +44,7 @@ private:
     Bvh world_;
     std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
     std::int64_t primitives_ = 0;
+    bool holes_; ///< some material has
 };
 
 } // namespace duet::raytrace

@@ -1,6 +1,7 @@
 #include "raytrace/integrator/light_sampling.h"
 
 #include "common/geometry/quad.h"
+#include "common/scene/lamp_texture.h"
 #include "common/vec/robust.h"
 
 namespace duet::raytrace {
@@ -15,7 +16,11 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
     }
     const std::optional<LightSample> s = sample_light(scene.lights[chosen->index], p, u);
     if (!s) return std::nullopt;
-    return Arrival{s->wi,    s->radiance, s->pdf * chosen->probability,
+    Rgb radiance = s->radiance;
+    if (scene.needs.lamp_textures)
+        if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen->index]))
+            radiance = radiance_towards(scene, *surface, p, s->wi, s->distance);
+    return Arrival{s->wi,    radiance,    s->pdf * chosen->probability,
                    s->delta, s->distance, static_cast<std::int64_t>(chosen->index)};
 }
 

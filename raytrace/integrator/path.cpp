@@ -3,6 +3,7 @@
 // it is the naive path tracer, in which only chance finds the lights.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path_footprint.h"
 
 #include <type_traits>
 
@@ -57,7 +58,7 @@ private:
 template <typename Sink> class Path {
 public:
     Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts)
-        : plan_(plan), sampler_(sampler), counts_(counts) {}
+        : plan_(plan), sampler_(sampler), counts_(counts), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Ray ray, Hit hit) {
@@ -66,7 +67,7 @@ public:
                 add_environment(normalize(ray.direction), depth);
                 break;
             }
-            const Vertex vertex = make_vertex(plan_, ray, hit);
+            const Vertex vertex = make_vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
             if (depth == plan_.max_depth) break;
@@ -94,7 +95,7 @@ private:
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
         if (!plan_.emission) return;
-        const Rgb emission = emitted(*vertex.material, vertex.point, -direction);
+        const Rgb emission = emitted(*vertex.material, plan_.scene.textures, vertex.point, -direction);
         if (is_black(emission)) return;
         float weight = 1;
         if (!departure_.certain)
@@ -140,6 +141,7 @@ private:
         throughput_ *= s->weight;
         if (s->transmitted) note_refraction(vertex);
         departure_ = {vertex.point.p, s->pdf, s->specular || plan_.lights == nullptr};
+        footprint_.scatter(s->pdf, s->specular);
         ray = spawn_ray(vertex, wi);
         return true;
     }
@@ -168,6 +170,7 @@ private:
     Rgb throughput_{1.0f};
     float refraction_ = 1; // what the path's refractions have scaled its throughput by
     Departure departure_;
+    PathFootprint footprint_;
 };
 
 } // namespace

@@ -1,18 +1,19 @@
 // Surfaces without light: their normals and their base colours.
 #include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/vertex.h"
 
 namespace duet::raytrace {
 
 Rgb normal_color(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler&, RayCounts&) {
     if (!hit.valid()) return Rgb();
-    const SurfacePoint point = surface_point(plan.scene, ray, hit);
+    const SurfacePoint point = camera_surface_point(plan, ray, hit);
     const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ns : point.ns; // facing the camera
     return direction_color(n);
 }
 
 Rgb albedo_color(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler&, RayCounts&) {
     if (!hit.valid()) return Rgb();
-    const SurfacePoint point = surface_point(plan.scene, ray, hit);
+    const SurfacePoint point = camera_surface_point(plan, ray, hit);
     return base_color(plan.scene.materials[point.material], plan.scene.textures, point);
 }
 

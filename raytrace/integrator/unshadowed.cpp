@@ -24,7 +24,7 @@ Rgb mirrored_environment(const RenderPlan& plan, const Vertex& vertex, VertexDim
 Rgb unshadowed_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts&) {
     if (!hit.valid()) return plan.environment ? radiance(*plan.environment, normalize(ray.direction)) : Rgb();
     const Vertex vertex = make_vertex(plan, ray, hit);
-    const Rgb emission = emitted(*vertex.material, vertex.point, -ray.direction);
+    const Rgb emission = emitted(*vertex.material, plan.scene.textures, vertex.point, -ray.direction);
     if (plan.max_depth == 0) return emission;
     const VertexDimensions dimensions(0);
     if (is_specular(vertex.bsdf)) return emission + mirrored_environment(plan, vertex, dimensions, sampler);

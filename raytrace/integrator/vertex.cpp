@@ -2,9 +2,21 @@
 
 namespace duet::raytrace {
 
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    if (!plan.pixel) return surface_point(plan.scene, ray, hit);
+    const RayFootprint footprint = plan.pixel->at(ray, hit.t);
+    return surface_point(plan.scene, ray, hit, &footprint);
+}
+
 Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    if (!plan.pixel) return make_vertex(plan, ray, hit, nullptr);
+    const RayFootprint footprint = plan.pixel->at(ray, hit.t);
+    return make_vertex(plan, ray, hit, &footprint);
+}
+
+Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint) {
     Vertex vertex;
-    vertex.point = surface_point(plan.scene, ray, hit);
+    vertex.point = surface_point(plan.scene, ray, hit, footprint);
     vertex.material = &plan.scene.materials[vertex.point.material];
     const std::optional<Bsdf>& constant = (*plan.bsdfs)[vertex.point.material];
     vertex.bsdf = constant ? *constant : bsdf_at(*vertex.material, plan.scene.textures, vertex.point);

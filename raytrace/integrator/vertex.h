@@ -20,12 +20,18 @@ struct Vertex {
         return consistent(wi, local) ? eval(bsdf, wo, local) * abs_cos_theta(local) : Rgb();
     }
     /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
-    /// frame.
-    bool consistent(Vec3 wi, Vec3 local) const { return dot(wi, point.ng) * local.z > 0; }
+    /// frame. On the viewer's side a surface that bulges has a horizon of its own.
+    bool consistent(Vec3 wi, Vec3 local) const {
+        return dot(wi, same_hemisphere(wo, local) ? point.horizon : point.ng) * local.z > 0;
+    }
 };
 
-/// The vertex at a valid hit of a ray.
+/// The vertex at a valid hit of a ray, with the ray's footprint there, or null where the plan needs none.
+Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint);
+/// Of a camera ray.
 Vertex make_vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+/// The surface point that a camera ray hits.
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit);
 
 /// A ray that leaves the vertex towards w (world, unit), starting off the surface.
 inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {

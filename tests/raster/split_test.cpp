@@ -96,7 +96,7 @@ TEST_SUITE("unit") {
         const raster::Prepared prepared = raster::prepare(scene, settings);
         SurfacePoint point;
         point.p = {0.3f, 0, 1};
-        point.ng = point.ns = {0, 1, 0};
+        point.ng = point.ns = point.horizon = {0, 1, 0};
         const Vec3 to_viewer = normalize(Vec3(0.2f, 1, 0.3f));
         const auto shade = [&](const Bsdf& bsdf) {
             return raster::shade_surface(prepared, settings, point, bsdf, to_viewer);

@@ -1,6 +1,5 @@
 #include "common/scene/json/read_materials.h"
 
-#include "common/image/image_file.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
@@ -20,18 +19,20 @@ std::string canonical_key(const fs::path& path) {
     return (error ? path : canonical).string();
 }
 
-std::uint32_t ImageCache::load(const fs::path& file) {
+std::uint32_t ImageCache::load(const fs::path& file, ImageContent content) {
     std::vector<ImageRgb>& images = scene_->textures.images;
-    const auto [entry, added] = index_.try_emplace(canonical_key(file), static_cast<std::uint32_t>(images.size()));
+    const std::string key = message(canonical_key(file), '\n', static_cast<int>(content.values), ' ',
+                                    static_cast<int>(content.channel));
+    const auto [entry, added] = index_.try_emplace(key, static_cast<std::uint32_t>(images.size()));
     if (!added) return entry->second;
-    ImageRgb image = read_image(file);
+    ImageRgb image = image_of(read_pixel_file(file), content);
     for (Rgb& pixel : image.pixels()) {
         if (!is_finite(pixel))
             throw Error(message(file.string(), ": holds a value that is not finite, which no texture may"));
         pixel = {clamp(pixel.r, 0.0f, 1.0f), clamp(pixel.g, 0.0f, 1.0f), clamp(pixel.b, 0.0f, 1.0f)};
     }
     images.push_back(std::move(image));
-    scene_->files.push_back(file);
+    if (std::find(scene_->files.begin(), scene_->files.end(), file) == scene_->files.end()) scene_->files.push_back(file);
     return entry->second;
 }
 
@@ -47,10 +48,18 @@ Texture read_image_texture(const JsonValue& value, ImageCache& images) {
             uniform ? Vec2d(scale.number(), scale.number()) : Vec2d(scale.numbers(2)[0], scale.numbers(2)[1]);
         texture.scale = Vec2(s);
     }
-    if (value.has("filter")) texture.bilinear = value.at("filter").one_of({"bilinear", "nearest"}) == 0;
+    if (value.has("filter"))
+        texture.filter = static_cast<TextureFilter>(
+            value.at("filter").one_of({"nearest", "bilinear", "trilinear", "anisotropic"}));
+    ImageContent content;
+    if (value.has("values"))
+        content.values = static_cast<ImageContent::Values>(value.at("values").one_of({"colors", "data"}));
+    if (value.has("channel"))
+        content.channel = static_cast<ImageContent::Channel>(
+            value.at("channel").one_of({"all", "red", "green", "blue", "alpha"}));
     const fs::path file = beside(value.file(), value.at("file").string());
     try {
-        texture.image = images.load(file);
+        texture.image = images.load(file, content);
     } catch (const Error& error) {
         value.at("file").fail(error.what());
     }
@@ -96,6 +105,39 @@ RgbSlot read_slot(const JsonValue& owner, std::string_view key, const RgbSlot& f
     return {value.rgb()};
 }
 
+std::int32_t read_texture_name(const JsonValue& name, const NameIndex& textures) {
+    return static_cast<std::int32_t>(look_up(name, textures, "texture"));
+}
+
+ScalarSlot read_scalar(const JsonValue& owner, std::string_view key, const ScalarSlot& fallback,
+                       const NameIndex& textures) {
+    if (!owner.has(key)) return fallback;
+    const JsonValue value = owner.at(key);
+    if (value.is(JsonNode::Kind::kNumber)) return static_cast<float>(value.number(kUnit));
+    if (!value.is(JsonNode::Kind::kObject)) value.expected("a number or {\"texture\": name}");
+    value.check_keys(scene_keys("scalar_slot"));
+    return {static_cast<float>(value.number_or("scale", 1, kUnit)), read_texture_name(value.at("texture"), textures)};
+}
+
+/// {"texture": name, "scale": number}.
+void read_map(const JsonValue& owner, std::string_view key, const NameIndex& textures, std::int32_t& texture,
+              float& scale) {
+    if (!owner.has(key)) return;
+    const JsonValue value = owner.at(key);
+    value.check_keys(scene_keys("map"));
+    texture = read_texture_name(value.at("texture"), textures);
+    scale = static_cast<float>(value.number_or("scale", scale));
+}
+
+SurfaceMaps read_maps(const JsonValue& value, const NameIndex& textures) {
+    SurfaceMaps maps;
+    read_map(value, "normal", textures, maps.normal, maps.normal_scale);
+    read_map(value, "bump", textures, maps.bump, maps.bump_scale);
+    maps.opacity = read_scalar(value, "opacity", maps.opacity, textures);
+    maps.cutoff = static_cast<float>(value.number_or("cutoff", maps.cutoff, kUnit));
+    return maps;
+}
+
 Material read_material(const JsonValue& value, const NameIndex& textures) {
     switch (value.at("type").one_of({"diffuse", "metal", "dielectric", "emissive"})) {
     case 0: {
@@ -108,7 +150,7 @@ Material read_material(const JsonValue& value, const NameIndex& textures) {
         value.check_keys(scene_keys("metal"));
         Metal material;
         material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
-        material.roughness = static_cast<float>(value.number_or("roughness", material.roughness, kUnit));
+        material.roughness = read_scalar(value, "roughness", material.roughness, textures);
         return material;
     }
     case 2: {
@@ -122,6 +164,8 @@ Material read_material(const JsonValue& value, const NameIndex& textures) {
         value.check_keys(scene_keys("emissive"));
         Emissive material;
         material.radiance = value.at("radiance").rgb(kLightRange);
+        if (value.has("radiance_texture"))
+            material.radiance_texture = read_texture_name(value.at("radiance_texture"), textures);
         material.two_sided = value.boolean_or("two_sided", material.two_sided);
         material.albedo = read_slot(value, "albedo", material.albedo, textures);
         return material;
@@ -153,6 +197,7 @@ NameIndex read_materials(const JsonValue& materials, const NameIndex& textures, 
     for (const auto& [name, value] : materials.members()) {
         index[name] = static_cast<std::uint32_t>(scene.materials.size());
         scene.materials.push_back(read_material(value, textures));
+        scene.maps.push_back(read_maps(value, textures));
         scene.material_names.push_back(name);
     }
     return index;

@@ -1,7 +1,7 @@
 // Textures and materials of scene files.
 #pragma once
 
-#include "common/image/image.h"
+#include "common/image/image_content.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 
@@ -11,17 +11,17 @@
 
 namespace duet {
 
-/// The images of a scene, each file read once however often it is used.
+/// The images of a scene, each stored once however often it is used.
 class ImageCache {
 public:
     explicit ImageCache(Scene& scene) : scene_(&scene) {}
     /// The index in TextureSet::images of the file's picture, its values limited to [0, 1] (it is a reflectance).
     /// Throws Error for a file that read_image refuses or that holds NaN.
-    std::uint32_t load(const std::filesystem::path& file);
+    std::uint32_t load(const std::filesystem::path& file, ImageContent content = {});
 
 private:
     Scene* scene_;
-    std::map<std::string, std::uint32_t> index_; ///< by canonical path
+    std::map<std::string, std::uint32_t> index_; ///< by canonical path and content
 };
 
 /// The path a name in `owner` stands for: relative names are relative to the owner's folder.

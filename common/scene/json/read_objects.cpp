@@ -152,18 +152,24 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
     for (const ObjTexture& texture : obj.textures) {
         textures.push_back(static_cast<std::int32_t>(scene.textures.textures.size()));
         try {
-            scene.textures.textures.push_back(ImageTexture{images.load(texture.file), texture.scale, true});
+            scene.textures.textures.push_back(ImageTexture{images.load(texture.file, texture.content), texture.scale});
         } catch (const Error& error) {
-            throw Error(message(file.string(), ": a map_Kd of its MTL file: ", error.what()));
+            throw Error(message(file.string(), ": a picture of its MTL file: ", error.what()));
         }
     }
     std::vector<std::uint32_t> indices;
     for (const ObjMaterial& entry : obj.materials) {
         Material material = entry.material;
-        RgbSlot& slot = texture_slot(material);
-        if (slot.texture >= 0) slot.texture = textures[static_cast<std::size_t>(slot.texture)];
+        SurfaceMaps maps = entry.maps;
+        const auto map = [&](std::int32_t& texture) {
+            if (texture >= 0) texture = textures[static_cast<std::size_t>(texture)];
+        };
+        for_each_texture(material, map);
+        for_each_texture(maps, map);
         indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
         scene.materials.push_back(material);
+        scene.maps.resize(scene.materials.size() - 1);
+        scene.maps.push_back(maps);
         scene.material_names.push_back(file.stem().string() + ":" + (entry.name.empty() ? "default" : entry.name));
     }
     return indices;

@@ -17,15 +17,17 @@ const std::vector<JsonKeys>& scene_keys() {
         {"orthographic", {"projection", "eye", "look_at"}, {"up", "height", "near", "shutter"}},
         {"image", {}, {"width", "height"}},
 
-        {"image_texture", {"type", "file"}, {"scale", "filter"}},
+        {"image_texture", {"type", "file"}, {"scale", "filter", "values", "channel"}},
         {"checker_texture", {"type"}, {"even", "odd", "scale", "solid"}},
         {"noise_texture", {"type"}, {"low", "high", "scale", "octaves", "marble"}},
         {"texture_slot", {"texture"}, {"tint"}},
+        {"scalar_slot", {"texture"}, {"scale"}},
+        {"map", {"texture"}, {"scale"}},
 
-        {"diffuse", {"type"}, {"albedo"}},
-        {"metal", {"type"}, {"reflectance", "roughness"}},
-        {"dielectric", {"type"}, {"ior", "tint"}},
-        {"emissive", {"type", "radiance"}, {"two_sided", "albedo"}},
+        {"diffuse", {"type"}, {"albedo", "normal", "bump", "opacity", "cutoff"}},
+        {"metal", {"type"}, {"reflectance", "roughness", "normal", "bump", "opacity", "cutoff"}},
+        {"dielectric", {"type"}, {"ior", "tint", "normal", "bump", "opacity", "cutoff"}},
+        {"emissive", {"type", "radiance"}, {"radiance_texture", "two_sided", "albedo", "normal", "bump"}},
 
         {"quad", {"type", "corner", "u", "v", "material"}, {"name", "transform", "transform_end"}},
         {"sphere", {"type", "center", "radius", "material"}, {"name", "transform", "transform_end"}},

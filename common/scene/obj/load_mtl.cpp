@@ -26,20 +26,70 @@ bool is_glass(const tinyobj::material_t& m) {
     return m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9 || (m.dissolve < 1 && m.ior > 1);
 }
 
-Material map_material(const tinyobj::material_t& m, std::int32_t texture) {
-    const Rgb kd = reflectance(m.diffuse), ks = reflectance(m.specular), tf = reflectance(m.transmittance);
-    const Rgb ke{m.emission[0], m.emission[1], m.emission[2]};
-    if (!is_black(ke)) return Emissive{ke, false, {kd, texture}};
-    if (is_glass(m)) return Dielectric{m.ior > 1 ? min(m.ior, 4.0f) : 1.5f, {is_black(tf) ? Rgb(1.0f) : tf}};
-    if (m.metallic >= 0.5f) return Metal{{kd, texture}, clamp(m.roughness, 0.0f, 1.0f)};
-    if ((m.illum == 3 || m.illum == 5) && !is_black(ks))
-        return Metal{{ks}, m.roughness > 0 ? min(m.roughness, 1.0f) : roughness_of_exponent(m.shininess)};
-    return Diffuse{{kd, texture}};
-}
-
 std::string trimmed(const std::string& text) {
     const std::size_t first = text.find_first_not_of(" \t\r");
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// The pictures that a material's lines name, in the order asked for.
+class Pictures {
+public:
+    explicit Pictures(const std::filesystem::path& mtl) : mtl_(&mtl) {}
+
+    /// The index of a picture, or −1 where none is named.
+    std::int32_t add(const std::string& name, const tinyobj::texture_option_t& options, ImageContent content = {}) {
+        std::string picture = trimmed(name);
+        if (picture.empty()) return -1;
+        std::replace(picture.begin(), picture.end(), '\\', '/');
+        list_.push_back({beside(*mtl_, picture), {options.scale[0], options.scale[1]}, content});
+        return static_cast<std::int32_t>(list_.size()) - 1;
+    }
+    std::vector<ObjTexture> list() && { return std::move(list_); }
+
+private:
+    const std::filesystem::path* mtl_;
+    std::vector<ObjTexture> list_;
+};
+
+constexpr ImageContent kGreyData{ImageContent::Values::kData, ImageContent::Channel::kRed};
+
+/// Pr, or map_Pr times it (times 1 where there is a map and no Pr).
+ScalarSlot roughness_of(const tinyobj::material_t& m, float without, Pictures& pictures) {
+    const std::int32_t map = pictures.add(m.roughness_texname, m.roughness_texopt, kGreyData);
+    const float given = clamp(m.roughness, 0.0f, 1.0f);
+    if (map >= 0) return {given > 0 ? given : 1.0f, map};
+    return given > 0 ? given : without;
+}
+
+Material map_material(const tinyobj::material_t& m, Pictures& pictures) {
+    const Rgb kd = reflectance(m.diffuse), ks = reflectance(m.specular), tf = reflectance(m.transmittance);
+    const Rgb ke{m.emission[0], m.emission[1], m.emission[2]};
+    const auto diffuse = [&]() -> RgbSlot { return {kd, pictures.add(m.diffuse_texname, m.diffuse_texopt)}; };
+    const std::int32_t map_ke = pictures.add(m.emissive_texname, m.emissive_texopt);
+    if (!is_black(ke) || map_ke >= 0) return Emissive{is_black(ke) ? Rgb(1.0f) : ke, false, diffuse(), map_ke};
+    if (is_glass(m)) return Dielectric{m.ior > 1 ? min(m.ior, 4.0f) : 1.5f, {is_black(tf) ? Rgb(1.0f) : tf}};
+    if (m.metallic >= 0.5f) return Metal{diffuse(), roughness_of(m, 0, pictures)};
+    if ((m.illum == 3 || m.illum == 5) && !is_black(ks)) {
+        const RgbSlot specular{ks, pictures.add(m.specular_texname, m.specular_texopt)};
+        return Metal{specular, roughness_of(m, roughness_of_exponent(m.shininess), pictures)};
+    }
+    return Diffuse{diffuse()};
+}
+
+/// MTL files say nothing of the unit of their heights.
+constexpr float kMetresABump = 0.01f;
+
+SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, Pictures& pictures) {
+    SurfaceMaps maps;
+    maps.normal = pictures.add(m.normal_texname, m.normal_texopt, {ImageContent::Values::kData});
+    maps.bump = pictures.add(m.bump_texname, m.bump_texopt, kGreyData);
+    maps.bump_scale = kMetresABump * m.bump_texopt.bump_multiplier;
+    if (std::holds_alternative<Emissive>(material)) return maps; // lamps are whole
+    const std::int32_t map_d = pictures.add(m.alpha_texname, m.alpha_texopt,
+                                            {ImageContent::Values::kData, ImageContent::Channel::kOpacity});
+    const float d = std::holds_alternative<Dielectric>(material) ? 1.0f : clamp(m.dissolve, 0.0f, 1.0f);
+    maps.opacity = {map_d >= 0 && d == 0 ? 1.0f : d, map_d};
+    return maps;
 }
 
 } // namespace
@@ -58,14 +108,11 @@ void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMateri
             if (!(e >= 0 && e <= kLightRange.high))
                 throw Error(message(path.string(), ": the material ", in_quotes(m.name), " has Ke ", e,
                                     ", expected at least 0 and at most 1e12"));
-        MtlMaterial entry;
-        std::string picture = trimmed(m.diffuse_texname);
-        if (!picture.empty()) {
-            std::replace(picture.begin(), picture.end(), '\\', '/');
-            const tinyobj::texture_option_t& options = m.diffuse_texopt;
-            entry.texture = {{beside(path, picture), {options.scale[0], options.scale[1]}}};
-        }
-        entry.material = map_material(m, picture.empty() ? -1 : 0);
+        MtlMaterial entry{};
+        Pictures pictures(path);
+        entry.material = map_material(m, pictures);
+        entry.maps = map_surface(m, entry.material, pictures);
+        entry.textures = std::move(pictures).list();
         materials.emplace(trimmed(m.name), std::move(entry));
     }
 }

@@ -9,10 +9,11 @@
 
 namespace duet {
 
-/// A material of an MTL file and the picture it asks for.
+/// A material of an MTL file and the pictures it asks for.
 struct MtlMaterial {
-    Material material;               ///< a slot with a texture has texture = 0, standing for `texture`
-    std::vector<ObjTexture> texture; ///< none or one
+    Material material; ///< its references to textures index `textures`
+    SurfaceMaps maps;  ///< likewise
+    std::vector<ObjTexture> textures;
 };
 
 /// Adds the materials of an MTL file by name; the first of a name stands. Throws Error with path and line for malformed

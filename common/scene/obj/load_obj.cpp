@@ -85,11 +85,10 @@ private:
         const auto [entry, added] = slots_.try_emplace(current_, static_cast<std::uint32_t>(slots_.size()));
         if (!added) return entry->second;
         if (slots_.size() > 65536) throw Error(path_->string() + ": more than 65536 materials are used");
-        ObjMaterial material{current_, default_obj_material()};
+        ObjMaterial material{current_, default_obj_material(), {}};
         const auto found = library_.find(current_);
         if (found != library_.end()) {
-            material.material = found->second.material;
-            add_texture(material.material, found->second.texture);
+            add_material(found->second, material);
         } else if (!current_.empty() && !missing_.empty()) {
             throw Error(message(path_->string(), ": the material ", in_quotes(current_), " is used, but its file ",
                                 missing_.front(), " is missing"));
@@ -107,11 +106,15 @@ private:
         return suggestion(current_, known);
     }
 
-    void add_texture(Material& material, const std::vector<ObjTexture>& texture) {
-        RgbSlot& slot = texture_slot(material);
-        if (slot.texture < 0) return;
-        slot.texture = static_cast<std::int32_t>(textures_.size());
-        textures_.push_back(texture.front());
+    void add_material(const MtlMaterial& from, ObjMaterial& to) {
+        to.material = from.material;
+        to.maps = from.maps;
+        const auto count_on = [this](std::int32_t& texture) {
+            if (texture >= 0) texture += static_cast<std::int32_t>(textures_.size());
+        };
+        for_each_texture(to.material, count_on);
+        for_each_texture(to.maps, count_on);
+        textures_.insert(textures_.end(), from.textures.begin(), from.textures.end());
     }
 
     const std::filesystem::path* path_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "common/geometry/shape.h"
+#include "common/image/image_content.h"
 #include "common/material/material.h"
+#include "common/material/surface_maps.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -23,15 +25,17 @@ struct ObjOptions {
     bool materials = true; ///< false: no MTL file is read, and the mesh has one material slot
 };
 
-/// A picture that a material's texture slot asks for.
+/// A picture that a material asks for.
 struct ObjTexture {
     std::filesystem::path file;
     Vec2 scale{1, 1};
+    ImageContent content{};
 };
 
 struct ObjMaterial {
     std::string name;
-    Material material; ///< its slots' `texture` indexes ObjFile::textures, to be mapped to the scene's
+    Material material; ///< its references to textures index ObjFile::textures, to be mapped to the scene's
+    SurfaceMaps maps{}; ///< likewise
 };
 
 struct ObjFile {

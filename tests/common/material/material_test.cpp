@@ -271,10 +271,10 @@ TEST_SUITE("unit") {
         CHECK(is_specular(bsdf_at(Dielectric{}, none, point)));
         CHECK_FALSE(is_specular(bsdf_at(Diffuse{}, none, point)));
         const Material lamp = Emissive{Rgb(3.0f), false, {Rgb(0.25f)}};
-        CHECK(emitted(lamp, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));
-        CHECK(is_black(emitted(lamp, point, {0, 0.6f, -0.8f})));
-        CHECK(emitted(Emissive{Rgb(3.0f), true, {}}, point, {0, 0.6f, -0.8f}) == Rgb(3.0f));
-        CHECK(is_black(emitted(Diffuse{}, point, {0, 0, 1})));
+        CHECK(emitted(lamp, none, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));
+        CHECK(is_black(emitted(lamp, none, point, {0, 0.6f, -0.8f})));
+        CHECK(emitted(Emissive{Rgb(3.0f), true, {}}, none, point, {0, 0.6f, -0.8f}) == Rgb(3.0f));
+        CHECK(is_black(emitted(Diffuse{}, none, point, {0, 0, 1})));
         CHECK(base_color(lamp, none, point) == Rgb(0.25f));
         CHECK(base_color(Dielectric{1.5f, {Rgb(0.5f)}}, none, point) == Rgb(0.5f));
     }

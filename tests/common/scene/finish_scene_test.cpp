@@ -225,7 +225,7 @@ TEST_SUITE("unit") {
                     for (const float side : {-1.0f, 1.0f}) {
                         const Ray ray{{x, 0.25f, side}, {0, 0, -side}};
                         const SurfacePoint point = surface_point(scene, ray, nearest(scene, ray));
-                        CHECK(is_black(emitted(scene.materials[0], point, -ray.direction)) == (side != front));
+                        CHECK(is_black(emitted(scene.materials[0], scene.textures, point, -ray.direction)) == (side != front));
                     }
                 }
             }

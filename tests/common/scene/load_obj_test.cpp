@@ -185,11 +185,43 @@ TEST_SUITE("unit") {
         CHECK(std::get<Dielectric>(material_of("illum 7\nNi 9\nTf 0.9 1 1\n")).tint.value == Rgb(0.9f, 1, 1));
         const auto metal = std::get<Metal>(material_of("Kd 1 0.8 0.3\nPm 1\nPr 0.25\n"));
         CHECK(metal.reflectance.value == Rgb(1, 0.8f, 0.3f));
-        CHECK(metal.roughness == 0.25f);
+        CHECK(metal.roughness.value == 0.25f);
         const auto mirror = std::get<Metal>(material_of("Kd 0 0 0\nKs 0.9 0.9 0.9\nillum 3\nNs 30\n"));
         CHECK(mirror.reflectance.value == Rgb(0.9f));
-        CHECK(mirror.roughness == doctest::Approx(0.5)); // (2 / 32)^¼
+        CHECK(mirror.roughness.value == doctest::Approx(0.5)); // (2 / 32)^¼
         CHECK(std::holds_alternative<Diffuse>(material_of("illum 3\nKs 0 0 0\n")));
+    }
+
+    TEST_CASE("MTL pictures of all kinds arrive, each with what is taken of it") {
+        const ScratchFolder folder;
+        folder.write("m.mtl", "newmtl a\nKd 1 1 1\nPm 1\nPr 0.5\nmap_Kd a.png\nmap_Pr b.png\nnorm c.png\nmap_Bump -bm 3 "
+                              "d.png\nmap_d e.png\nd 0.75\nNi 1\nnewmtl b\nKd 0 0 0\nmap_Ke f.png\nmap_d e.png\n");
+        const ObjFile file = load_obj(
+            folder.write("mesh.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"));
+        REQUIRE(file.materials.size() == 2);
+        const auto texture = [&](std::int32_t index) {
+            REQUIRE(index >= 0);
+            return file.textures.at(static_cast<std::size_t>(index));
+        };
+        using Values = ImageContent::Values;
+        const auto metal = std::get<Metal>(file.materials[0].material);
+        const SurfaceMaps& maps = file.materials[0].maps;
+        CHECK(texture(metal.reflectance.texture).file == folder / "a.png");
+        CHECK(texture(metal.reflectance.texture).content.values == Values::kColors);
+        CHECK(texture(metal.roughness.texture).file == folder / "b.png");
+        CHECK(texture(metal.roughness.texture).content.values == Values::kData);
+        CHECK(metal.roughness.value == 0.5f);
+        CHECK(texture(maps.normal).file == folder / "c.png");
+        CHECK(texture(maps.normal).content.values == Values::kData);
+        CHECK(texture(maps.bump).file == folder / "d.png");
+        CHECK(maps.bump_scale == doctest::Approx(0.03));
+        CHECK(texture(maps.opacity.texture).file == folder / "e.png");
+        CHECK(texture(maps.opacity.texture).content.channel == ImageContent::Channel::kOpacity);
+        CHECK(maps.opacity.value == 0.75f);
+        const auto lamp = std::get<Emissive>(file.materials[1].material);
+        CHECK(lamp.radiance == Rgb(1.0f));
+        CHECK(texture(lamp.radiance_texture).file == folder / "f.png");
+        CHECK(file.materials[1].maps.opacity.constant()); // lamps are whole
     }
 
     TEST_CASE("Material slots follow usemtl, in order of first use") {

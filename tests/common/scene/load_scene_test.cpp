@@ -91,7 +91,7 @@ TEST_SUITE("unit") {
         CHECK(scene.height == 200);
         REQUIRE(scene.materials.size() == 5);
         CHECK(scene.material_names[2] == "gold");
-        CHECK(std::get<Metal>(scene.materials[2]).roughness == 0.2f);
+        CHECK(std::get<Metal>(scene.materials[2]).roughness.value == 0.2f);
         CHECK(std::get<Dielectric>(scene.materials[3]).ior == 1.4f);
         const auto& tiled = std::get<Diffuse>(scene.materials[1]);
         CHECK(tiled.albedo.value == Rgb(0.5f));

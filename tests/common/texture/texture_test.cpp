@@ -19,7 +19,7 @@ ImageRgb numbered_image(int width, int height) {
 }
 
 Rgb look_up(const ImageRgb& image, bool bilinear, Vec2 uv, Vec2 scale = {1, 1}) {
-    const TextureSet set{{ImageTexture{0, scale, bilinear}}, {image}};
+    const TextureSet set{{ImageTexture{0, scale, bilinear ? TextureFilter::kBilinear : TextureFilter::kNearest}}, {image}};
     SurfacePoint point{};
     point.uv = uv;
     return evaluate_texture(set, set.textures[0], point);

@@ -1,0 +1,75 @@
+#include "common/scene/lamp_texture.h"
+
+#include "common/geometry/quad.h"
+#include "common/geometry/sphere.h"
+
+#include <cmath>
+
+namespace duet {
+
+namespace {
+
+constexpr int kGrid = 8; ///< points a side
+
+/// A point of a primitive by two numbers in [0, 1], areas in proportion; its footprint a cell of the grid.
+SurfacePoint point_of(const Shape& shape, std::uint32_t primitive, float a, float b) {
+    SurfacePoint point;
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        const float y = 1 - 2 * b, ring = std::sqrt(max(0.0f, 1 - y * y)), phi = 2 * kPi * a;
+        const Vec3 n{ring * std::sin(phi), y, -ring * std::cos(phi)};
+        point.uv = sphere_uv(n);
+        point.p_object = sphere->center + n * sphere->radius;
+        point.duv_dx = {1.0f / kGrid, 0};
+        point.duv_dy = {0, 1.0f / kGrid};
+        return point;
+    }
+    const bool quad = std::holds_alternative<QuadList>(shape);
+    if (!quad && a + b > 1) a = 1 - a, b = 1 - b;
+    const Hit hit{0, primitive, a, b, 1};
+    point = surface_point(shape, hit, Ray{}, Mat4(), Mat4(), true);
+    const auto cell = [&](float da, float db) {
+        const Hit beside{0, primitive, a + da / kGrid, b + db / kGrid, 1};
+        return surface_point(shape, beside, Ray{}, Mat4(), Mat4(), true).uv - point.uv;
+    };
+    const Vec2 da = cell(1, 0), db = cell(0, 1);
+    point.duv_dx = da;
+    point.duv_dy = db;
+    return point;
+}
+
+} // namespace
+
+Rgb mean_radiance(const Scene& scene, std::uint32_t object, std::uint32_t primitive, const Emissive& lamp) {
+    if (lamp.radiance_texture < 0) return lamp.radiance;
+    const Shape& shape = scene.shapes[scene.objects[object].shape];
+    const RgbSlot slot{lamp.radiance, lamp.radiance_texture};
+    Rgb sum;
+    for (int i = 0; i < kGrid; ++i)
+        for (int j = 0; j < kGrid; ++j)
+            sum += evaluate(scene.textures, slot,
+                            point_of(shape, primitive, (static_cast<float>(i) + 0.5f) / kGrid,
+                                     (static_cast<float>(j) + 0.5f) / kGrid));
+    return sum * (1.0f / (kGrid * kGrid));
+}
+
+Rgb radiance_towards(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3 w, float distance) {
+    const Material& material = scene.materials[material_index(scene, light.object, light.primitive)];
+    const Emissive* lamp = emitter(material);
+    if (lamp == nullptr || lamp->radiance_texture < 0) return light.radiance;
+    const Object& object = scene.objects[light.object]; // which stands still
+    const Shape& shape = scene.shapes[object.shape];
+    const Ray ray{p, w};
+    Hit hit{light.object, light.primitive, 0, 0, distance};
+    if (!std::holds_alternative<Sphere>(shape)) {
+        const Ray inside = object.identity ? ray : to_object_space(ray, object.to_world, object.to_object);
+        const Corners c = primitive_corners(shape, light.primitive);
+        const auto met = c.count == 4 ? intersect_quad(ShearedRay(inside), c.p)
+                                      : intersect_triangle(ShearedRay(inside), c.p[0], c.p[1], c.p[2]);
+        if (!met) return light.radiance;
+        hit.u = met->u;
+        hit.v = met->v;
+    }
+    return evaluate(scene.textures, RgbSlot{lamp->radiance, lamp->radiance_texture}, surface_point(scene, ray, hit));
+}
+
+} // namespace duet

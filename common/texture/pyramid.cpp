@@ -1,0 +1,51 @@
+#include "common/texture/pyramid.h"
+
+#include <algorithm>
+
+namespace duet {
+
+namespace {
+
+/// The pixels of a row of `from` pixels that the i-th of `to` covers, and by how much of each: 2 or 3, or 1.
+struct Cover {
+    int first = 0, count = 0;
+    float weight[3] = {};
+
+    Cover(int i, int from, int to) {
+        const double scale = static_cast<double>(from) / to;
+        const double low = i * scale, high = i + 1 == to ? from : (i + 1) * scale;
+        first = static_cast<int>(low);
+        for (int x = first; x < from && x < high && count < 3; ++x)
+            weight[count++] = static_cast<float>((std::min(x + 1.0, high) - std::max<double>(x, low)) / scale);
+    }
+};
+
+} // namespace
+
+ImageRgb halved(const ImageRgb& image) {
+    const int width = std::max(image.width() / 2, 1), height = std::max(image.height() / 2, 1);
+    ImageRgb rows(image.width(), height), result(width, height);
+    for (int y = 0; y < height; ++y) {
+        const Cover cover(y, image.height(), height);
+        for (int x = 0; x < image.width(); ++x)
+            for (int k = 0; k < cover.count; ++k) rows(x, y) += image(x, cover.first + k) * cover.weight[k];
+    }
+    for (int x = 0; x < width; ++x) {
+        const Cover cover(x, image.width(), width);
+        for (int y = 0; y < height; ++y)
+            for (int k = 0; k < cover.count; ++k) result(x, y) += rows(cover.first + k, y) * cover.weight[k];
+    }
+    return result;
+}
+
+std::vector<ImageRgb> smaller_versions(const ImageRgb& image) {
+    std::vector<ImageRgb> levels;
+    const ImageRgb* last = &image;
+    while (last->size() > 1) {
+        levels.push_back(halved(*last));
+        last = &levels.back();
+    }
+    return levels;
+}
+
+} // namespace duet
