@@ -1,7 +1,5 @@
 #include "raster/geometry.h"
 
-#include "raster/layers.h"
-
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
@@ -150,17 +148,7 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result) {
-    if (!data.has_layers() || blends_layers(settings)) {
-        process(data, data.polygonal, data.spheres, grid, view, settings, result);
-        return;
-    }
-    const auto both = [](std::vector<std::uint32_t> some, const std::vector<std::uint32_t>& others) {
-        some.insert(some.end(), others.begin(), others.end());
-        std::sort(some.begin(), some.end());
-        return some;
-    };
-    process(data, both(data.polygonal, data.open_polygonal), both(data.spheres, data.open_spheres), grid, view, settings,
-            result);
+    process(data, data.polygonal, data.spheres, grid, view, settings, result);
 }
 
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,

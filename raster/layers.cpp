@@ -1,5 +1,7 @@
 #include "raster/layers.h"
 
+#include "raster/strip_shader.h"
+
 #include "common/scene/holes.h"
 
 #include <algorithm>
@@ -26,9 +28,9 @@ void add_weighted(Shaded& sum, const Shaded& shaded, float weight) {
 
 } // namespace
 
-Layers::Layers(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
+Layers::Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry, const PassView& view,
                SampleOffset offset, std::size_t tile_index, HitTile& tile)
-    : data_(data), settings_(settings), geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index),
+    : data_(data), settings_(settings), program_(program), geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index),
       tile_(tile) {
     if (!touches(geometry, tile_index)) return;
     const PixelRect& r = tile.rect();
@@ -141,7 +143,9 @@ void Layers::resolve(int x, int y) {
             return;
         }
         if (!p.stopping.valid() && !passes_through(data_.scene, tile_.ray(x, y), hit)) p.stopping = hit;
-        add_weighted(p.front, shade(data_, settings_, tile_, x, y), p.through * stopped);
+        Shaded shaded = shade(data_, settings_, tile_, x, y);
+        if (program_ != nullptr) shaded.radiance = program_->shade_hit(data_, view_, hit, offset_.position(x, y));
+        add_weighted(p.front, shaded, p.through * stopped);
         p.through *= 1 - stopped;
         tile_.exchange(x, y, behind);
     }

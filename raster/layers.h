@@ -8,9 +8,6 @@
 
 namespace duet::raster {
 
-/// Whether a picture has layers at all: other shadings than Shading::kLit draw all surfaces whole.
-inline bool blends_layers(const Settings& settings) { return settings.shading == Shading::kLit; }
-
 /// The layers of a tile, one sample a pixel. Each pixel's list of Hits nearer than what it sees is sorted from the front
 /// (Carpenter 1984, «The A-buffer, an Antialiased Hidden Surface Method»); holes are left out, the first whole surface
 /// becomes what the sample sees, and what is partly there before it is blended: its opacity times its own light, the rest
@@ -19,7 +16,8 @@ inline bool blends_layers(const Settings& settings) { return settings.shading ==
 class Layers {
 public:
     /// Changes what the tile's samples see. `geometry`: of process_layers. `offset`: the tile's.
-    Layers(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
+    /// `program`: of the shading; null for Shading::kLit.
+    Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry, const PassView& view,
            SampleOffset offset, std::size_t tile_index, HitTile& tile);
 
     /// A pixel with its layers over what it sees. What it sees becomes, of the layers and that, what stops its ray
@@ -53,6 +51,7 @@ private:
 
     const PreparedData& data_;
     const Settings& settings_;
+    const Program* program_;
     const Geometry& geometry_;
     const PassView& view_;
     SampleOffset offset_;

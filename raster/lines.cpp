@@ -81,7 +81,9 @@ bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewp
 }
 
 void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads, Image<std::uint8_t>& marks) {
-    for (const std::uint32_t index : data.polygonal) {
+    std::vector<std::uint32_t> all = data.polygonal;
+    all.insert(all.end(), data.open_polygonal.begin(), data.open_polygonal.end());
+    for (const std::uint32_t index : all) {
         const Object& object = data.scene.objects[index];
         const Shape& shape = data.scene.shapes[object.shape];
         TransformedObject placed;

@@ -76,7 +76,7 @@ void LayeredTile::add(const DepthTile& tile) {
 void LayeredTile::strip(std::size_t i, int x, int y, Strip& strip) const {
     const Layer& layer = *layers_[i];
     const std::uint32_t first = place(x, y);
-    strip.place = {.x = x, .y = y, .ids = nullptr, .nearness = nullptr, .offset = {}, .offsets = nullptr};
+    strip.place = {.x = x, .y = y, .ids = nullptr, .nearness = nullptr, .offset = {}, .offsets = nullptr, .whole_pixels = true};
     if (!layer.used_[first / kStrip]) return;
     strip.place.ids = &layer.ids_[first];
     for (std::size_t k = 0; k < kStrip; ++k) {

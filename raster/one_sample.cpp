@@ -1,5 +1,7 @@
 #include "raster/one_sample.h"
 
+#include "common/camera/pixel_footprint.h"
+
 namespace duet::raster {
 namespace {
 
@@ -94,13 +96,28 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
 
 } // namespace
 
-HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object) {
+namespace {
+
+SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel) {
+    const RayFootprint footprint =
+        scene.needs.footprints ? PixelFootprint(view.pinhole, samples_per_pixel).at(ray, hit.t) : RayFootprint{};
+    return surface_point(scene, ray, hit, &footprint);
+}
+
+} // namespace
+
+Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel) {
+    const SurfacePoint surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
+    return base_color(scene.materials[surface.material], scene.textures, surface);
+}
+
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel) {
     const Scene& scene = object.data.scene;
     HitCorners at;
     const Rayd exact = view.pinhole.ray(pixel);
     const Ray ray = rounded(exact, view.time);
     at.depth = static_cast<double>(hit.t) * view.pinhole.near / exact.t_min;
-    at.surface = surface_point(scene, ray, hit);
+    at.surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
     const Vec3 ng = at.surface.ng;
     at.ng = to_object_normal(object, dot(ng, ray.direction) > 0 ? -ng : ng);
     const Shape& shape = scene.shapes[scene.objects[hit.object].shape];

@@ -18,12 +18,14 @@ struct HitCorners {
     SurfacePoint surface;
     double depth = 0; ///< camera-space −z
 };
-HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object);
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel);
+/// The base colour where a camera ray hits, textures filtered over what the sample stands for.
+Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel);
 
 /// The colour of a hit of the ray through `pixel`. `nearness`: known, or null.
 template <Shader S>
 Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
-              const float* nearness = nullptr) {
+              int samples_per_pixel, const float* nearness = nullptr) {
     struct Source final : ColorSource {
         const Scene& scene;
         const SurfacePoint& surface;
@@ -33,7 +35,7 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
         }
     };
     const ObjectView object(data, view, hit.object);
-    const HitCorners at = hit_corners(view, hit, pixel, object);
+    const HitCorners at = hit_corners(view, hit, pixel, object, samples_per_pixel);
     std::array<std::array<float, kVaryings<S>>, 3> corners;
     for (std::size_t k = 0; k < 3; ++k)
         corners[k] = numbers<S, float>(

@@ -18,6 +18,7 @@ public:
     std::uint32_t shade(const StripPlace& place, StripColors& colors) override {
         solver_.load(place.ids);
         if (solver_.seen() == 0) return 0;
+        place_ = &place;
         if (solver_.on_mesh() == solver_.seen()) {
             solver_.solve_all(place);
             shade_together(place, colors);
@@ -27,6 +28,7 @@ public:
             if (!(solver_.seen() >> i & 1)) continue;
             const Vec2d pixel = place.position(i);
             const Rgb c = shade_one(data_, view_, shader_, find_hit(geometry_, view_, solver_.id(i), pixel), pixel,
+                                    samples_per_pixel(place, view_),
                                     place.nearness != nullptr ? place.nearness + i : nullptr);
             colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
         }
@@ -101,6 +103,7 @@ private:
     /// As surface_point() has it, but for what base colours don't depend on.
     Rgb base_color(std::size_t sample) const override {
         if (!(solver_.seen() >> sample & 1)) return {};
+        if (data_.scene.needs.footprints) return filtered_color(sample);
         const Mesh& mesh = *solver_.one_mesh();
         const double u = solver_.b1[sample], v = solver_.b2[sample];
         const auto& corners = mesh.triangles[solver_.index(sample)];
@@ -119,12 +122,23 @@ private:
         return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
     }
 
+    Rgb filtered_color(std::size_t sample) const {
+        const Rayd exact = view_.pinhole.ray(place_->position(sample));
+        const Hit hit{.object = solver_.object().object,
+                      .primitive = static_cast<std::uint32_t>(solver_.index(sample)),
+                      .u = static_cast<float>(solver_.b1[sample]),
+                      .v = static_cast<float>(solver_.b2[sample]),
+                      .t = static_cast<float>(solver_.depth[sample] * exact.t_min / view_.pinhole.near)};
+        return hit_color(data_.scene, view_, rounded(exact, view_.time), hit, samples_per_pixel(*place_, view_));
+    }
+
     const PreparedData& data_;
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
     StripSolver<S> solver_;
     Linear ways_, eyes_; ///< camera rays
+    const StripPlace* place_ = nullptr; ///< of the strip at hand
 };
 
 /// A shader, kept by value.
@@ -136,7 +150,7 @@ public:
         return std::make_unique<ShadedStrips<S>>(data, geometry, view, tile, shader_);
     }
     Rgb shade_hit(const PreparedData& data, const PassView& view, const Hit& hit, Vec2d pixel) const override {
-        return shade_one(data, view, shader_, hit, pixel);
+        return shade_one(data, view, shader_, hit, pixel, static_cast<int>(view.samples.size()));
     }
 
 private:

@@ -153,20 +153,28 @@ void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depth
         }
 }
 
-/// Samples of a tile one by one: all of Shading::kLit, and auxiliary pictures of any shading.
-void shade_samples(const Frame& frame, const PassView& view, SampleOffset offset, std::size_t index,
-                   const DepthTile& depths, Picture& picture) {
+/// Whether samples are shaded one by one, with surfaces before them that may be seen through: all of Shading::kLit, and
+/// of any scene that has such surfaces.
+bool all_one_by_one(const Frame& frame) { return frame.program == nullptr || frame.layers != nullptr; }
+/// The same, or auxiliary pictures of any shading.
+bool one_by_one(const Frame& frame) { return all_one_by_one(frame) || frame.settings.aovs.any(); }
+
+void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths, Picture& picture) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
     if (frame.layers != nullptr)
-        layers.emplace(frame.data, frame.settings, *frame.layers, view, offset, index, tile);
+        layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
             Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
-            if (layers) shaded = layers->over(x, y, shaded);
+            if (layers) {
+                if (frame.program != nullptr && tile.hit(x, y).valid())
+                    shaded.radiance = frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
+                shaded = layers->over(x, y, shaded);
+            }
             if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
-            if (frame.program == nullptr) picture.add(x, y, shaded.radiance);
+            if (all_one_by_one(frame)) picture.add(x, y, shaded.radiance);
         }
 }
 
@@ -227,9 +235,8 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
         Stopwatch watch;
         cover(frame.geometry, view, offset, rect, index, depths);
         frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (frame.program == nullptr || frame.settings.aovs.any())
-            shade_samples(frame, view, offset, index, depths, picture);
-        if (frame.program != nullptr) shade_tile(frame, view, depths, picture);
+        if (one_by_one(frame)) shade_samples(frame, view, index, depths, picture);
+        if (!all_one_by_one(frame)) shade_tile(frame, view, depths, picture);
         frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
@@ -300,6 +307,7 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
+            // What may be seen through is sorted for each sample, and so shaded for each.
             if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
                 render_layers(frame, pass_view, i, picture);
             else
@@ -324,7 +332,7 @@ void keep_layered_nearness(const Frame& frame, const PassView& view, std::size_t
     DepthTile depths;
     cover(frame.geometry, view, view.samples.front(), rect, index, depths);
     HitTile tile(depths, frame.geometry, view);
-    const Layers layers(frame.data, frame.settings, *frame.layers, view, view.samples.front(), index, tile);
+    const Layers layers(frame.data, frame.settings, nullptr, *frame.layers, view, view.samples.front(), index, tile);
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) picture(x, y) = tile.nearness(x, y);
 }
@@ -367,13 +375,13 @@ void render_with(const Prepared& prepared, const View& view, const Settings& set
     Progress progress(control, grid.size() * passes.size());
     GeometryLoan geometry(*data.geometries);
     GeometryLoan layers(*data.geometries);
-    const bool layered = data.has_layers() && blends_layers(used);
-    const Frame frame{data,    used,     program, grid, *geometry, layered ? &*layers : nullptr,
+    const Frame frame{data,    used,     program, grid, *geometry, data.has_layers() ? &*layers : nullptr,
                       account, progress, control};
 
     const bool overlaid = draws_edges(used) || used.shading == Shading::kLines;
     const bool one_sample = passes.size() == 1 && passes.front().samples.size() == 1;
-    if (used.output == Output::kNearness || (used.output == Output::kSrgb8 && one_sample && !overlaid && !layered)) {
+    if (used.output == Output::kNearness ||
+        (used.output == Output::kSrgb8 && one_sample && !overlaid && !data.has_layers())) {
         render_display(frame, camera, view, passes.front(), result);
         result.statistics = {};
     } else {

@@ -18,11 +18,18 @@ struct StripPlace {
     SampleOffset offset;               ///< of every sample in its pixel
     const std::array<SampleOffset, kStrip>* offsets = nullptr; ///< or, where given, of each its own
 
+    bool whole_pixels = false; ///< multisampling: each stands for a pixel, or what is seen of it
+
     SampleOffset offset_of(std::size_t i) const { return offsets != nullptr ? (*offsets)[i] : offset; }
     Vec2d position(std::size_t i) const {
         return offset_of(i).position(x + static_cast<int>(i % kStripWidth), y + static_cast<int>(i / kStripWidth));
     }
 };
+
+/// How many samples a pixel are shaded: so much of it each one stands for.
+inline int samples_per_pixel(const StripPlace& place, const PassView& view) {
+    return place.whole_pixels ? 1 : static_cast<int>(view.samples.size());
+}
 
 /// Shades the strips of one tile, in any order.
 class StripShader {
