@@ -18,7 +18,7 @@ struct KeptFilm {
     };
 
     Film film;
-    std::vector<Setting> settings; ///< in one order for all films of a program
+    std::vector<Setting> settings;  ///< of different names, in any order
     std::uint32_t first_sample = 0; ///< every pixel has samples from this one on, as many as Film::taken says
 };
 

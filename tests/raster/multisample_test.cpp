@@ -13,11 +13,19 @@ using namespace duet::test;
 
 namespace {
 
-raster::Settings multisampled(int count, raster::Shading shading, bool each_sample = false) {
+/// Without effects that draw samples of their own: their noise says nothing about silhouettes.
+raster::Settings plain(raster::Shading shading) {
     raster::Settings settings;
+    settings.shading = shading;
+    settings.shadows = false;
+    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    return settings;
+}
+
+raster::Settings multisampled(int count, raster::Shading shading, bool each_sample = false) {
+    raster::Settings settings = plain(shading);
     settings.multisamples = count;
     settings.sample_shading = each_sample;
-    settings.shading = shading;
     return settings;
 }
 
@@ -76,8 +84,7 @@ TEST_SUITE("unit") {
         const Scene scene = varied_scene(60);
         const View view = perspective();
         for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kLit}) {
-            raster::Settings many;
-            many.shading = shading;
+            raster::Settings many = plain(shading);
             many.samples_per_pixel = 256;
             const ImageRgb truth = render(scene, view, many).radiance;
             many.samples_per_pixel = 1;

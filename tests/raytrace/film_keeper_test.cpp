@@ -70,7 +70,8 @@ TEST_SUITE("unit") {
         const KeptFilm back = read_film(folder / "film.exr");
         CHECK(same_bits(back.film, kept.film));
         CHECK(back.film.invalid(1, 1) == 1);
-        CHECK(back.settings == kept.settings);
+        CHECK(back.settings.size() == kept.settings.size());
+        check_same_settings("it", back.settings, kept.settings); // throws
         CHECK(back.first_sample == 12);
         CHECK(read_image(folder / "film.exr").pixels() == kept.film.image().pixels());
     }
@@ -80,7 +81,7 @@ TEST_SUITE("unit") {
         Settings settings;
         settings.samples_per_pixel = 40;
         const ImageRgb expected = rendered(scene, settings).radiance;
-        for (const double where : {0.0, 0.01, 0.2, 0.4, 0.7, 0.99}) {
+        for (const double where : {0.0, 0.01, 0.2, 0.4, 0.7, 0.9}) {
             const ScratchFolder folder;
             settings.film = folder / "film.exr";
             std::atomic<bool> stop = where == 0;
