@@ -132,17 +132,23 @@ TEST_SUITE("statistical") {
         CHECK(cosines < centers / 3);
     }
 
+    // But for the worst pixel in a thousand: in pictures as small as these a lamp's reflection is a pixel or none.
     TEST_CASE("all effects together bring the picture nearer to the path tracer's, in each scene") {
+        const auto trimmed = [](const Scene& scene, const View& view, const raster::Settings& settings, const ImageRgb& truth) {
+            Control control;
+            const Rendering picture = raster::render(raster::prepare(scene, settings), view, settings, control);
+            return error_metrics(picture.radiance, truth).relmse_trimmed;
+        };
         for (const char* const name : {"cornell", "everything", "spheres"}) {
             const Scene scene = model(name);
             const View view = small(scene, 64);
             const ImageRgb truth = traced(scene, view, raytrace::Integrator::kPath, true);
             raster::Settings settings = sixteen({});
-            const double with = error(scene, view, settings, truth);
+            const double with = trimmed(scene, view, settings, truth);
             settings.shadows = settings.prefiltered_environment = settings.transformed_cosines = false;
             settings.screen_reflections = false;
             settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
-            const double without = error(scene, view, settings, truth);
+            const double without = trimmed(scene, view, settings, truth);
             MESSAGE(std::string(name), ": relmse ", with, ", without ", without);
             CHECK(with < without);
         }
