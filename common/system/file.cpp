@@ -22,10 +22,13 @@ std::string read_file(const fs::path& path, std::size_t limit) {
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
     if (!fs::is_regular_file(status)) throw Error(message(path.string(), ": not a regular file"));
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) throw Error(message(path.string(), ": ", error.message()));
+    // The size of what is open, not of what lies at the path: another file may be renamed to it at any moment.
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    const std::streamoff end = in.tellg();
+    if (!in || end < 0) throw Error(message(path.string(), ": cannot be read"));
+    const auto size = static_cast<std::uintmax_t>(end);
     if (size > limit) throw Error(message(path.string(), ": ", size, " bytes, expected at most ", limit));
-    std::ifstream in(path, std::ios::binary);
+    in.seekg(0);
     std::string bytes(static_cast<std::size_t>(size), '\0');
     in.read(bytes.data(), static_cast<std::streamsize>(size));
     if (!in) throw Error(message(path.string(), ": cannot be read"));
