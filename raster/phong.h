@@ -60,4 +60,18 @@ template <typename T> RgbT<T> phong(const PhongLight<T>& light, Rgb ambient, Rgb
     return base * (light.irradiance * T(kPhongDiffuse) + spread<T>(ambient)) + light.highlights;
 }
 
+/// What shaders have in common that work light out in their vertex function, at point p for normal n, both in the world:
+/// it is interpolated, and the base colour is each sample's own.
+struct LightAtVertices {
+    static constexpr bool kTextureCoordinates = false;
+    template <typename T> using Varyings = PhongLight<T>;
+
+    template <typename T> static Varyings<T> light(const VertexInput<T>& v, Vec3T<T> p, Vec3T<T> n) {
+        return phong_light(std::span(v.object.data.scene.lights), [&] { return p; }, n, v.object.to_viewer(p));
+    }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        return phong(f.at, f.object.data.ambient, f.base_color());
+    }
+};
+
 } // namespace duet::raster

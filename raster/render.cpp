@@ -3,11 +3,10 @@
 #include "raster/account.h"
 #include "raster/cover.h"
 #include "raster/display.h"
-#include "raster/edges.h"
 #include "raster/geometry.h"
 #include "raster/layers.h"
-#include "raster/lines.h"
 #include "raster/multisample.h"
+#include "raster/overlay.h"
 #include "raster/picture.h"
 #include "raster/screen.h"
 #include "raster/shade.h"
@@ -24,8 +23,6 @@
 
 namespace duet::raster {
 namespace {
-
-bool draws_edges(const Settings& settings) { return settings.edges || settings.shading == Shading::kEdges; }
 
 void check(const View& view, const Settings& settings) {
     if (view.width < 1 || view.height < 1 || view.width > kMaxPictureSide || view.height > kMaxPictureSide)
@@ -159,6 +156,7 @@ bool all_one_by_one(const Frame& frame) { return frame.program == nullptr || fra
 /// The same, or auxiliary pictures of any shading.
 bool one_by_one(const Frame& frame) { return all_one_by_one(frame) || frame.settings.aovs.any(); }
 
+/// Samples of a tile one by one.
 void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths, Picture& picture) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
@@ -241,43 +239,6 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
     }
 }
 
-/// What is drawn over a picture: of each pass, how much of each pixel it covers.
-class Overlay {
-public:
-    Overlay(const Frame& frame, const View& view) : frame_(frame), sums_(view.width, view.height, 0.0f) {}
-
-    void add_lines(const PassView& view) {
-        for (const SampleOffset offset : view.samples) {
-            Image<std::uint8_t> marks(sums_.width(), sums_.height(), 0);
-            draw_lines(frame_.data, view, offset, frame_.settings.threads, marks);
-            for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += marks[i];
-            ++samples_;
-        }
-    }
-    void add_edges(const SeenPicture& seen) {
-        parallel_for(static_cast<std::size_t>(sums_.height()), frame_.settings.threads, [&](std::size_t row) {
-            const int y = static_cast<int>(row);
-            for (int x = 0; x < sums_.width(); ++x) sums_(x, y) += ink(seen, x, y);
-        });
-        ++samples_;
-    }
-    /// White lines on black; ink on paper; or ink on the picture.
-    void put(ImageRgb& picture) const {
-        if (samples_ == 0) return;
-        for (std::size_t i = 0; i < picture.size(); ++i) {
-            const float covered = sums_[i] / static_cast<float>(samples_);
-            picture[i] = frame_.settings.shading == Shading::kLines   ? Rgb(covered)
-                         : frame_.settings.shading == Shading::kEdges ? Rgb(1 - covered)
-                                                                      : picture[i] * (1 - covered);
-        }
-    }
-
-private:
-    const Frame& frame_;
-    ImageFloat sums_;
-    int samples_ = 0;
-};
-
 /// A pass with a single sample a pixel, and ink where what it sees changes.
 void render_inked(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass, Picture& picture,
                   Overlay& overlay) {
@@ -298,7 +259,7 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
     const bool lines = frame.settings.shading == Shading::kLines, edges = draws_edges(frame.settings);
     Picture picture(view, frame.settings, passes.size() > 1 || passes.front().samples.size() > 1);
     std::optional<Overlay> overlay;
-    if (lines || edges) overlay.emplace(frame, view);
+    if (lines || edges) overlay.emplace(frame.data, frame.settings, view);
     for (const Pass& pass : passes) {
         if (frame.control.stopped()) break;
         if (edges) {
@@ -357,10 +318,6 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
             display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
     });
 }
-
-} // namespace
-
-namespace {
 
 void render_with(const Prepared& prepared, const View& view, const Settings& settings, const Program* program,
                  Control& control, Rendering& result) {

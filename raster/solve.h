@@ -74,6 +74,14 @@ struct NoVaryings {
     template <typename T> struct Varyings {};
     template <typename T> Varyings<T> vertex(const VertexInput<T>&) const { return {}; }
 };
+/// What interpolates the vertices' normals alone.
+struct NormalVaryings {
+    static constexpr bool kTextureCoordinates = false;
+    template <typename T> struct Varyings {
+        Vec3T<T> n;
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
+};
 
 namespace strips {
 

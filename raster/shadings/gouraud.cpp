@@ -7,16 +7,9 @@
 namespace duet::raster {
 namespace {
 
-struct GouraudShader {
-    static constexpr bool kTextureCoordinates = false;
-    template <typename T> using Varyings = PhongLight<T>;
-
+struct GouraudShader : LightAtVertices {
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const {
-        const Vec3T<T> p = v.world_p();
-        return phong_light(std::span(v.object.data.scene.lights), [&] { return p; }, v.world_n(), v.object.to_viewer(p));
-    }
-    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        return phong(f.at, f.object.data.ambient, f.base_color());
+        return light(v, v.world_p(), v.world_n());
     }
 };
 

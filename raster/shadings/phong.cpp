@@ -7,12 +7,7 @@
 namespace duet::raster {
 namespace {
 
-struct PhongShader {
-    static constexpr bool kTextureCoordinates = false;
-    template <typename T> struct Varyings {
-        Vec3T<T> n;
-    };
-    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
+struct PhongShader : NormalVaryings {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         const PreparedData& data = f.object.data;
         return phong(std::span(data.scene.lights), data.ambient, f.base_color(), [&] { return f.p(); }, f.normal(f.at.n),

@@ -6,12 +6,7 @@ namespace duet::raster {
 namespace {
 
 /// (n + 1)/2, see direction_color.
-struct NormalShader {
-    static constexpr bool kTextureCoordinates = false;
-    template <typename T> struct Varyings {
-        Vec3T<T> n;
-    };
-    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
+struct NormalShader : NormalVaryings {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         const Vec3T<T> n = f.normal(f.at.n);
         const auto channel = [](T component) { return max((component + T(1)) * T(0.5f), T(0)); };
