@@ -39,10 +39,7 @@ KeptFilm opened(const Scene& scene, const View& view, const Settings& settings) 
     if (!std::filesystem::exists(settings.film)) return fresh;
     KeptFilm kept = read_film(settings.film);
     const std::string name = settings.film.string();
-    if (kept.film.width() != view.width || kept.film.height() != view.height)
-        throw Error(message(name, ": a film of another picture: size: found ", kept.film.width(), " x ",
-                            kept.film.height(), ", expected ", view.width, " x ", view.height));
-    check_same_settings(name, kept.settings, fresh.settings);
+    check_same_picture(name, kept, fresh);
     if (kept.first_sample != settings.first_sample)
         throw Error(message(name, ": a film of samples from ", kept.first_sample, " on, expected from ",
                             settings.first_sample, " on"));

@@ -87,10 +87,7 @@ KeptFilm merged(std::vector<NamedFilm> films) {
     std::uint64_t end = std::uint64_t{result.first_sample} + most_taken(result.film);
     for (std::size_t i = 1; i < films.size(); ++i) {
         const auto& [name, kept] = films[i];
-        if (kept.film.width() != result.film.width() || kept.film.height() != result.film.height())
-            throw Error(message(name, ": a film of another picture: size: found ", kept.film.width(), " x ",
-                                kept.film.height(), ", expected ", result.film.width(), " x ", result.film.height()));
-        check_same_settings(name, kept.settings, result.settings);
+        check_same_picture(name, kept, result);
         if (kept.first_sample < end)
             throw Error(message(name, ": has samples from ", kept.first_sample, " on, but ", films[i - 1].name,
                                 " has those up to ", end - 1, ": expected films that share none"));

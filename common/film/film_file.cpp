@@ -107,14 +107,17 @@ KeptFilm read_film(const std::filesystem::path& path) {
     return kept;
 }
 
-void check_same_settings(const std::string& name, const std::vector<KeptFilm::Setting>& found,
-                         const std::vector<KeptFilm::Setting>& expected) {
-    for (const auto& [setting, value] : expected) {
+void check_same_picture(const std::string& name, const KeptFilm& found, const KeptFilm& expected) {
+    const auto check = [&](const std::string& what, const std::string& its, const std::string& wanted) {
+        if (its != wanted)
+            throw Error(message(name, ": a film of another picture: ", what, ": found ", its, ", expected ", wanted));
+    };
+    const auto size = [](const Film& film) { return message(film.width(), " x ", film.height()); };
+    check("size", size(found.film), size(expected.film));
+    for (const auto& [setting, value] : expected.settings) {
         const auto same_name = [&, &setting = setting](const KeptFilm::Setting& s) { return s.name == setting; };
-        const auto other = std::find_if(found.begin(), found.end(), same_name);
-        const std::string its = other == found.end() ? "none" : other->value;
-        if (its != value)
-            throw Error(message(name, ": a film of another picture: ", setting, ": found ", its, ", expected ", value));
+        const auto other = std::find_if(found.settings.begin(), found.settings.end(), same_name);
+        check(setting, other == found.settings.end() ? "none" : other->value, value);
     }
 }
 

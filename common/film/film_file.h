@@ -31,8 +31,8 @@ void write_film(const std::filesystem::path& path, const KeptFilm& kept);
 /// The same bits that were written. Throws Error naming the file and what is missing or wrong for one that is no film.
 KeptFilm read_film(const std::filesystem::path& path);
 
-/// Throws Error, naming both files' values, for the first setting in which they differ.
-void check_same_settings(const std::string& name, const std::vector<KeptFilm::Setting>& found,
-                         const std::vector<KeptFilm::Setting>& expected);
+/// Throws Error, naming the film and both values, for the first of size and settings in which `found` is not as
+/// expected.
+void check_same_picture(const std::string& name, const KeptFilm& found, const KeptFilm& expected);
 
 } // namespace duet

@@ -177,7 +177,7 @@ private:
     }
     static std::uint64_t hash_of(const Form& form) {
         std::uint64_t hash = 0;
-        for (const std::uint32_t word : form) hash = stream_number(hash ^ word, 0);
+        for (const std::uint32_t word : form) hash = hash_combine(hash, word);
         return hash;
     }
 

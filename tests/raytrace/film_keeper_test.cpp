@@ -71,7 +71,7 @@ TEST_SUITE("unit") {
         CHECK(same_bits(back.film, kept.film));
         CHECK(back.film.invalid(1, 1) == 1);
         CHECK(back.settings.size() == kept.settings.size());
-        check_same_settings("it", back.settings, kept.settings); // throws
+        check_same_picture("it", back, kept); // throws
         CHECK(back.first_sample == 12);
         CHECK(read_image(folder / "film.exr").pixels() == kept.film.image().pixels());
     }
