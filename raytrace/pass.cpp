@@ -48,27 +48,32 @@ private:
 class CameraBatch {
 public:
     CameraBatch(const PassTarget& target, const CameraModel& camera)
-        : target_(target), camera_(camera), radiance_(radiance_function(target.settings.integrator)),
-          sampler_(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel) {
+        : target_(target), camera_(camera),
+          samplers_(kSize, Sampler(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel)) {
         samples_.reserve(kSize);
     }
 
     void add(int x, int y, std::uint32_t index) {
-        sampler_.start(x, y, index);
-        rays_[samples_.size()] = camera_ray(target_.plan, camera_, x, y, sampler_);
-        samples_.push_back({x, y, index, sampler_});
+        Sampler& sampler = samplers_[samples_.size()];
+        sampler.start(x, y, index);
+        rays_[samples_.size()] = camera_ray(target_.plan, camera_, x, y, sampler);
+        samples_.push_back({x, y, index});
         if (samples_.size() == kSize) finish();
     }
 
     // Renders what has been added and not been rendered yet.
     void finish() {
         const std::size_t size = samples_.size();
-        target_.plan.prepared.accelerator.closest(std::span(rays_).first(size), std::span(hits_).first(size));
-        for (std::size_t i = 0; i < size; ++i) {
-            auto& [x, y, index, sampler] = samples_[i];
-            target_.keeper.film().add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler, counts_));
-            if (target_.aovs.any()) target_.aovs.add(x, y, index, rays_[i], hits_[i]);
-        }
+        const auto rays = std::span(rays_).first(size);
+        const auto hits = std::span(hits_).first(size);
+        target_.plan.prepared.accelerator.closest(rays, hits);
+        if (target_.aovs.any())
+            for (std::size_t i = 0; i < size; ++i)
+                target_.aovs.add(samples_[i].x, samples_[i].y, samples_[i].index, rays[i], hits[i]);
+        radiances(target_.settings.integrator, target_.plan, rays, hits, std::span(samplers_).first(size), std::span(radiances_).first(size),
+                  counts_);
+        for (std::size_t i = 0; i < size; ++i)
+            target_.keeper.film().add(samples_[i].x, samples_[i].y, samples_[i].index & 1u, radiances_[i]);
         counts_.camera += static_cast<std::int64_t>(size);
         samples_.clear();
     }
@@ -80,17 +85,16 @@ private:
     struct Sample {
         int x, y;
         std::uint32_t index;
-        Sampler sampler;
     };
 
     const PassTarget& target_;
     const CameraModel& camera_;
-    RadianceFunction radiance_;
-    Sampler sampler_;
     RayCounts counts_;
-    std::vector<Sample> samples_; // so many of rays_ and hits_
+    std::vector<Sample> samples_; // so many of those below
+    std::vector<Sampler> samplers_;
     std::array<Ray, kSize> rays_;
     std::array<Hit, kSize> hits_;
+    std::array<Rgb, kSize> radiances_;
 };
 
 // The bits at even places of a number below 2¹⁶, together: a Morton code's x, or y after a shift.
