@@ -31,10 +31,13 @@ struct VertexNumbers {
     float light_choice, lobe, roulette;
 };
 /// Those of the vertex after `depth` scatterings.
-inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+inline void go_to_vertex(Sampler& sampler, int depth) {
     sampler.set_dimension(static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1));
-    const std::array<float, Sampler::kBlock> u = sampler.get_block();
-    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
+}
+inline VertexNumbers vertex_numbers(const Sampler::Block& u) { return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]}; }
+inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+    go_to_vertex(sampler, depth);
+    return vertex_numbers(sampler.get_block());
 }
 
 /// An unbiased estimate of the radiance along a camera ray (its direction unit), whose first hit (or none) is given.

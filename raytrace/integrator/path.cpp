@@ -222,6 +222,26 @@ private:
     PathFootprint footprint_;
 };
 
+// numbers_at of each of the paths that are going on, below the greatest depth; two at a time.
+void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const std::vector<std::uint32_t>& going,
+                  int depth, std::vector<VertexNumbers>& numbers) {
+    constexpr std::uint32_t kNone = ~0u;
+    std::uint32_t waiting = kNone;
+    for (const std::uint32_t i : going) {
+        if (!hits[i].valid()) continue;
+        go_to_vertex(samplers[i], depth);
+        if (waiting == kNone) {
+            waiting = i;
+            continue;
+        }
+        const auto [first, second] = Sampler::get_blocks(samplers[waiting], samplers[i]);
+        numbers[waiting] = vertex_numbers(first);
+        numbers[i] = vertex_numbers(second);
+        waiting = kNone;
+    }
+    if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
+}
+
 } // namespace
 
 void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
@@ -236,7 +256,7 @@ void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> 
         going.push_back(i);
     }
     for (int depth = 0; !going.empty(); ++depth) {
-        for (const std::uint32_t i : going) numbers[i] = numbers_at(plan, samplers[i], hits[i], depth);
+        if (depth < plan.max_depth) draw_numbers(samplers, hits, going, depth, numbers);
         std::erase_if(going, [&](std::uint32_t i) { return !paths[i].advance(rays[i], hits[i], depth, numbers[i]); });
         for (const std::uint32_t i : going) hits[i] = plan.prepared.accelerator.closest(rays[i]);
     }
