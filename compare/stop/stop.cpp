@@ -6,6 +6,7 @@
 #include "raytrace/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -79,6 +80,13 @@ json as_json(const Row& row, const StopOptions& options) {
             {"seconds_to_time", times}};
 }
 
+/// "0.95", or "-" where nothing was divided by nothing.
+std::string ratio_text(double ratio) {
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), "%.2f", ratio);
+    return std::isfinite(ratio) ? text.data() : "-";
+}
+
 void print_head(bool times) {
     std::printf("%-24s %9s  %9s  %9s  %16s  %8s%s\n", "", "size", "error got", "samples", "adaptive / even", "seconds",
                 times ? "  time got" : "");
@@ -88,9 +96,9 @@ void print_head(bool times) {
 void print_row(const Row& row, const StopOptions& options) {
     double seconds = 0;
     for (const StopTrial& t : row.result.trials) seconds += t.seconds / static_cast<double>(row.result.trials.size());
-    std::printf("%-24s %4dx%-4d  %9.2f  %9.0f  %8.2f%8.2f  %8.2f", row.scene.c_str(), row.view.width, row.view.height,
-                row.error_ratio, row.result.mean_samples(), row.result.to_even_relmse(), row.result.to_even_mse(),
-                seconds);
+    std::printf("%-24s %4dx%-4d  %9.2f  %9.0f  %8s%8s  %8.2f", row.scene.c_str(), row.view.width, row.view.height,
+                row.error_ratio, row.result.mean_samples(), ratio_text(row.result.to_even_relmse()).c_str(),
+                ratio_text(row.result.to_even_mse()).c_str(), seconds);
     if (options.settings.time > 0) std::printf("  %8.2f", row.time.ratio);
     std::printf("%s%s%s\n", row.result.caustics  ? "  (caustics)"
                     : row.result.at_once() ? "  (at once)"

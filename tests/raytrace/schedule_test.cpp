@@ -202,7 +202,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("the error asked for is the error got") {
         const Scene scene = lamp_scene();
         const ImageRgb truth = reference(scene);
-        for (const double asked : {0.02, 0.002}) {
+        for (const double asked : {0.002, 0.0004}) { // with more than the least samples
             std::vector<double> got;
             for (int seed = 0; seed < 20; ++seed) {
                 Settings settings;
@@ -215,7 +215,8 @@ TEST_SUITE("statistical") {
             std::sort(got.begin(), got.end());
             const double median = (got[9] + got[10]) / 2;
             MESSAGE("asked ", asked, ", got ", median, " (", got.front(), " to ", got.back(), ")");
-            CHECK(median == doctest::Approx(asked).epsilon(0.2));
+            CHECK(median > 0.8 * asked);
+            CHECK(median < 1.2 * asked);
         }
     }
 }
