@@ -6,6 +6,8 @@
 #include "common/vec/ray.h"
 #include "common/vec/robust.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -41,13 +43,11 @@ struct ShearedRay {
     explicit ShearedRay(const Ray& ray)
         : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
         // Without a branch: the axes of incoherent rays cannot be predicted.
-        constexpr std::uint8_t kNext[] = {1, 2, 0};
-        const float d[] = {direction.x, direction.y, direction.z}, o[] = {origin.x, origin.y, origin.z};
-        const std::size_t kz = longest_axis(abs(direction)), next = kNext[kz], after = kNext[next];
-        const bool swap = d[kz] < 0;
-        const std::size_t kx = swap ? after : next, ky = swap ? next : after;
-        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz],
-                 std::abs(d[kz])};
+        constexpr std::array<std::array<std::uint8_t, 2>, 6> kAcross{{{1, 2}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {1, 0}}};
+        const std::array<float, 3> d{direction.x, direction.y, direction.z}, o{origin.x, origin.y, origin.z};
+        const std::size_t kz = longest_axis(abs(direction)), backwards = std::bit_cast<std::uint32_t>(d[kz]) >> 31;
+        const auto [kx, ky] = kAcross[kz + 3 * backwards];
+        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], std::abs(d[kz])};
     }
 };
 

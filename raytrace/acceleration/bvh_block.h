@@ -85,9 +85,9 @@ private:
         const auto outside = (t < -error) | (t - error > ends); // and not NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;
-        const auto inside = (low > zero) | (high < zero), apart = xsimd::abs(t) > error;
-        certain_ = lane_bits(inside & apart) & ~unsure;
-        touched_lanes_ = inside & !apart;
+        const auto inside = (low > zero) | (high < zero);
+        certain_ = lane_bits(inside & (xsimd::abs(t) > error)) & ~unsure;
+        touched_lanes_ = inside & (xsimd::abs(t) <= error);
         touched_ = sabotaged(Guard::kPlaneDistance) ? 0 : lane_bits(touched_lanes_) & ~unsure;
         t_ = t;
         u_ = test.e1 * inv_det;
