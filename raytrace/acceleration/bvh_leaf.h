@@ -85,7 +85,7 @@ private:
     std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
-    Ray ray_;
+    const Ray& ray_;
     ShearedRay sheared_;
     std::uint32_t object_;
     const Instance& instance_;
