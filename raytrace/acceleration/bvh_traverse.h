@@ -133,9 +133,7 @@ bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& e
     const SlabRay slabs(ray, bvh.bounds);
     LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
 
-    // A node puts down all its children at once, those that the ray meets in front: none needs a branch, which the ray
-    // would mispredict.
-    std::array<BvhRef, BvhNode::kWidth * (Bvh::kMaxDepth + 1)> stack;
+    std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
     BvhRef next = BvhRef::node(0);
@@ -144,6 +142,8 @@ bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& e
             const BvhNode& node = node_at(bvh, next);
             unsigned children = slabs.enter(node, t_min, t_max).children;
             if (children == 0) break;
+            // The largest child, which is the last, first (Ogaki and Derouet-Jourdan 2016, «An N-ary BVH child node
+            // sorting technique for occlusion test», sort by area likewise).
             next = node.children[static_cast<std::size_t>(31 - std::countl_zero(children))];
             for (; (children & (children - 1)) != 0; children &= children - 1)
                 stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];
