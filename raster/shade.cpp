@@ -121,14 +121,13 @@ Rgb mirrored(const PreparedData& data, const Settings& settings, const Screen& s
 }
 
 LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
-               Vec3 to_viewer, const Screen* screen) {
+               Vec3 to_viewer, const Screen* screen, TapRange taps) {
     const Scene& scene = data.scene;
     const PartSet& asked = settings.parts;
     LightParts parts;
     if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], scene.textures, point.surface, to_viewer);
     if (asked.direct) {
-        const SoftTaps taps = Shadows::taps(settings);
-        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, &taps};
+        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, taps};
         const Direct direct = std::visit(DirectLight{scene.lights, point, visibility, settings.transformed_cosines}, bsdf);
         parts.direct = direct.arriving, parts.shadowed = direct.shadowed;
     }
@@ -212,7 +211,7 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen) {
-    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen);
+    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen, TapRange{});
 }
 
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
@@ -234,8 +233,9 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     const ShadingPoint point(surface, -ray.direction);
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
+    const TapRange taps = settings.samples_per_pixel >= TapRange::kBlocks ? TapRange::of_quadrant(tile.quadrant()) : TapRange{};
     if (settings.shading == Shading::kLit)
-        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen()).sum();
+        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen(), taps).sum();
     return result;
 }
 
