@@ -172,12 +172,11 @@ SkySeenT<Floats> screen_space_occlusion(const Screen& screen, const OcclusionPoi
     return {Floats(1.0f) - hidden, points.n * (hidden * Floats(2.0f / 3))};
 }
 
-SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& seen_points, const OcclusionPattern& pattern,
+SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& points, const OcclusionPattern& pattern,
                                    float radius, int lines, int steps) {
-    OcclusionPoints points = seen_points;
     const Vec3s v = points.to_viewer;
-    const Floats towards = dot(points.n, v), one(1.0f), none(0.0f);
-    points.n = unit_of(points.n + v * max(Floats(kLeastCosine) - towards, none));
+    const Floats one(1.0f), none(0.0f);
+    const Vec3s n = unit_of(points.n + v * max(Floats(kLeastCosine) - dot(points.n, v), none));
     const HorizonSearch search(screen, points, radius, steps);
     const FrameT<Floats> frame = frame_from_normal(v);
     const Floats turn = gather(kTurn.data(), pattern.which), jitter = gather(kJitter.data(), pattern.which);
@@ -188,7 +187,7 @@ SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& 
         const Floats angle = (turn + Floats(static_cast<float>(i))) * Floats(kPi / static_cast<float>(lines));
         const auto [sine, cosine] = xsimd::sincos(angle);
         const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
-        const Vec3s in_plane = points.n - across * dot(points.n, across); // the normal in the plane of v and t
+        const Vec3s in_plane = n - across * dot(n, across); // the normal in the plane of v and t
         const Floats size = xsimd::sqrt(dot(in_plane, in_plane)), over = one / max(size, Floats(1e-6f));
         const Floats cos_gamma = min(dot(in_plane, v) * over, one), sin_gamma = dot(in_plane, t) * over;
         const Floats turned = arc_cosine(cos_gamma), gamma = xsimd::select(sin_gamma < none, -turned, turned);

@@ -11,7 +11,7 @@ namespace duet::raster {
 /// Z-Buffer Visibility», §3).
 class NearestPyramid {
 public:
-    explicit NearestPyramid(const ImageFloat& image);
+    explicit NearestPyramid(ImageFloat image);
 
     /// At least the greatest number in columns x0 to x1 and rows y0 to y1, all within the image; at most the greatest
     /// in a region of four blocks around them.
@@ -21,8 +21,7 @@ public:
     std::int64_t memory_bytes() const;
 
 private:
-    const ImageFloat* image_;
-    std::vector<ImageFloat> levels_; ///< blocks of 2, 4, 8 …
+    std::vector<ImageFloat> levels_; ///< the image, then blocks of 2, 4, 8 …
 };
 
 } // namespace duet::raster

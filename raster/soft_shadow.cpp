@@ -57,15 +57,17 @@ public:
         : p(receiver), n(normal), slack(lift), o(outline), kind_(kind) {
         per_height = -1 / dot(o.axis, p);
         p_u_ = dot(p - o.corner, o.dual_u), p_v_ = dot(p - o.corner, o.dual_v);
+        per_metre = std::sqrt(max(dot(o.dual_u, o.dual_u), dot(o.dual_v, o.dual_v)));
     }
 
-    /// Whether the line from the receiver through `to` from there, at the fraction f of the way, goes on to the light.
-    template <typename T> auto meets(const Vec3T<T>& to, const T& f) const {
+    /// Whether the line from the receiver through `to` from there, at the fraction f of the way, goes on to the light, or
+    /// passes beside that by up to `margin`, as a part of its edges.
+    Floats::batch_bool_type meets(const Vec3T<Floats>& to, const Floats& f, const Floats& margin) const {
         // The line goes on to corner + a·u + b·v; both sides times the fraction save the division.
-        const T a = T(p_u_) * f + dot(to, lanes<T>(o.dual_u)), b = T(p_v_) * f + dot(to, lanes<T>(o.dual_v));
-        if (kind_ == Emitter::Kind::kBall) return a * a + b * b <= f * f;
-        const T most = kind_ == Emitter::Kind::kParallelogram ? max(a, b) : a + b;
-        return decltype(a < f)((min(a, b) >= T(0)) & (most <= f));
+        const Floats a = Floats(p_u_) * f + dot(to, lanes<Floats>(o.dual_u)), b = Floats(p_v_) * f + dot(to, lanes<Floats>(o.dual_v));
+        if (kind_ == Emitter::Kind::kBall) return a * a + b * b <= (f + margin) * (f + margin);
+        const Floats most = kind_ == Emitter::Kind::kParallelogram ? max(a, b) : a + b;
+        return (min(a, b) > -margin) & (most <= f + margin);
     }
 
     /// Corners of a parallelogram around the light.
@@ -80,6 +82,7 @@ public:
     float slack;      ///< height over its plane that rounding accounts for
     Outline o;
     float per_height; ///< the fraction of the way that a metre along the axis is
+    float per_metre;  ///< the part of the light's shorter edge that a metre is
 
 private:
     Emitter::Kind kind_;
@@ -112,7 +115,7 @@ SoftLight::SoftLight(CubeMap cube, const Emitter& emitter) : cube_(std::move(cub
     }
     for (std::size_t face = 0; face < 6; ++face) {
         if (kind_ != Emitter::Kind::kBall) flat_[face] = Outline{{}, corner_, u_, v_, dual_u_, dual_v_}.turned(face);
-        if (cube_.faces[face]) nearest_[face] = std::make_unique<NearestPyramid>(cube_.faces[face]->nearness());
+        if (cube_.faces[face]) nearest_[face] = std::make_unique<NearestPyramid>(before_light(face));
     }
     find_closest();
 }
@@ -126,6 +129,18 @@ Vec3 cell_way(std::size_t face, int x, int y, int n) {
 }
 
 } // namespace
+
+/// What a face sees, but for what stands behind a flat light that shines to one side: a ceiling around it would be nearest
+/// to all.
+ImageFloat SoftLight::before_light(std::size_t face) const {
+    ImageFloat image = cube_.faces[face]->nearness();
+    if (kind_ == Emitter::Kind::kBall || cube_.faces[5] != nullptr) return image;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            if (from_face(face, {static_cast<float>(x) + 0.5f - cube_.middle, cube_.middle - static_cast<float>(y) - 0.5f, cube_.scale}).z < 0)
+                image(x, y) = 0;
+    return image;
+}
 
 /// Of each cell of directions, the distance of what is closest that may be in the cone of a receiver there. All of a
 /// cone is within the light's radius of the line from the centre to the receiver: what is seen at the distance d and the
@@ -159,8 +174,9 @@ void SoftLight::find_closest() {
                 for (const Seen& s : seen) {
                     if (s.distance >= closest) continue;
                     const float c = dot(way, s.way);
-                    if (c < -sine) continue; // behind all cones
-                    const float beside = c >= cosine ? 0.0f : std::sqrt(1 - c * c) * cosine - c * sine; // sin(ψ − slack)
+                    const float beside = c >= cosine  ? 0.0f
+                                         : c < -sine ? 1.0f // behind: only as close as the light itself
+                                                     : std::sqrt(1 - c * c) * cosine - c * sine; // sin(ψ − slack)
                     if (s.distance * beside <= radius_) closest = s.distance;
                 }
                 closest_[(face * kWays + static_cast<std::size_t>(y)) * kWays + static_cast<std::size_t>(x)] = closest;
@@ -294,11 +310,16 @@ void SoftLight::add_row(const Cone& cone, const Floats::batch_bool_type& above, 
     const Vec3T<Floats> to{right * per_scale - Floats(cone.p.x), Floats(up) * per_scale - Floats(cone.p.y),
                            depth - Floats(cone.p.z)};
     const Floats fraction = dot(lanes<Floats>(cone.o.axis), to) * Floats(cone.per_height);
-    const auto blocks = above & (fraction > Floats(0.0f)) & (fraction < Floats(1.0f)) & cone.meets(to, fraction);
+    // Where the cone is narrower than a texel, half a texel beside it still belongs to what the filter sees: but not the
+    // next facet of a concave surface (ShadowMap::kConcave).
+    const Floats none(0.0f), margin = per_scale * Floats(0.5f * cone.per_metre);
+    const auto steps_up = dot(lanes<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(ShadowMap::kConcave));
+    const auto blocks = above & (fraction > none) & (fraction < Floats(1.0f)) &
+                        cone.meets(to, fraction, xsimd::select(steps_up, margin, none));
     if (!xsimd::any(blocks)) return;
-    const Floats none(0.0f);
-    blockers.weights += xsimd::hadd(xsimd::select(blocks, Floats(1.0f) / (fraction * fraction), none));
-    blockers.sum += xsimd::hadd(xsimd::select(blocks, Floats(1.0f) / fraction, none));
+    const Floats weight = Floats(1.0f) / ((fraction + margin) * (fraction + margin));
+    blockers.weights += xsimd::hadd(xsimd::select(blocks, weight, none));
+    blockers.sum += xsimd::hadd(xsimd::select(blocks, weight * fraction, none));
 }
 
 /// How many of some taps, in the plane parallel to the light in which blockers are taken to be, are dark, of those that

@@ -53,6 +53,7 @@ private:
 
     std::optional<Outline> outline_from(Vec3 p) const;
     Outline turned(const Outline& outline, std::size_t face) const;
+    ImageFloat before_light(std::size_t face) const;
     void find_closest();
     float first_reach(Vec3 p, std::size_t face, float farthest) const;
     std::optional<Window> window(const Cone& cone, float reach, bool& whole) const;
