@@ -95,11 +95,7 @@ public:
         : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_) {}
 
     void fill(const StripPlace& place) {
-        const bool seen = samples_seen(place.ids) != 0;
-        if (seen) {
-            solver_.load(place.ids);
-            solver_.solve(place);
-        }
+        solver_.solve(std::span(&place, 1), std::span(&strip_, 1), false);
         for (std::size_t i = 0; i < kStrip; ++i) {
             const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
             if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
@@ -107,7 +103,7 @@ public:
             const Rayd exact = view_.pinhole.ray(place.position(i));
             tile_.rays_[at] = rounded(exact, view_.time);
             tile_.distance_per_depth_[at] = exact.t_min / view_.pinhole.near;
-            if (!seen || !(solver_.seen() >> i & 1)) continue;
+            if (!(strip_.seen >> i & 1)) continue;
             tile_.hits_[at] = hit(i, place, at);
             tile_.nearness_[at] = place.nearness != nullptr
                                       ? place.nearness[i]
@@ -118,11 +114,12 @@ public:
 private:
     Hit hit(std::size_t i, const StripPlace& place, std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
-        if (!(solver_.inside() >> i & 1)) return find_hit(geometry_, view_, solver_.id(i), place.position(i));
-        const Run& run = solver_.run(i);
-        const double depth = std::max(solver_.depth[i], view_.pinhole.near);
-        return make_hit(triangles.objects[run.object].object, Triangles::index(run, solver_.id(i)), Piece::kTriangle,
-                        solver_.b1[i], solver_.b2[i], depth * tile_.distance_per_depth_[at]);
+        if (!(strip_.on_mesh & strip_.inside & 1u << i))
+            return find_hit(geometry_, view_, strip_.id(i), place.position(i));
+        const Run& run = solver_.run_of(strip_.id(i));
+        const double depth = std::max(strip_.depth[i], view_.pinhole.near);
+        return make_hit(triangles.objects[run.object].object, Triangles::index(run, strip_.id(i)), Piece::kTriangle,
+                        strip_.b1[i], strip_.b2[i], depth * tile_.distance_per_depth_[at]);
     }
 
     HitTile& tile_;
@@ -130,6 +127,7 @@ private:
     const PassView& view_;
     NoVaryings nothing_;
     StripSolver<NoVaryings> solver_;
+    SolvedStrip<NoVaryings> strip_;
 };
 
 void HitTile::make_room() {

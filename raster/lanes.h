@@ -137,6 +137,19 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
 #endif
 }
 
+inline std::uint32_t lane_bits(const xsimd::batch_bool<float>& lanes) { return lane_bits(xsimd::bool_cast(lanes)); }
+
+/// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
+template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
+#if defined(__AVX512F__)
+    return typename xsimd::batch_bool<T>::register_type(bits);
+#else
+    std::array<bool, xsimd::batch<T>::size> lanes;
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = bits >> i & 1;
+    return xsimd::batch_bool<T>::load_unaligned(lanes.data());
+#endif
+}
+
 /// The column and row of each sample of a strip.
 template <typename T> StripOf<T> strip_columns() {
     StripOf<T> result;
