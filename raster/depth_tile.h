@@ -51,9 +51,12 @@ public:
 
 private:
     struct Edges;
+    struct BlockRow;
     struct Nearness;
-    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0, int y1,
-                             bool all);
+    std::uint32_t not_hidden(int row, float nearest) const;
+    template <bool kAll>
+    std::uint64_t draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle, int column,
+                             int row, int y0, int y1);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
     void keep_nearest(std::size_t place, std::uint32_t id, float nearness);

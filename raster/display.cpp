@@ -68,11 +68,16 @@ private:
     }
 
     void strip(const PixelRect& block, int y) {
-        const StripPlace place = strip_place(tile_, block.x0, y);
         const PixelRect rect = intersect(block, {block.x0, y, block.x1, y + kStripRows});
-        if (background_ && samples_seen(place.ids) == 0) return fill(rect, *background_, picture_);
+        const std::uint32_t place = tile_.place(block.x0, y);
+        if (background_ && samples_seen(tile_.ids() + place) == 0) return fill(rect, *background_, picture_);
         if (shader_ == nullptr) return shade_one_by_one(rect);
-        places_[count_++] = place;
+        StripPlace& next = places_[count_++]; // written once, not copied: it will be read at once
+        next.x = block.x0;
+        next.y = y;
+        next.ids = tile_.ids() + place;
+        next.nearness = tile_.nearness() + place;
+        next.offset = tile_.offset();
     }
 
     /// The strips of a row of blocks that are left.

@@ -1,27 +1,34 @@
 #include "raster/encode_strip.h"
 
 #include "common/image/srgb.h"
+#include "common/vec/simd.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace duet::raster {
 namespace {
 
-/// How far from a change of code the polynomial's word is taken: four times its error.
+/// How far from a change of code the polynomial's word is taken: three times its error.
 constexpr float kDoubt = 0x1p-11f;
 
-/// 255 · srgb_encode(x) + ½ to within 1.3e-4 + rounding, for x in [0, 1]: above the straight part a polynomial in
-/// ⁴√x, whose 5/3rd power the curve is; Chebyshev interpolation between ⁴√0.0031308 and 1.
+/// 255 · srgb_encode(x) + ½ to within 1.6e-4, for x in [0, 1]: above the straight part x = m·2^e, m in [1, 2), and x^(5/12)
+/// is a polynomial in m (Chebyshev interpolation) times a power of two that a table has.
 Floats code_and_half(Floats x) {
-    constexpr std::array<float, 8> kPolynomial{-14.438328742980957f, 32.004051208496094f,   369.8117370605469f,
-                                               -285.8165588378906f,  292.361328125f,        -212.61557006835938f,
-                                               91.53132629394531f,   -17.33802604675293f};
-    // Where x is tiny, the straight part is chosen.
-    const Floats positive = max(x, Floats(1e-6f)), root = positive * inverse_sqrt(positive), q = root * inverse_sqrt(root);
-    Floats curve(kPolynomial.back());
-    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) curve = xsimd::fma(curve, q, Floats(kPolynomial[i]));
-    return xsimd::select(x <= Floats(0.0031308f), x * Floats(255 * 12.92f) + Floats(0.5f), curve);
+    constexpr std::array<float, 7> kPolynomial{0.3518701494f, 1.057500362f, -0.6761592627f, 0.3797715604f, -0.1397501379f, 0.029459171f, -0.002691525733f};
+    static const StripOf<float> kScales = [] { // of e from -15 on; of 0 the last
+        StripOf<float> scales;
+        for (std::size_t i = 0; i < kStrip; ++i)
+            scales[i] = static_cast<float>(255 * 1.055 * std::pow(2.0, (static_cast<double>(i) - 15) / 2.4));
+        return scales;
+    }();
+    const Ints bits = xsimd::bitwise_cast<Ints>(x);
+    const Floats m = xsimd::bitwise_cast<Floats>((bits & Ints(0x007fffff)) | Ints(0x3f800000));
+    Floats power(kPolynomial.back());
+    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) power = fused(power, m, Floats(kPolynomial[i]));
+    const Floats curve = fused(power, look_up(kScales, bits >> 23), Floats(static_cast<float>(0.5 - 255 * 0.055)));
+    return xsimd::select(x <= Floats(0.0031308f), fused(x, Floats(static_cast<float>(255 * 12.92)), Floats(0.5f)), curve);
 }
 
 /// The codes of one channel; `worst` grows to the distance from the middle of a code of what lies farthest from it.

@@ -77,7 +77,7 @@ private:
             const FragmentOf<S, Floats> fragment{derivatives(strip, i),
                                                  varyings<S, Floats>(gather(strip.at, i)),
                                                  strips::vector(strip.ng, 0, i),
-                                                 eyes_.at(x, y),
+                                                 view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
                                                  depth,
                                                  place.nearness != nullptr
