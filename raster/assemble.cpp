@@ -70,6 +70,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     }
     small_.clear();
     touches_.clear();
+    patch_touches_.clear();
     const Shape& shape = triangles.shape(run);
     mesh_ = std::get_if<Mesh>(&shape);
     Outlines outlines;
@@ -80,7 +81,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     }
     cover_candidates();
     find_nearness();
-    sorter_.sort(batch, touches_, plan.grid.size());
+    sorter_.sort(batch, touches_, patch_touches_, plan.grid.size());
 }
 
 namespace {
@@ -319,8 +320,15 @@ void Assembler::find_nearness() {
     for (std::size_t first = 0; first < small_.size(); first += kStrip) {
         const std::size_t count = std::min(kStrip, small_.size() - first);
         find_planes(first, count, planes);
-        for (std::size_t i = 0; i < count; ++i)
-            add_fragments(small_[first + i], planes[0][i], planes[1][i], planes[2][i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Small& small = small_[first + i];
+            const NearnessPlane plane{planes[0][i], planes[1][i], planes[2][i]};
+            constexpr int kFew = 2; // cheaper one by one
+            if (plan_->patches && std::popcount(small.covered) > kFew)
+                add_patch(small, plane);
+            else
+                add_fragments(small, plane);
+        }
     }
 }
 
@@ -362,8 +370,26 @@ void Assembler::find_planes(std::size_t first, std::size_t count, std::array<Str
     }
 }
 
+void Assembler::add_patch(const Small& small, const NearnessPlane& plane) {
+    const auto number = static_cast<std::uint32_t>(batch_->patches.size());
+    batch_->patches.push_back({.covered = small.covered,
+                               .well_inside = small.well_inside,
+                               .nearness = plane,
+                               .id = run_.first_id + small.index - run_.first,
+                               .x = small.x,
+                               .y = small.y});
+    std::uint64_t columns = small.covered | small.covered >> 32; // all rows or-ed
+    columns |= columns >> 16;
+    columns |= columns >> 8;
+    const auto length = [](std::uint64_t bits) { return 64 - std::countl_zero(bits); };
+    const int width = length(columns & 0xff), height = (length(small.covered) + kSmallSide - 1) / kSmallSide;
+    plan_->grid.for_each({small.x, small.y, small.x + width, small.y + height}, [&](std::size_t tile) {
+        patch_touches_.push_back({static_cast<std::uint32_t>(tile), number});
+    });
+}
+
 /// The covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
-void Assembler::add_fragments(const Small& small, double x, double y, double constant) {
+void Assembler::add_fragments(const Small& small, const NearnessPlane& plane) {
     constexpr std::uint32_t kSize = TileGrid::kTileSize;
     const std::uint32_t id = run_.first_id + small.index - run_.first;
     const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
@@ -371,7 +397,7 @@ void Assembler::add_fragments(const Small& small, double x, double y, double con
     const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
     for (std::uint64_t bits = small.covered; bits != 0; bits &= bits - 1) {
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
-        double nearness = (constant + down * y) + across * x;
+        double nearness = (plane.constant + down * plane.y) + across * plane.x;
         if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
         if (!(small.well_inside >> bit & 1))
             nearness = interpolate(triangles_->whole(run_, small.index),

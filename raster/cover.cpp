@@ -45,14 +45,18 @@ Ray rounded(const Rayd& exact, float time) {
 void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
            std::size_t index, DepthTile& tile) {
     tile.reset(rect, offset, view.viewport);
-    for (const TileLists::Item& item : geometry.outlines.tile(index)) {
-        const Batch& batch = geometry.batches[item.batch];
-        constexpr std::uint32_t kAhead = 8;
-        for (std::uint32_t k = 0; k < item.count; ++k) {
-            if (k + kAhead < item.count) prefetch(&batch.triangles[batch.order[item.first + k + kAhead]]);
-            tile.draw(batch.triangles[batch.order[item.first + k]], geometry.triangles);
+    constexpr std::uint32_t kAhead = 8;
+    const auto draw_all = [&](const TileLists& lists, const auto& items, const auto& order) {
+        for (const TileLists::Item& item : lists.tile(index)) {
+            const Batch& batch = geometry.batches[item.batch];
+            for (std::uint32_t k = 0; k < item.count; ++k) {
+                if (k + kAhead < item.count) prefetch(&(batch.*items)[(batch.*order)[item.first + k + kAhead]]);
+                tile.draw((batch.*items)[(batch.*order)[item.first + k]], geometry.triangles);
+            }
         }
-    }
+    };
+    draw_all(geometry.outlines, &Batch::triangles, &Batch::order);
+    draw_all(geometry.patches, &Batch::patches, &Batch::patch_order);
     for (const TileLists::Item& item : geometry.fragments.tile(index))
         tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));
     if (!geometry.spheres.empty())

@@ -136,13 +136,25 @@ struct DepthTile::Nearness {
     }
 };
 
+/// The samples from a place on, as many as there are lanes, of which those given show a triangle.
+template <typename Lanes>
+void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
+    const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
+    const Floats before = Floats::load_aligned(&nearness_[place]);
+    auto wins = nearness > before;
+    if (!sabotaged(Guard::kDrawOrder)) wins = wins || (nearness == before && xsimd::bool_cast(id < id_before));
+    wins = wins && lanes;
+    xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
+    xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
+}
+
 /// Draws those samples of a block that are covered for certain and lie well inside; `kAll` of them do, or the edges say
 /// which, from their values at the block's first sample on. Returns the other covered ones, a bit each. Only the strips of
 /// rows y0 to y1 of the block are looked at.
 template <bool kAll>
 std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle,
                                     int column, int row, int y0, int y1) {
-    const Ints id(static_cast<std::int32_t>(triangle.id)), zero(0);
+    const Ints zero(0);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
     const Ints margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : std::int64_t{0x7fffffff}));
     const Nearness nearness(triangle.nearness, viewport_,
@@ -165,13 +177,7 @@ std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::in
                 edge_samples |= std::uint64_t{covered_bits & ~lane_bits(well_inside)} << in_block;
                 inside = xsimd::bool_cast(well_inside);
             }
-            const Floats before = Floats::load_aligned(&nearness_[place]), here = nearness.at(in_block);
-            const Ints id_before = Ints::load_aligned(&ids_[place]);
-            auto wins = here > before;
-            if (!sabotaged(Guard::kDrawOrder)) wins = wins || (here == before && xsimd::bool_cast(id < id_before));
-            wins = wins && inside;
-            xsimd::select(wins, here, before).store_aligned(&nearness_[place]);
-            xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
+            keep_nearest(place, static_cast<std::int32_t>(triangle.id), nearness.at(in_block), inside);
         }
         for (std::size_t k = 0; k < 3; ++k) value[k] += edges.next_strip[k];
     }
@@ -189,6 +195,54 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTrian
         const Interpolated here = at.at(offset_.position(x, y), all.piece);
         keep_nearest(static_cast<std::uint32_t>(block * kBlock * kBlock) + static_cast<std::uint32_t>(bit), triangle.id,
                      kept_nearness(here.nearness(viewport_.near)));
+    }
+}
+
+namespace {
+
+/// Those bits of a box of 8 × 8 that lie in a block, if its first is `x` to the right of the block's and `y` below.
+std::uint64_t moved(std::uint64_t bits, int x, int y) {
+    constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
+    if (x >= 0)
+        bits = (bits & kFirstColumn * (0xffu >> x)) << x;
+    else
+        bits = bits >> -x & kFirstColumn * (0xffu >> -x);
+    return y >= 0 ? bits << 8 * y : bits >> 8 * -y;
+}
+
+} // namespace
+
+// Its box lies over up to four blocks.
+void DepthTile::draw(const Patch& patch, const WholeTriangles& whole) {
+    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
+    const int first_column = x >> 3, first_row = y >> 3; // -1: it begins beside the tile
+    for (int row = std::max(first_row, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
+        for (int column = std::max(first_column, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column) {
+            const std::uint64_t covered = moved(patch.covered, x - column * kBlock, y - row * kBlock);
+            if (covered == 0) continue;
+            const std::uint64_t sure = covered & moved(patch.well_inside, x - column * kBlock, y - row * kBlock);
+            const auto block = static_cast<std::size_t>(row * kBlocks + column);
+            drawn_[block] = true;
+            draw_block(patch, column, row, sure);
+            if (covered == sure) continue;
+            const WholeTriangle all = whole.whole(patch.id);
+            for (std::uint64_t left = covered & ~sure; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                const Vec2d pixel = offset_.position(rect_.x0 + column * kBlock + bit % kBlock, rect_.y0 + row * kBlock + bit / kBlock);
+                keep_nearest(static_cast<std::uint32_t>(block * kBlockSamples) + static_cast<std::uint32_t>(bit), patch.id,
+                             kept_nearness(interpolate(all, pixel).nearness(viewport_.near)));
+            }
+        }
+}
+
+/// Draws those samples of a block.
+void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_t samples) {
+    const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
+    const auto block = static_cast<std::size_t>(row * kBlocks + column);
+    for (std::size_t i = 0; i < kBlockSamples; i += Floats::size) {
+        const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
+        if (here == 0) continue;
+        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(patch.id), nearness.at(i), lanes_from<float>(here));
     }
 }
 

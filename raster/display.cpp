@@ -17,7 +17,8 @@ namespace {
 Rgba8 encoded(const SrgbEncoder& encode, Rgb c) { return {encode(c.r), encode(c.g), encode(c.b), 255}; }
 
 bool is_empty(const Geometry& geometry, std::size_t index) {
-    return geometry.outlines.tile(index).empty() && geometry.fragments.tile(index).empty() &&
+    return geometry.outlines.tile(index).empty() && geometry.patches.tile(index).empty() &&
+           geometry.fragments.tile(index).empty() &&
            (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
 }
 

@@ -107,7 +107,7 @@ void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
 
 std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
-                        fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
+                        patches.memory_bytes() + fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
     for (const TransformedObject& object : triangles.objects)
         bytes += object.vertices.size() * sizeof(SnappedVertex);
     for (const Batch& batch : batches) bytes += batch.memory_bytes();
@@ -118,7 +118,7 @@ namespace {
 
 void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
              const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const Settings& settings, Geometry& result) {
+             const Settings& settings, bool patches, Geometry& result) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
@@ -134,11 +134,12 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
-    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only}, settings.threads,
+    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only, patches}, settings.threads,
              result);
     result.setup_seconds = watch.lap();
 
     result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
+    result.patches.gather(result.batches, &Batch::patch_segments, grid.size());
     result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
     result.sphere_bins = bin(grid, result.spheres);
     result.bin_seconds = watch.lap();
@@ -148,12 +149,12 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result) {
-    process(data, data.polygonal, data.spheres, grid, view, settings, result);
+    process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
 }
 
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result) {
-    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, result);
+    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, false, result);
 }
 
 } // namespace duet::raster
