@@ -220,8 +220,9 @@ TEST_SUITE("unit") {
                 const auto tile = static_cast<std::uint32_t>(random.integer(0, kTiles - 1) * random.integer(0, 1));
                 touches.push_back({tile, i});
                 wanted[tile].push_back(i);
-                patch_touches.push_back({(tile + 7) % kTiles, i});
-                wanted_patches[(tile + 7) % kTiles].push_back(i);
+                const auto other = static_cast<std::uint32_t>((tile + 7) % kTiles);
+                patch_touches.push_back({other, i});
+                wanted_patches[other].push_back(i);
                 Fragment fragment;
                 fragment.id = i;
                 fragment.tile = static_cast<std::uint16_t>(kTiles - 1 - tile);
