@@ -50,7 +50,7 @@ private:
     void find_nearness();
     void find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const;
     void add_patch(const Small& small, const NearnessPlane& plane);
-    void add_fragments(const Small& small, const NearnessPlane& plane);
+    void add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane);
 
     const AssemblyPlan* plan_ = nullptr;
     const Triangles* triangles_ = nullptr;

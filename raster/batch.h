@@ -20,11 +20,10 @@ struct Fragment {
 };
 static_assert(sizeof(Fragment) == 12);
 
-/// The samples of a triangle so small that a box of 8 × 8 has them all.
-struct alignas(64) Patch {
-    std::uint64_t covered = 0;     ///< a bit for each sample of the box, row by row
-    std::uint64_t well_inside = 0; ///< of those, where the plane of nearness holds
-    NearnessPlane nearness;        ///< counted from the box's first sample
+/// Samples of a triangle so small that a box of 8 × 8 has them all.
+struct Patch {
+    std::uint64_t samples = 0; ///< a bit for each of the box, row by row
+    NearnessPlane nearness;    ///< holds there; counted from the box's first sample
     std::uint32_t id = 0;
     std::int32_t x = 0, y = 0; ///< the box's first pixel
 };

@@ -17,6 +17,27 @@ void draw(const DrawSphere& sphere, const PassView& view, DepthTile& tile) {
         }
 }
 
+/// A tile's items of all batches, in order; asked for from memory ahead of time.
+template <typename Item, typename Draw>
+void draw_all(const Geometry& geometry, std::span<const TileLists::Item> lists, std::vector<Item> Batch::*items,
+              std::vector<std::uint32_t> Batch::*order, const Draw& draw_one) {
+    constexpr std::uint32_t kAhead = 8;
+    const auto item = [&](const TileLists::Item& list, std::uint32_t k) -> const Item& {
+        const Batch& batch = geometry.batches[list.batch];
+        return (batch.*items)[(batch.*order)[list.first + k]];
+    };
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        if (i == 0)
+            for (std::uint32_t k = 0; k < std::min(kAhead, lists[i].count); ++k) prefetch(&item(lists[i], k));
+        if (i + 1 < lists.size())
+            for (std::uint32_t k = 0; k < std::min(kAhead, lists[i + 1].count); ++k) prefetch(&item(lists[i + 1], k));
+        for (std::uint32_t k = 0; k < lists[i].count; ++k) {
+            if (k + kAhead < lists[i].count) prefetch(&item(lists[i], k + kAhead));
+            draw_one(item(lists[i], k));
+        }
+    }
+}
+
 Hit make_hit(std::uint32_t object, std::uint32_t primitive, Piece piece, double b1, double b2, double distance) {
     Hit hit{.object = object, .primitive = primitive, .t = static_cast<float>(distance)};
     switch (piece) {
@@ -45,18 +66,9 @@ Ray rounded(const Rayd& exact, float time) {
 void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
            std::size_t index, DepthTile& tile) {
     tile.reset(rect, offset, view.viewport);
-    constexpr std::uint32_t kAhead = 8;
-    const auto draw_all = [&](const TileLists& lists, const auto& items, const auto& order) {
-        for (const TileLists::Item& item : lists.tile(index)) {
-            const Batch& batch = geometry.batches[item.batch];
-            for (std::uint32_t k = 0; k < item.count; ++k) {
-                if (k + kAhead < item.count) prefetch(&(batch.*items)[(batch.*order)[item.first + k + kAhead]]);
-                tile.draw((batch.*items)[(batch.*order)[item.first + k]], geometry.triangles);
-            }
-        }
-    };
-    draw_all(geometry.outlines, &Batch::triangles, &Batch::order);
-    draw_all(geometry.patches, &Batch::patches, &Batch::patch_order);
+    draw_all(geometry, geometry.outlines.tile(index), &Batch::triangles, &Batch::order,
+             [&](const DrawTriangle& triangle) { tile.draw(triangle, geometry.triangles); });
+    draw_all(geometry, geometry.patches.tile(index), &Batch::patches, &Batch::patch_order, [&](const Patch& patch) { tile.draw(patch); });
     for (const TileLists::Item& item : geometry.fragments.tile(index))
         tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));
     if (!geometry.spheres.empty())
@@ -96,7 +108,7 @@ Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, V
 class HitTile::Filler {
 public:
     Filler(HitTile& tile, const Geometry& geometry, const PassView& view)
-        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_) {}
+        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
         solver_.solve(std::span(&place, 1), std::span(&strip_, 1), false);

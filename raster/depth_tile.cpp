@@ -15,13 +15,15 @@ struct DepthTile::Edges {
     std::array<double, 3> at; ///< at the tile's first sample
     std::array<double, 3> a, b;
     Origin origin; ///< of the triangle's plane
-    std::int64_t margin;
+    std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
     std::array<std::int32_t, 3> next_strip;    ///< from a strip to the one below
 
     Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
-        : origin(raster::origin(triangle.corners, viewport)), margin((inside_margin(triangle) + kSubPixels - 1) >> kSubPixelBits) {
+        : origin(raster::origin(triangle.corners, viewport)) {
         const auto& p = triangle.corners;
+        const std::array<std::int64_t, 3> margins = edge_margins(triangle);
+        constexpr std::int32_t kNever = 0x7fffffff;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
             at[k] = static_cast<double>(
@@ -29,6 +31,7 @@ struct DepthTile::Edges {
                 kSubPixelBits);
             a[k] = static_cast<double>(edge.a);
             b[k] = static_cast<double>(edge.b);
+            margin[k] = triangle.sound ? static_cast<std::int32_t>((margins[k] + kSubPixels - 1) >> kSubPixelBits) : kNever;
             next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
             const Ints right(static_cast<std::int32_t>(edge.a)), down(static_cast<std::int32_t>(edge.b));
             for (std::size_t i = 0; i < kStrip; i += Ints::size)
@@ -52,7 +55,7 @@ struct DepthTile::BlockRow {
                 const double most = std::max(right, 0.0) + std::max(down, 0.0), least = std::min(right, 0.0) + std::min(down, 0.0);
                 const Doubles here = Doubles(edges.at[k] + edges.b[k] * (row * kBlock)) + Doubles(edges.a[k]) * x;
                 not_all_out = not_all_out && here >= Doubles(-most);
-                all_in = all_in && here >= Doubles(static_cast<double>(edges.margin) - least);
+                all_in = all_in && here >= Doubles(edges.margin[k] - least);
                 store_ints(min(max(here, Doubles(-kFar)), Doubles(kFar)), &first[k][i]);
             }
             some |= lane_bits(not_all_out) << i;
@@ -156,7 +159,6 @@ std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::in
                                     int column, int row, int y0, int y1) {
     const Ints zero(0);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    const Ints margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : std::int64_t{0x7fffffff}));
     const Nearness nearness(triangle.nearness, viewport_,
                             rect_.x0 + column * kBlock - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
                             rect_.y0 + row * kBlock - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels);
@@ -169,9 +171,10 @@ std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::in
             const std::size_t in_block = static_cast<std::size_t>(strip) * kStrip + i, place = block * kBlockSamples + in_block;
             xsimd::batch_bool<float> inside(true);
             if constexpr (!kAll) {
-                const Ints least = min(min(Ints(value[0]) + load(edges.step[0], i), Ints(value[1]) + load(edges.step[1], i)),
-                                       Ints(value[2]) + load(edges.step[2], i));
-                const auto covered = least >= zero, well_inside = least >= margin;
+                const Ints e0 = Ints(value[0]) + load(edges.step[0], i), e1 = Ints(value[1]) + load(edges.step[1], i),
+                           e2 = Ints(value[2]) + load(edges.step[2], i);
+                const auto covered = min(min(e0, e1), e2) >= zero;
+                const auto well_inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
                 const std::uint32_t covered_bits = lane_bits(covered);
                 if (covered_bits == 0) continue;
                 edge_samples |= std::uint64_t{covered_bits & ~lane_bits(well_inside)} << in_block;
@@ -213,32 +216,19 @@ std::uint64_t moved(std::uint64_t bits, int x, int y) {
 } // namespace
 
 // Its box lies over up to four blocks.
-void DepthTile::draw(const Patch& patch, const WholeTriangles& whole) {
+void DepthTile::draw(const Patch& patch) {
     const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
-    const int first_column = x >> 3, first_row = y >> 3; // -1: it begins beside the tile
-    for (int row = std::max(first_row, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
-        for (int column = std::max(first_column, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column) {
-            const std::uint64_t covered = moved(patch.covered, x - column * kBlock, y - row * kBlock);
-            if (covered == 0) continue;
-            const std::uint64_t sure = covered & moved(patch.well_inside, x - column * kBlock, y - row * kBlock);
-            const auto block = static_cast<std::size_t>(row * kBlocks + column);
-            drawn_[block] = true;
-            draw_block(patch, column, row, sure);
-            if (covered == sure) continue;
-            const WholeTriangle all = whole.whole(patch.id);
-            for (std::uint64_t left = covered & ~sure; left != 0; left &= left - 1) {
-                const int bit = std::countr_zero(left);
-                const Vec2d pixel = offset_.position(rect_.x0 + column * kBlock + bit % kBlock, rect_.y0 + row * kBlock + bit / kBlock);
-                keep_nearest(static_cast<std::uint32_t>(block * kBlockSamples) + static_cast<std::uint32_t>(bit), patch.id,
-                             kept_nearness(interpolate(all, pixel).nearness(viewport_.near)));
-            }
-        }
+    for (int row = std::max(y >> 3, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
+        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column)
+            draw_block(patch, column, row, moved(patch.samples, x - column * kBlock, y - row * kBlock));
 }
 
 /// Draws those samples of a block.
 void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_t samples) {
+    if (samples == 0) return;
     const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
+    drawn_[block] = true;
     for (std::size_t i = 0; i < kBlockSamples; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
         if (here == 0) continue;

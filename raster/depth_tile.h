@@ -27,7 +27,7 @@ public:
 
     /// Draws a triangle. `whole` is asked for what it is a part of where snapping has a say.
     void draw(const DrawTriangle& triangle, const WholeTriangles& whole);
-    void draw(const Patch& patch, const WholeTriangles& whole);
+    void draw(const Patch& patch);
     void draw(std::span<const Fragment> fragments);
     /// One sample: `x` and `y` are the pixel's.
     void draw(int x, int y, std::uint32_t id, float nearness) { keep_nearest(place(x, y), id, nearness); }

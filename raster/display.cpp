@@ -91,15 +91,16 @@ private:
     }
 
     void keep(const StripPlace& place, const StripCodes& codes) {
-        const PixelRect rect =
-            intersect(tile_.rect(), {place.x, place.y, place.x + static_cast<int>(kStripWidth), place.y + kStripRows});
-        for (int row = 0; row < rect.height(); ++row) {
-            const Rgba8* from = codes.at(static_cast<std::size_t>(row) * kStripWidth);
-            if (rect.width() == static_cast<int>(kStripWidth))
-                std::memcpy(static_cast<void*>(&picture_(rect.x0, rect.y0 + row)), from, kStripWidth * sizeof(Rgba8));
-            else
-                std::copy_n(from, rect.width(), &picture_(rect.x0, rect.y0 + row));
+        const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - place.x),
+                  height = std::min(kStripRows, tile_.rect().y1 - place.y);
+        if (width == static_cast<int>(kStripWidth) && height == kStripRows) {
+            Rgba8* to = &picture_(place.x, place.y);
+            for (std::size_t row = 0; row < kStripRows; ++row, to += picture_.width())
+                std::memcpy(static_cast<void*>(to), codes.at(row * kStripWidth), kStripWidth * sizeof(Rgba8));
+            return;
         }
+        for (int row = 0; row < height; ++row)
+            std::copy_n(codes.at(static_cast<std::size_t>(row) * kStripWidth), width, &picture_(place.x, place.y + row));
     }
 
     void shade_one_by_one(const PixelRect& r) {

@@ -6,12 +6,14 @@
 #include "raster/one_sample.h"
 #include "raster/solve.h"
 
+#include "common/vec/robust.h"
+
 namespace duet::raster {
 
 template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
 public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
-        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader),
+        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
           ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
           eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile) {}
 
@@ -111,12 +113,14 @@ private:
             return ScreenDerivatives<Many, false>{};
     }
 
-    /// As surface_point() has it, but for what base colours don't depend on.
+    /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
+    /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
     Rgb base_color(std::size_t sample) const override {
         if (!(strip_->seen >> sample & 1)) return {};
-        if (data_.scene.needs.footprints) return filtered_color(sample);
         const Mesh& mesh = *strip_->mesh;
-        const double u = strip_->b1[sample], v = strip_->b2[sample];
+        const bool filtered = data_.scene.needs.footprints;
+        const auto kept = [&](double b) { return filtered ? static_cast<double>(static_cast<float>(b)) : b; }; // as by a Hit
+        const double u = kept(strip_->b1[sample]), v = kept(strip_->b2[sample]);
         const auto& corners = mesh.triangles[strip_->index(sample)];
         SurfacePoint point;
         point.object = strip_->object->object;
@@ -126,21 +130,23 @@ private:
         const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
         point.p_object = Vec3(a + (b - a) * u + (c - a) * v);
         point.uv = Vec2(static_cast<float>(u), static_cast<float>(v));
+        Vec2d along_u(1, 0), along_v(0, 1); // changes of the texture coordinates
         if (!mesh.uvs.empty()) {
             const auto uv = [&](std::size_t k) { return Vec2d(mesh.uvs[corners[k]]); };
             point.uv = Vec2(uv(0) * (1 - u - v) + uv(1) * u + uv(2) * v);
+            along_u = uv(1) - uv(0);
+            along_v = uv(2) - uv(0);
+        }
+        if (filtered && difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0) {
+            const double scale = 1 / std::sqrt(samples_per_pixel(*place_, view_)); // as PixelFootprint's
+            const auto step = [&](std::size_t axis) {
+                return Vec2((along_u * static_cast<double>(strip_->b1_steps[axis][sample]) +
+                             along_v * static_cast<double>(strip_->b2_steps[axis][sample])) * scale);
+            };
+            point.duv_dx = step(0);
+            point.duv_dy = step(1);
         }
         return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
-    }
-
-    Rgb filtered_color(std::size_t sample) const {
-        const Rayd exact = view_.pinhole.ray(place_->position(sample));
-        const Hit hit{.object = strip_->object->object,
-                      .primitive = static_cast<std::uint32_t>(strip_->index(sample)),
-                      .u = static_cast<float>(strip_->b1[sample]),
-                      .v = static_cast<float>(strip_->b2[sample]),
-                      .t = static_cast<float>(strip_->depth[sample] * exact.t_min / view_.pinhole.near)};
-        return hit_color(data_.scene, view_, rounded(exact, view_.time), hit, samples_per_pixel(*place_, view_));
     }
 
     const PreparedData& data_;

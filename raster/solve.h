@@ -20,6 +20,7 @@ template <VertexShader S> struct SolvedStrip : StripSamples {
     std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
     StripOf<double> b1, b2;                                       ///< barycentrics of the second and third corner
     StripOf<double> depth;                                        ///< camera-space −z
+    std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
     /// A bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
     std::uint32_t inside = 0;
     std::array<std::uint32_t, kFew> few_kept{}; ///< where the few triangles' set-ups are
@@ -31,10 +32,10 @@ public:
     using Solved = SolvedStrip<S>;
     static constexpr std::size_t kMost = 32; ///< strips at a time
 
-    /// Pixels are counted from the tile's corner.
-    StripSolver(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
+    /// Pixels are counted from the tile's corner. `steps`: find the barycentrics' derivatives, too.
+    StripSolver(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader, bool steps)
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
-          origin_x_(tile.x0), origin_y_(tile.y0) {}
+          origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
     /// For up to kMost strips, of which those that see no mesh are only read. `mend`: solve otherwise where the solution does
     /// not hold as it is.
@@ -79,6 +80,7 @@ private:
     StripReader reader_;
     SetUps<S> set_ups_;
     int origin_x_, origin_y_;
+    bool steps_;
 };
 
 /// What has nothing to interpolate: for who wants barycentrics and depths alone.
@@ -130,7 +132,7 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
     const Doubles zero(0.0);
     strip.inside = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        std::array<Doubles, 2> first_b, second_b, d1_dx, d1_dy, d2_dx, d2_dy;
+        std::array<Doubles, 2> first_b, second_b, d1_dx{zero, zero}, d1_dy{zero, zero}, d2_dx{zero, zero}, d2_dy{zero, zero};
         for (std::size_t half = 0; half < 2; ++half) {
             const std::size_t k = i + half * Doubles::size;
             const Doubles x = positions.x(k), y = positions.y(k);
@@ -149,7 +151,7 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
             strip.inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
             first_b[half] = e1 * inverse;
             second_b[half] = e2 * inverse;
-            if constexpr (kDerivatives)
+            if (kDerivatives || steps_)
                 set_ups.template for_each<double>(k, [&](const auto& one, const auto& merge) {
                     const auto along = [&](const auto& plane, const Doubles& b, std::size_t axis) -> Doubles {
                         return (lanes_of(plane[axis], k) - b * lanes_of(one.sum[axis], k)) * inverse;
@@ -177,9 +179,14 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
         store(strip.ng[0], i, ng_here.x);
         store(strip.ng[1], i, ng_here.y);
         store(strip.ng[2], i, ng_here.z);
+        if (!kDerivatives && !steps_) continue;
+        const Floats u_dx = narrowed(d1_dx[0], d1_dx[1]), v_dx = narrowed(d2_dx[0], d2_dx[1]);
+        const Floats u_dy = narrowed(d1_dy[0], d1_dy[1]), v_dy = narrowed(d2_dy[0], d2_dy[1]);
+        store(strip.b1_steps[0], i, u_dx);
+        store(strip.b1_steps[1], i, u_dy);
+        store(strip.b2_steps[0], i, v_dx);
+        store(strip.b2_steps[1], i, v_dy);
         if constexpr (kDerivatives) {
-            const Floats u_dx = narrowed(d1_dx[0], d1_dx[1]), v_dx = narrowed(d2_dx[0], d2_dx[1]);
-            const Floats u_dy = narrowed(d1_dy[0], d1_dy[1]), v_dy = narrowed(d2_dy[0], d2_dy[1]);
             std::array<Floats, kCount> dx_here, dy_here;
             set_ups.template for_each<float>(i, [&](const auto& one, const auto& merge) {
                 for (std::size_t c = 0; c < kCount; ++c) {
