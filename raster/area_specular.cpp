@@ -58,7 +58,7 @@ Rgb area_reflection(const SurfaceLight& light, const MetalBsdf& bsdf, const Shad
         polygon.v[i] = lobe.to_cosine({turn.x * w.x + turn.y * w.y, turn.x * w.y - turn.y * w.x, w.z});
     }
     const double part = polygon_form_factor_times_pi({}, {0, 0, 1}, std::span<const Vec3>(polygon.v.data(), polygon.count));
-    return light.radiance * ggx_albedo(bsdf.alpha, wo.z).of(bsdf.reflectance) * static_cast<float>(part / kPiDouble);
+    return light.radiance * bsdf.albedo(wo.z) * static_cast<float>(part / kPiDouble);
 }
 
 } // namespace duet::raster

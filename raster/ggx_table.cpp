@@ -11,11 +11,11 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kAlbedoSide = 32, kLobeSide = 16; // entries by roughness and by angle
+constexpr int kLobeSide = 16; // entries by roughness and by angle
 constexpr float kSmoothest = 0.05f, kRoughest = 1; // roughness is √alpha
-constexpr int kAlbedoSamples = 512, kFitSamples = 160;
+constexpr int kMomentSamples = 512, kFitSamples = 160;
 
-// Where entries lie: roughness in equal steps, angles by √(1 − cos), in which both tables are smooth.
+// Where entries lie: roughness in equal steps, angles by √(1 − cos), in which the table is smooth.
 float roughness_of(int row, int side) {
     return lerp(kSmoothest, kRoughest, static_cast<float>(row) / static_cast<float>(side - 1));
 }
@@ -46,18 +46,16 @@ struct Lobe {
 
 /// All of the lobe's light and where it goes in the mean.
 struct Moments {
-    double energy = 0, offset = 0; ///< of it: Schlick's share, weighed by (1 − cos)⁵
+    double energy = 0;
     Vec3d mean;
 };
 Moments moments(const Lobe& lobe) {
     Moments sum;
-    for (int i = 0; i < kAlbedoSamples; ++i) {
-        const Vec3d wi = lobe.sample(point(i, kAlbedoSamples));
-        const double weight = lobe.weight(wi) / kAlbedoSamples;
+    for (int i = 0; i < kMomentSamples; ++i) {
+        const Vec3d wi = lobe.sample(point(i, kMomentSamples));
+        const double weight = lobe.weight(wi) / kMomentSamples;
         if (weight == 0) continue;
-        const double x = 1 - 0.5 * length(lobe.wo + wi);
         sum.energy += weight;
-        sum.offset += weight * x * x * x * x * x;
         sum.mean += wi * weight;
     }
     sum.mean.y = 0;
@@ -187,19 +185,6 @@ template <std::size_t N, int Side> struct Table {
     }
 };
 
-Table<2, kAlbedoSide> albedo_table() {
-    Table<2, kAlbedoSide> table;
-    parallel_for(kAlbedoSide, 0, [&](std::size_t i) {
-        const int row = static_cast<int>(i);
-        for (int column = 0; column < kAlbedoSide; ++column) {
-            const Moments m = moments({static_cast<double>(sqr(roughness_of(row, kAlbedoSide))),
-                                       viewer(static_cast<double>(cosine_of(column, kAlbedoSide)))});
-            table(row, column) = {static_cast<float>(m.energy - m.offset), static_cast<float>(m.offset)};
-        }
-    });
-    return table;
-}
-
 /// Straight above, from the roughest down; then each row from there to the horizon: each fit starts from its
 /// neighbour's.
 Table<5, kLobeSide> lobe_table() {
@@ -235,12 +220,6 @@ template <std::size_t N, int Side> std::array<float, N> look_up(const Table<N, S
 }
 
 } // namespace
-
-Albedo ggx_albedo(float alpha, float cosine) {
-    static const Table<2, kAlbedoSide> table = albedo_table();
-    const auto a = look_up(table, alpha, cosine);
-    return {a[0], a[1]};
-}
 
 LobeMatrix ggx_lobe(float alpha, float cosine) {
     static const Table<5, kLobeSide> table = lobe_table();

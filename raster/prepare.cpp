@@ -5,6 +5,7 @@
 #include "raster/prefiltered.h"
 #include "raster/shadows.h"
 
+#include "common/material/ggx_albedo.h"
 #include "common/system/error.h"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ void prepare_rough_metal(const Settings& settings, PreparedData& data) {
         data.memory_bytes += data.prefiltered->memory_bytes();
     }
     const bool shines = settings.transformed_cosines && settings.parts.direct && needs.surface_lights;
-    if (mirrors || shines) ggx_albedo(1, 1);
+    if (mirrors || shines) ggx_means(1);
     if (shines) ggx_lobe(1, 1);
 }
 

@@ -1,6 +1,7 @@
 // Unidirectional path tracing with next event estimation: at each vertex a light sample and a BSDF sample, combined by
 // multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples (plan.lights is null)
 // it is the naive path tracer, in which only chance finds the lights.
+#include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/path_footprint.h"
@@ -37,7 +38,7 @@ class Split {
 public:
     static constexpr bool kTold = false;
     void start(const Bsdf& first) {
-        diffuse_ = std::holds_alternative<DiffuseBsdf>(first);
+        diffuse_ = is_diffuse(first);
         specular_ = is_specular(first);
     }
     void add(Rgb light, LightSource source, int bounces) { part(source, bounces) += light; }
@@ -72,17 +73,18 @@ private:
 template <typename Sink> class Path {
 public:
     Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), footprint_(plan) {}
+        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Ray ray, Hit hit) {
         for (int depth = 0;; ++depth) {
+            if (plan_.insides) arrive(ray, hit);
             if (!hit.valid()) {
                 if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
                 add_environment(ray.direction, depth);
                 break;
             }
-            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
+            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
             if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
             if (depth == 0) sink_.start(vertex.bsdf);
             add_emission(vertex, ray.direction, depth);
@@ -132,7 +134,8 @@ private:
     void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
         const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
         if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
-        const Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        if (plan_.insides) scattered *= left_on_the_way(vertex, *arrival);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return tell_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
@@ -182,9 +185,31 @@ private:
 
     // Entering glass scales the throughput by 1/η², leaving it by η²: no reason to end or to favour a path.
     void note_refraction(const Vertex& vertex) {
-        const auto* glass = std::get_if<DielectricBsdf>(&vertex.bsdf);
-        if (glass == nullptr) return;
-        refraction_ *= vertex.wo.z > 0 ? 1 / sqr(glass->eta) : sqr(glass->eta);
+        const float eta = refraction_index(vertex.bsdf);
+        refraction_ *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
+        if (plan_.insides && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+    }
+
+    // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
+    void arrive(Ray& ray, Hit& hit) {
+        int passed = 0;
+        hit = insides_.arrive(ray, hit, throughput_, passed);
+        counts_.indirect += passed;
+        if (passed > 0) departure_.certain = true; // shadow rays end at any boundary
+    }
+
+    static bool crosses(const Vertex& vertex) {
+        const auto* glass = std::get_if<Dielectric>(&vertex.material);
+        return glass != nullptr && !glass->thin;
+    }
+
+    // Of a light sample's light, what is not absorbed by what the vertex, or its other side, is inside of.
+    Rgb left_on_the_way(const Vertex& vertex, const Arrival& arrival) const {
+        if (same_hemisphere(vertex.wo, vertex.frame.to_local(arrival.wi)) || !crosses(vertex))
+            return insides_.transmittance(arrival.distance);
+        Insides beyond = insides_;
+        beyond.cross(vertex.point.material, vertex.wo.z > 0);
+        return beyond.transmittance(arrival.distance);
     }
 
     // Russian roulette: ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier,
@@ -215,6 +240,7 @@ private:
     Rgb throughput_{1.0f};
     float refraction_ = 1; // what the path's refractions have scaled its throughput by
     Departure departure_;
+    Insides insides_;
     PathFootprint footprint_;
 };
 
