@@ -149,11 +149,11 @@ Conductor read_conductor(const JsonValue& owner) {
     const JsonValue name = owner.at("conductor");
     if (owner.has("reflectance")) name.fail("expected no reflectance beside it: a conductor has its own");
     if (const auto found = find_conductor(name.string())) return *found;
-    const auto known = conductor_names();
-    std::string list;
-    for (const std::string_view one : known) list += message(list.empty() ? "" : ", ", one);
-    name.fail(message("unknown conductor ", in_quotes(name.string()),
-                      suggestion(name.string(), std::vector(known.begin(), known.end())), "; known are ", list));
+    const std::vector<std::string_view> known(conductor_names().begin(), conductor_names().end());
+    std::string hint = suggestion(name.string(), known);
+    if (hint.empty())
+        for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
+    name.fail(message("unknown conductor ", in_quotes(name.string()), hint));
 }
 
 /// {"color": what is left of white light, "distance": after so many metres}: the coefficients of Beer and Lambert's law.
