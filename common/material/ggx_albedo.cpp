@@ -21,7 +21,7 @@ float alpha_of(int row) { return sqr(roughness_of(row)); }
 float steepness(float alpha, float cosine) { return (1 + alpha) * cosine / (cosine + alpha); }
 float cosine_of_steepness(float alpha, float x) { return x * alpha / (1 + alpha - x); }
 // Schlick's share changes with the cosine, most near the horizon.
-float obliqueness(float cosine) { return std::sqrt(1 - cosine); }
+float height(float cosine) { return std::sqrt(cosine); }
 
 struct Entry {
     double lost = 0, share = 0;
@@ -70,8 +70,8 @@ struct Tables {
             const float alpha = alpha_of(static_cast<int>(row));
             for (std::size_t column = 0; column < kSide; ++column) {
                 const float x = static_cast<float>(column) / (kSide - 1);
-                lost[row][column] = static_cast<float>(integrate(alpha, std::max(cosine_of_steepness(alpha, x), 1e-7f)).lost);
-                share[row][column] = static_cast<float>(integrate(alpha, std::max(1 - x * x, 1e-4f)).share);
+                lost[row][column] = static_cast<float>(integrate(alpha, clamp(cosine_of_steepness(alpha, x), 1e-7f, 1.0f)).lost);
+                share[row][column] = static_cast<float>(integrate(alpha, std::max(x * x, 1e-7f)).share);
             }
         });
         for (std::size_t row = 0; row < kSide; ++row) means[row] = mean(alpha_of(static_cast<int>(row)));
@@ -93,7 +93,7 @@ struct Tables {
         alpha = clamp(alpha, sqr(kSmoothest), 1.0f);
         return look_up(lost, row_of(alpha), place_of(steepness(alpha, cosine)));
     }
-    float share_at(float alpha, float cosine) const { return look_up(share, row_of(alpha), place_of(obliqueness(cosine))); }
+    float share_at(float alpha, float cosine) const { return look_up(share, row_of(alpha), place_of(height(cosine))); }
 };
 
 const Tables& tables() {

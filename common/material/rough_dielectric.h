@@ -8,7 +8,7 @@ namespace duet {
 
 /// Reflection and refraction by GGX microfacets (Walter et al. 2007, «Microfacet Models for Refraction through Rough
 /// Surfaces»), each a smooth boundary; visible normals sampled (Heitz 2018). +z is the outside. Light that meets a second
-/// microfacet is left out: white glass loses up to a fifth at roughness 1 (tested).
+/// microfacet is left out: what white glass loses of it, by roughness, is bounded by a test.
 struct RoughDielectricBsdf {
     float eta;   ///< index of refraction inside over outside, not 1
     Rgb tint;    ///< transmitted light is multiplied by it at each crossing

@@ -24,7 +24,8 @@ std::optional<BsdfSample> ThinDielectricBsdf::sample(Vec3 wo, float lobe, Vec2, 
     const float r = average(p.reflected), t = average(p.transmitted);
     const float reflected = r / (r + t);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, p.reflected / reflected, reflected, true};
-    return BsdfSample{{-wo.x, -wo.y, -wo.z}, p.transmitted / (1 - reflected), 1 - reflected, true, true};
+    const float through = t / (r + t); // not 1 − reflected, which cancels at grazing angles
+    return BsdfSample{{-wo.x, -wo.y, -wo.z}, p.transmitted / through, through, true, true};
 }
 
 } // namespace duet

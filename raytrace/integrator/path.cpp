@@ -70,7 +70,13 @@ private:
     PathLog& log_;
 };
 
-template <typename Sink> class Path {
+// What a path keeps where no dielectric knows of others: nothing.
+struct NoInsides {
+    explicit NoInsides(const RenderPlan&) {}
+    static constexpr float relative_index() { return 0; }
+};
+
+template <typename Sink, bool kInsides> class Path {
 public:
     Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
         : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
@@ -78,7 +84,7 @@ public:
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Ray ray, Hit hit) {
         for (int depth = 0;; ++depth) {
-            if (plan_.insides) arrive(ray, hit);
+            if constexpr (kInsides) arrive(ray, hit);
             if (!hit.valid()) {
                 if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
                 add_environment(ray.direction, depth);
@@ -135,7 +141,7 @@ private:
         const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
         if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
         Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
-        if (plan_.insides) scattered *= left_on_the_way(vertex, *arrival);
+        if constexpr (kInsides) scattered *= left_on_the_way(vertex, *arrival);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return tell_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
@@ -187,7 +193,8 @@ private:
     void note_refraction(const Vertex& vertex) {
         const float eta = refraction_index(vertex.bsdf);
         refraction_ *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
-        if (plan_.insides && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+        if constexpr (kInsides)
+            if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
     }
 
     // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
@@ -240,23 +247,29 @@ private:
     Rgb throughput_{1.0f};
     float refraction_ = 1; // what the path's refractions have scaled its throughput by
     Departure departure_;
-    Insides insides_;
+    std::conditional_t<kInsides, Insides, NoInsides> insides_;
     PathFootprint footprint_;
 };
+
+template <typename Sink>
+auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
+    if (plan.insides) return Path<Sink, true>(plan, sampler, counts, sink).trace(ray, hit);
+    return Path<Sink, false>(plan, sampler, counts, sink).trace(ray, hit);
+}
 
 } // namespace
 
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Sum>(plan, sampler, counts).trace(ray, hit);
+    return traced<Sum>(plan, ray, hit, sampler, counts);
 }
 
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
-    return Path<Told>(plan, sampler, counts, Told(log)).trace(ray, hit);
+    return traced(plan, ray, hit, sampler, counts, Told(log));
 }
 
 LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Split>(plan, sampler, counts).trace(ray, hit);
+    return traced<Split>(plan, ray, hit, sampler, counts);
 }
 
 } // namespace duet::raytrace

@@ -1,6 +1,7 @@
 // Every material by the same laws: density, weight, reciprocity, energy; both sides, grazing angles.
 #include "common/material/fresnel.h"
 #include "common/material/ggx.h"
+#include "common/material/ggx_albedo.h"
 #include "common/material/material.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/sampler.h"
@@ -210,7 +211,7 @@ TEST_SUITE("unit") {
             float alpha;
             double least;
         };
-        for (const Bound& bound : {Bound{0.01f, 0.985}, Bound{0.1f, 0.95}, Bound{0.3f, 0.87}, Bound{1.0f, 0.6}})
+        for (const Bound& bound : {Bound{0.01f, 0.985}, Bound{0.1f, 0.94}, Bound{0.3f, 0.76}, Bound{1.0f, 0.43}})
             for (const float z : {1.0f, 0.7f, 0.3f, -0.9f, -0.4f}) {
                 CAPTURE(bound.alpha);
                 CAPTURE(z);
@@ -224,11 +225,12 @@ TEST_SUITE("unit") {
             for (const float z : kCosines) {
                 CAPTURE(m.name);
                 CAPTURE(z);
-                const Rgbd a = albedo(m.bsdf, direction(z, 0.3f), TransportMode::kImportance, 4096);
-                // Specular ones are exact; 0.005 are the quadrature's, and the tables' of microfacets' energy.
-                const double tolerance = is_specular(m.bsdf) ? 1e-6 : 0.005;
+                const bool exact = is_specular(m.bsdf) && !std::holds_alternative<ThinDielectricBsdf>(m.bsdf); // of one colour
+                const Rgbd a = albedo(m.bsdf, direction(z, 0.3f), TransportMode::kImportance, exact ? 256 : 16384);
+                // Specular ones are exact; 0.007 are the quadrature's, and the tables' of microfacets' energy.
+                const double tolerance = exact ? 1e-6 : 0.007;
                 CHECK((a.r <= 1 + tolerance && a.g <= 1 + tolerance && a.b <= 1 + tolerance));
-                if (m.lossless) CHECK(a.g >= 1 - 0.005);
+                if (m.lossless) CHECK(a.g >= 1 - 0.007);
             }
         const Bsdf lossless[] = {DiffuseBsdf{Rgb(1.0f)}, MetalBsdf{Rgb(1.0f), 0.0f}, DielectricBsdf{1.5f, Rgb(1.0f)},
                                  ThinDielectricBsdf{1.5f, Rgb(1.0f)}};
@@ -331,22 +333,43 @@ TEST_SUITE("unit") {
             }
         }
         CHECK_FALSE(find_conductor("unobtainium").has_value());
-        const auto near = [](std::string_view name, Rgb known) {
+        const auto near = [](std::string_view name, Rgb known, float bound) {
             const Rgb normal = find_conductor(name)->normal;
             CAPTURE(name);
-            for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs(normal[c] - known[c]) < 0.05f);
+            for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs(normal[c] - known[c]) < bound);
         };
-        // Linear Rec. 709 at normal incidence as others have tabulated it (Lagarde 2011, «Feeding a physically based
-        // shading model»; Akenine-Möller et al. 2018, «Real-Time Rendering», table 9.2).
-        near("gold", {1.0f, 0.782f, 0.344f});
-        near("silver", {0.972f, 0.960f, 0.915f});
-        near("copper", {0.955f, 0.638f, 0.538f});
-        near("aluminium", {0.913f, 0.922f, 0.924f});
-        near("iron", {0.562f, 0.565f, 0.578f});
-        near("nickel", {0.660f, 0.609f, 0.526f});
-        near("chromium", {0.549f, 0.556f, 0.554f});
-        near("titanium", {0.542f, 0.497f, 0.449f});
-        near("platinum", {0.673f, 0.637f, 0.585f});
+        // Linear Rec. 709 at normal incidence: by the same measurements as physicallybased.info has it; by others as in
+        // Akenine-Möller et al. 2018, «Real-Time Rendering», table 9.2.
+        near("iron", {0.531f, 0.512f, 0.496f}, 0.01f);
+        near("nickel", {0.697f, 0.641f, 0.563f}, 0.01f);
+        near("copper", {0.932f, 0.623f, 0.522f}, 0.01f);
+        near("titanium", {0.616f, 0.582f, 0.544f}, 0.01f);
+        near("platinum", {0.679f, 0.642f, 0.588f}, 0.01f);
+        near("gold", {1.0f, 0.782f, 0.344f}, 0.07f);
+        near("silver", {0.972f, 0.960f, 0.915f}, 0.07f);
+        near("aluminium", {0.913f, 0.922f, 0.924f}, 0.03f);
+    }
+
+    TEST_CASE("what microfacets return is in the tables: energy to 0.006, Schlick's part of it to 0.015") {
+        for (const float alpha : {1e-4f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f})
+            for (const float z : {1.0f, 0.7f, 0.3f, 0.05f, 0.01f, 1e-3f}) {
+                CAPTURE(alpha);
+                CAPTURE(z);
+                const Vec3 wo = direction(z, 0.3f);
+                Sampler sampler(SamplerKind::kSobol, 5, 8192);
+                double energy = 0, share = 0;
+                for (std::uint32_t i = 0; i < 8192; ++i) {
+                    sampler.start(0, 0, i);
+                    const Vec3 h = ggx_sample_visible_normal(wo, alpha, sampler.get_2d()), wi = reflect(wo, h);
+                    if (!(wi.z > 0)) continue;
+                    const double weight = static_cast<double>(ggx_g2_over_g1(wo, wi, alpha)) / 8192;
+                    energy += weight;
+                    share += weight * std::pow(1 - static_cast<double>(dot(wo, h)), 5);
+                }
+                const GgxAlbedo table = ggx_albedo(alpha, z);
+                CHECK(std::abs(static_cast<double>(table.energy) - energy) < 0.006);
+                CHECK(std::abs(static_cast<double>(table.energy * table.share) - share) < 0.015);
+            }
     }
 
     TEST_CASE("a pane of glass reflects and lets through what its two sides do, to and fro, summed") {
