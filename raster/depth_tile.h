@@ -27,6 +27,7 @@ public:
 
     /// Draws a triangle. `whole` is asked for what it is a part of where snapping has a say.
     void draw(const DrawTriangle& triangle, const WholeTriangles& whole);
+    void draw(const Patch& patch);
     void draw(std::span<const Fragment> fragments);
     /// One sample: `x` and `y` are the pixel's.
     void draw(int x, int y, std::uint32_t id, float nearness) { keep_nearest(place(x, y), id, nearness); }
@@ -51,9 +52,14 @@ public:
 
 private:
     struct Edges;
+    struct BlockRow;
     struct Nearness;
-    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0, int y1,
-                             bool all);
+    std::uint32_t not_hidden(int row, float nearest) const;
+    template <bool kAll>
+    std::uint64_t draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle, int column,
+                             int row, int y0, int y1);
+    void draw_block(const Patch& patch, int column, int row, std::uint64_t samples);
+    template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
     void keep_nearest(std::size_t place, std::uint32_t id, float nearness);

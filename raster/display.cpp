@@ -17,12 +17,19 @@ namespace {
 Rgba8 encoded(const SrgbEncoder& encode, Rgb c) { return {encode(c.r), encode(c.g), encode(c.b), 255}; }
 
 bool is_empty(const Geometry& geometry, std::size_t index) {
-    return geometry.outlines.tile(index).empty() && geometry.fragments.tile(index).empty() &&
+    return geometry.outlines.tile(index).empty() && geometry.patches.tile(index).empty() &&
+           geometry.fragments.tile(index).empty() &&
            (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
 }
 
 template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
-    for (int y = rect.y0; y < rect.y1; ++y) std::fill_n(&picture(rect.x0, y), rect.width(), pixel);
+    static_assert(sizeof(Pixel) == 4);
+    const Pixel value = pixel; // of one's own, so that the compiler makes wide stores
+    const int width = rect.width(), end = rect.y1;
+    for (int y = rect.y0; y < end; ++y) {
+        Pixel* row = &picture(rect.x0, y);
+        for (int i = 0; i < width; ++i) std::memcpy(static_cast<void*>(row + i), &value, sizeof(Pixel));
+    }
 }
 
 void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
@@ -46,48 +53,58 @@ public:
 
     void run() {
         const PixelRect& rect = tile_.rect();
-        for (int y = rect.y0; y < rect.y1; y += kStripRows)
-            for (int x = rect.x0; x < rect.x1; x += static_cast<int>(kStripWidth)) strip(x, y);
-    }
-
-private:
-    static constexpr int kStripRows = DepthTile::kStripRows;
-
-    void strip(int x, int y) {
-        const StripPlace place = strip_place(tile_, x, y);
-        const bool drawn = tile_.drawn(static_cast<std::size_t>(place.ids - tile_.ids()) / kBlockSamples);
-        std::array<Rgba8, kStrip> codes;
-        if (!drawn && background_)
-            codes.fill(*background_);
-        else if (shader_ != nullptr)
-            shade_together(place, codes);
-        else if (background_ && samples_seen(place.ids) == 0)
-            codes.fill(*background_);
-        else
-            return shade_one_by_one(x, y);
-        for (int row = 0; row < std::min(kStripRows, tile_.rect().y1 - y); ++row) {
-            const auto from = codes.begin() + row * static_cast<int>(kStripWidth);
-            const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - x);
-            if (width == kStripWidth)
-                std::copy_n(from, kStripWidth, &picture_(x, y + row));
-            else
-                std::copy_n(from, width, &picture_(x, y + row));
+        for (int y = rect.y0; y < rect.y1; y += kBlock) {
+            for (int x = rect.x0; x < rect.x1; x += kBlock) block(intersect(rect, {x, y, x + kBlock, y + kBlock}));
+            shade_together();
         }
     }
 
-    void shade_together(const StripPlace& place, std::array<Rgba8, kStrip>& codes) {
-        StripColors colors;
-        const std::uint32_t seen = shader_->shade(place, colors);
-        if (seen == 0) return codes.fill(*background_); // a program has one
-        encode_strip(colors, codes);
-        if (seen != (1u << kStrip) - 1)
-            for (std::size_t i = 0; i < kStrip; ++i)
-                if (!(seen >> i & 1)) codes[i] = *background_;
+private:
+    static constexpr int kStripRows = DepthTile::kStripRows, kBlock = DepthTile::kBlock;
+
+    void block(const PixelRect& rect) {
+        const std::uint32_t place = tile_.place(rect.x0, rect.y0);
+        if (background_ && !tile_.drawn(place / kBlockSamples)) return fill(rect, *background_, picture_);
+        for (int y = rect.y0; y < rect.y1; y += kStripRows) strip(rect, y);
     }
 
-    void shade_one_by_one(int x0, int y0) {
+    void strip(const PixelRect& block, int y) {
+        const PixelRect rect = intersect(block, {block.x0, y, block.x1, y + kStripRows});
+        const std::uint32_t place = tile_.place(block.x0, y);
+        if (background_ && samples_seen(tile_.ids() + place) == 0) return fill(rect, *background_, picture_);
+        if (shader_ == nullptr) return shade_one_by_one(rect);
+        StripPlace& next = places_[count_++]; // written once, not copied: it will be read at once
+        next.x = block.x0;
+        next.y = y;
+        next.ids = tile_.ids() + place;
+        next.nearness = tile_.nearness() + place;
+        next.offset = tile_.offset();
+    }
+
+    /// The strips of a row of blocks that are left.
+    void shade_together() {
+        if (count_ == 0) return;
+        shader_->shade(std::span(places_).first(count_), colors_.data(), seen_.data());
+        for (std::size_t i = 0; i < count_; ++i) encode_strip(colors_[i], seen_[i], *background_, codes_[i]); // a program has one
+        for (std::size_t i = 0; i < count_; ++i) keep(places_[i], codes_[i]);
+        count_ = 0;
+    }
+
+    void keep(const StripPlace& place, const StripCodes& codes) {
+        const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - place.x),
+                  height = std::min(kStripRows, tile_.rect().y1 - place.y);
+        if (width == static_cast<int>(kStripWidth) && height == kStripRows) {
+            Rgba8* to = &picture_(place.x, place.y);
+            for (std::size_t row = 0; row < kStripRows; ++row, to += picture_.width())
+                std::memcpy(static_cast<void*>(to), codes.at(row * kStripWidth), kStripWidth * sizeof(Rgba8));
+            return;
+        }
+        for (int row = 0; row < height; ++row)
+            std::copy_n(codes.at(static_cast<std::size_t>(row) * kStripWidth), width, &picture_(place.x, place.y + row));
+    }
+
+    void shade_one_by_one(const PixelRect& r) {
         if (!hits_) hits_.emplace(tile_, geometry_, view_);
-        const PixelRect r = intersect(tile_.rect(), {x0, y0, x0 + static_cast<int>(kStripWidth), y0 + kStripRows});
         for (int y = r.y0; y < r.y1; ++y)
             for (int x = r.x0; x < r.x1; ++x)
                 picture_(x, y) = encoded(srgb_encoder(), shade(data_, settings_, *hits_, x, y).radiance);
@@ -106,6 +123,12 @@ private:
     const DepthTile& tile_;
     Image<Rgba8>& picture_;
     std::unique_ptr<StripShader> shader_;
+    static constexpr std::size_t kMost = static_cast<std::size_t>(DepthTile::kBlocks * kBlock / kStripRows);
+    std::array<StripPlace, kMost> places_; ///< strips to be shaded
+    std::array<StripColors, kMost> colors_;
+    std::array<std::uint32_t, kMost> seen_{};
+    std::array<StripCodes, kMost> codes_;
+    std::size_t count_ = 0;
     std::optional<HitTile> hits_; ///< where one is needed
     std::optional<Rgba8> background_;
 };
@@ -132,6 +155,27 @@ void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRe
     DepthTile depths;
     cover(geometry, view, view.samples.front(), rect, index, depths);
     copy_nearness(depths, picture);
+}
+
+void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
+                              const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors) {
+    if (is_empty(geometry, index)) {
+        fill(rect, 0.0f, nearness);
+        return;
+    }
+    DepthTile depths;
+    cover(geometry, view, view.samples.front(), rect, index, depths);
+    copy_nearness(depths, nearness);
+    const auto shader = program.for_tile(data, geometry, view, rect);
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {
+            StripColors strip;
+            const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), strip);
+            for (std::size_t i = 0; i < kStrip; ++i) {
+                const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
+                if (x < rect.x1 && y < rect.y1 && (seen >> i & 1)) colors(x, y) = Rgb(strip.r[i], strip.g[i], strip.b[i]);
+            }
+        }
 }
 
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& picture) {

@@ -93,6 +93,32 @@ inline Doubles widened(const std::int32_t* from) {
 #endif
 }
 
+/// Whole numbers of 32 bits to memory.
+inline void store_ints(const Doubles& value, std::int32_t* to) {
+#if defined(__AVX512F__)
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtpd_epi32(value));
+#elif defined(__AVX__)
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_cvtpd_epi32(value));
+#else
+    std::array<double, Doubles::size> wide;
+    value.store_unaligned(wide.data());
+    for (std::size_t i = 0; i < wide.size(); ++i) to[i] = static_cast<std::int32_t>(wide[i]);
+#endif
+}
+
+/// From a table of sixteen, by the lower four bits of each number.
+inline Floats look_up(const StripOf<float>& table, const Ints& index) {
+#if defined(__AVX512F__)
+    return _mm512_permutexvar_ps(index, load(table, 0));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Floats::size> found;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i] & 15)];
+    return Floats::load_aligned(found.data());
+#endif
+}
+
 /// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
@@ -137,6 +163,19 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
 #endif
 }
 
+inline std::uint32_t lane_bits(const xsimd::batch_bool<float>& lanes) { return lane_bits(xsimd::bool_cast(lanes)); }
+
+/// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
+template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
+#if defined(__AVX512F__)
+    return typename xsimd::batch_bool<T>::register_type(bits);
+#else
+    std::array<bool, xsimd::batch<T>::size> lanes;
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = bits >> i & 1;
+    return xsimd::batch_bool<T>::load_unaligned(lanes.data());
+#endif
+}
+
 /// The column and row of each sample of a strip.
 template <typename T> StripOf<T> strip_columns() {
     StripOf<T> result;
@@ -151,10 +190,34 @@ template <typename T> StripOf<T> strip_rows() {
 template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
 template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
 
+/// What lies at as many places of an array.
+inline Floats gather(const float* from, const Ints& places) {
+#if defined(__AVX512F__)
+    return _mm512_i32gather_ps(places, from, 4);
+#elif defined(__AVX2__)
+    return _mm256_i32gather_ps(from, places, 4);
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Ints::size> result;
+    places.store_aligned(at.data());
+    for (std::size_t i = 0; i < Ints::size; ++i) result[i] = from[at[i]];
+    return Floats::load_aligned(result.data());
+#endif
+}
+/// Towards zero.
+inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
+
 /// The number of each sample of a strip.
 inline const StripOf<std::int32_t> kLanes = [] {
     StripOf<std::int32_t> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
+    return result;
+}();
+
+/// The same as floats.
+inline const StripOf<float> kLanesAsFloats = [] {
+    StripOf<float> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<float>(i);
     return result;
 }();
 

@@ -1,7 +1,6 @@
 #include "raster/prepare.h"
 
 #include "raster/geometry.h"
-#include "raster/ggx_table.h"
 #include "raster/prefiltered.h"
 #include "raster/shadows.h"
 
@@ -57,9 +56,7 @@ void prepare_rough_metal(const Settings& settings, PreparedData& data) {
         data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
         data.memory_bytes += data.prefiltered->memory_bytes();
     }
-    const bool shines = settings.transformed_cosines && settings.parts.direct && needs.surface_lights;
-    if (mirrors || shines) ggx_means(1);
-    if (shines) ggx_lobe(1, 1);
+    if (needs.glossy) ggx_means(1); // tables, made now rather than in the first picture
 }
 
 } // namespace

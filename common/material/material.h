@@ -14,7 +14,9 @@
 namespace duet {
 
 using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled, Coated>;
-using Bsdf = std::variant<DiffuseBsdf, MetalBsdf, DielectricBsdf, RoughDiffuseBsdf, RoughDielectricBsdf, ThinDielectricBsdf, LayeredBsdf>;
+// Those of a kind stand together: to ask for a kind is one comparison.
+using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf, RoughDielectricBsdf, DielectricBsdf,
+                          ThinDielectricBsdf>;
 
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 

@@ -8,6 +8,8 @@
 #include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace duet::raytrace {
 
@@ -76,42 +78,48 @@ struct NoInsides {
     static constexpr float relative_index() { return 0; }
 };
 
+// The numbers of the vertex that a ray has found, if it is one that uses any.
+VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
+    return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
+}
+
 template <typename Sink, bool kInsides> class Path {
 public:
-    Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
+    Path(const RenderPlan& plan, RayCounts& counts, Sink sink = {})
+        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
-    auto trace(Ray ray, Hit hit) {
-        for (int depth = 0;; ++depth) {
-            if constexpr (kInsides) arrive(ray, hit);
-            if (!hit.valid()) {
-                if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
-                add_environment(ray.direction, depth);
-                break;
-            }
-            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
-            if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
-            if (depth == 0) sink_.start(vertex.bsdf);
-            add_emission(vertex, ray.direction, depth);
-            if (depth == plan_.max_depth) {
-                tell_end("it is as long as it may be (--depth)");
-                break;
-            }
-            const VertexNumbers u = vertex_numbers(sampler_, depth);
-            const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
-            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-            if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) {
-                tell_end("nothing is left to find");
-                break;
-            }
-            if (!scatter(vertex, u, ray)) break;
-            if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
+    auto trace(Sampler& sampler, Ray ray, Hit hit) {
+        for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
-            ++counts_.indirect;
-        }
-        return sink_.result();
+        return result();
     }
+
+    /// What the ray has found after `depth` scatterings: adds the light, and turns the ray into the one that goes on from
+    /// there. False where the path ends.
+    bool advance(Ray& ray, const Hit& found, int depth, const VertexNumbers& u) {
+        Hit reached;
+        if constexpr (kInsides) reached = arrive(ray, found);
+        const Hit& hit = kInsides ? std::as_const(reached) : found;
+        if (!hit.valid()) {
+            if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
+            add_environment(ray.direction, depth);
+            return false;
+        }
+        const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
+        if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
+        if (depth == 0) sink_.start(vertex.bsdf);
+        add_emission(vertex, ray.direction, depth);
+        if (depth == plan_.max_depth) return tell_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
+        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
+        if (!scatter(vertex, u, ray)) return false;
+        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
+        ++counts_.indirect;
+        return true;
+    }
+    auto result() const { return sink_.result(); }
 
 private:
     void add_environment(Vec3 w, int bounces) {
@@ -198,11 +206,12 @@ private:
     }
 
     // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
-    void arrive(Ray& ray, Hit& hit) {
+    Hit arrive(Ray& ray, const Hit& found) {
         int passed = 0;
-        hit = insides_.arrive(ray, hit, throughput_, passed);
+        const Hit hit = insides_.arrive(ray, found, throughput_, passed);
         counts_.indirect += passed;
         if (passed > 0) departure_.certain = true; // shadow rays end at any boundary
+        return hit;
     }
 
     static bool crosses(const Vertex& vertex) {
@@ -241,7 +250,6 @@ private:
     }
 
     const RenderPlan& plan_;
-    Sampler& sampler_;
     RayCounts& counts_;
     Sink sink_;
     Rgb throughput_{1.0f};
@@ -251,13 +259,59 @@ private:
     PathFootprint footprint_;
 };
 
+// numbers_at of each of the paths that are going on, below the greatest depth; two at a time.
+void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const std::vector<std::uint32_t>& going,
+                  int depth, std::vector<VertexNumbers>& numbers) {
+    constexpr std::uint32_t kNone = ~0u;
+    std::uint32_t waiting = kNone;
+    for (const std::uint32_t i : going) {
+        if (!hits[i].valid()) continue;
+        go_to_vertex(samplers[i], depth);
+        if (waiting == kNone) {
+            waiting = i;
+            continue;
+        }
+        const auto [first, second] = Sampler::get_blocks(samplers[waiting], samplers[i]);
+        numbers[waiting] = vertex_numbers(first);
+        numbers[i] = vertex_numbers(second);
+        waiting = kNone;
+    }
+    if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
+}
+
+template <bool kInsides>
+void trace_all(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+               std::span<Rgb> radiances, RayCounts& counts) {
+    std::vector<Path<Sum, kInsides>> paths;
+    std::vector<std::uint32_t> going;
+    std::vector<VertexNumbers> numbers(rays.size());
+    paths.reserve(rays.size());
+    going.reserve(rays.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+        paths.emplace_back(plan, counts);
+        going.push_back(i);
+    }
+    for (int depth = 0; !going.empty(); ++depth) {
+        if (depth < plan.max_depth) draw_numbers(samplers, hits, going, depth, numbers);
+        std::erase_if(going, [&](std::uint32_t i) { return !paths[i].advance(rays[i], hits[i], depth, numbers[i]); });
+        for (const std::uint32_t i : going) hits[i] = plan.prepared.accelerator.closest(rays[i]);
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].result();
+}
+
 template <typename Sink>
 auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
-    if (plan.insides) return Path<Sink, true>(plan, sampler, counts, sink).trace(ray, hit);
-    return Path<Sink, false>(plan, sampler, counts, sink).trace(ray, hit);
+    if (plan.insides) return Path<Sink, true>(plan, counts, sink).trace(sampler, ray, hit);
+    return Path<Sink, false>(plan, counts, sink).trace(sampler, ray, hit);
 }
 
 } // namespace
+
+void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+                    std::span<Rgb> radiances, RayCounts& counts) {
+    if (plan.insides) return trace_all<true>(plan, rays, hits, samplers, radiances, counts);
+    trace_all<false>(plan, rays, hits, samplers, radiances, counts);
+}
 
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
     return traced<Sum>(plan, ray, hit, sampler, counts);

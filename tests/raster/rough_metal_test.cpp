@@ -6,7 +6,7 @@
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
 #include "raster/area_specular.h"
-#include "raster/ggx_table.h"
+#include "raster/ggx_fit.h"
 #include "raster/prefiltered.h"
 
 #include <doctest/doctest.h>
@@ -43,6 +43,16 @@ ImageEnvironment picture_of(const SkyEnvironment& sky) {
 } // namespace
 
 TEST_SUITE("unit") {
+
+    TEST_CASE("the table made with the build holds what its maker computes") {
+        const auto lobes = raster::compute_lobe_table();
+        for (const int row : {0, 5, 15}) {
+            const float roughness = lerp(raster::kSmoothest, raster::kRoughest, static_cast<float>(row) / 15);
+            const raster::LobeMatrix straight = raster::ggx_lobe(sqr(roughness), 1);
+            CHECK(straight.m11 == doctest::Approx(lobes(row, 0)[0]).epsilon(1e-4));
+            CHECK(straight.m22 == doctest::Approx(lobes(row, 0)[2]).epsilon(1e-4));
+        }
+    }
 
     TEST_CASE("albedo: the table returns what the BSDF's own samples do, to 0.015; never more than all") {
         for (const float roughness : {0.1f, 0.33f, 0.6f, 0.95f})
