@@ -161,7 +161,8 @@ void HitTile::make_room() {
 }
 
 HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole), screen_(view.screen) {
+    : rect_(tile.rect()), pinhole_(view.pinhole), screen_(view.screen),
+      quadrant_((tile.offset().x < kSubPixels / 2 ? 0 : 1) + (tile.offset().y < kSubPixels / 2 ? 0 : 2)) {
     make_room();
     Filler filler(*this, geometry, view);
     for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kStripRows)

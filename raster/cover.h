@@ -51,6 +51,8 @@ public:
     RayFootprint footprint(int x, int y, int samples_per_pixel) const {
         return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
     }
+    /// The quadrant of its pixel in which each sample lies, 0 to 3; of whole pixels 0.
+    int quadrant() const { return quadrant_; }
     /// near / depth; 0 where nothing is seen.
     float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
@@ -65,6 +67,7 @@ private:
     PixelRect rect_;
     Pinhole pinhole_;
     const Screen* screen_;
+    int quadrant_ = 0;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> nearness_;

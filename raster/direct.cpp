@@ -99,7 +99,7 @@ Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
 }
 
 float Visibility::operator()(std::size_t light, const ShadingPoint& point) const {
-    return shadows != nullptr ? shadows->visibility(light, point, *taps) : 1;
+    return shadows != nullptr ? shadows->visibility(light, point, taps) : 1;
 }
 
 Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,

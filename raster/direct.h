@@ -6,6 +6,7 @@
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
 #include "common/vec/frame.h"
+#include "raster/taps.h"
 
 #include <span>
 
@@ -31,7 +32,6 @@ struct ShadingPoint {
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
 
 class Shadows; // raster/shadows.h
-struct SoftTaps;
 
 /// Light towards the viewer, and what shadows keep from it.
 struct Direct {
@@ -47,7 +47,7 @@ struct Direct {
 /// Tells of each light how much of it arrives.
 struct Visibility {
     const Shadows* shadows = nullptr; ///< null: all of all
-    const SoftTaps* taps = nullptr;
+    TapRange taps{};
 
     float operator()(std::size_t light, const ShadingPoint& point) const;
 };

@@ -180,6 +180,27 @@ void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRe
     copy_nearness(depths, picture);
 }
 
+void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
+                              const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors) {
+    if (is_empty(geometry, index)) {
+        fill(rect, 0.0f, nearness);
+        return;
+    }
+    DepthTile depths;
+    cover(geometry, view, view.samples.front(), rect, index, depths);
+    copy_nearness(depths, nearness);
+    const auto shader = program.for_tile(data, geometry, view, rect);
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {
+            StripColors strip;
+            const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), strip);
+            for (std::size_t i = 0; i < kStrip; ++i) {
+                const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
+                if (x < rect.x1 && y < rect.y1 && (seen >> i & 1)) colors(x, y) = Rgb(strip.r[i], strip.g[i], strip.b[i]);
+            }
+        }
+}
+
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& picture) {
     picture = Image<Rgba8>(radiance.width(), radiance.height());
     const SrgbEncoder& encoder = srgb_encoder();

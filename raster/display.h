@@ -15,6 +15,10 @@ void display_tile(const PreparedData& data, const Settings& settings, const Prog
 void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
                    ImageFloat& picture);
 
+/// The same, and what a program shows there, black where nothing is.
+void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
+                              const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors);
+
 /// A whole picture of radiance, encoded.
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& picture);
 

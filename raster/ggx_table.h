@@ -27,16 +27,10 @@ struct LobeMatrix {
     }
 };
 
-// Both tables are computed, once a process, on first use: nothing but common/material/ggx.h says what they hold.
+// Both tables are computed when the project is built (raster/ggx_fit.h).
 // alpha in (0, 1]; below (1/20)² that stands in. cosine: between normal and viewer, in (0, 1].
 
 Albedo ggx_albedo(float alpha, float cosine);
 LobeMatrix ggx_lobe(float alpha, float cosine);
-
-/// The lobe of one entry, by fitting; `start` is where the search begins. For tests.
-LobeMatrix fit_lobe(float alpha, float cosine, const LobeMatrix& start);
-/// ∫ |f − t| dw over the hemisphere, of the normalized lobe f and the transformed cosine t: 0 where they are the same,
-/// 2 where they have nothing in common. For tests.
-double lobe_distance(float alpha, float cosine, const LobeMatrix& lobe);
 
 } // namespace duet::raster

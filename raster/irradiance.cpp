@@ -58,6 +58,24 @@ Irradiance::Irradiance(const Environment& environment, int threads) {
         for (std::size_t i = 0; i < 9; ++i) coefficients_[i] += row[i] * kCosineLobe[i];
 }
 
+Rgb Irradiance::at(const Environment& environment, Vec3 n, const SkySeen& seen) const {
+    const float hidden = 1 - seen.visible;
+    if (hidden == 0) return at(environment, n);
+    const auto positive = [](Rgb c) { return Rgb(max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)); };
+    if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
+        // down + (up − down) (1 + w·y)/2 over what is hidden.
+        const Rgb lost = (sky->down + sky->up) * (0.5f * hidden) + (sky->up - sky->down) * (0.5f * seen.hidden.y);
+        return positive(at(environment, n) - lost * kPi);
+    }
+    if (closed_form_) return at(environment, n) * seen.visible;
+    // An order's irradiance is its light convolved with the cosine, a factor: that of a hidden direction is its light.
+    const Harmonics at_n = harmonics(Vec3d(n)), at_hidden = harmonics(Vec3d(seen.hidden));
+    Rgbd sum = coefficients_[0] * at_n[0] * static_cast<double>(seen.visible);
+    for (std::size_t i = 1; i < 4; ++i) sum += coefficients_[i] * (at_n[i] - 1.5 * at_hidden[i]);
+    for (std::size_t i = 4; i < 9; ++i) sum += coefficients_[i] * (at_n[i] * static_cast<double>(seen.visible));
+    return positive(Rgb(sum));
+}
+
 Rgb Irradiance::at(const Environment& environment, Vec3 n) const {
     if (closed_form_) return irradiance_closed_form(environment, n).value_or(Rgb());
     const Harmonics y = harmonics(Vec3d(n));

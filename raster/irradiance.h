@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/environment.h"
+#include "raster/sky_seen.h"
 
 #include <array>
 
@@ -18,6 +19,10 @@ public:
 
     /// At a surface with unit normal n; never negative. `environment` is the one it was made for.
     Rgb at(const Environment& environment, Vec3 n) const;
+    /// The same where a part of the sky is hidden, and that is black. Of light that is constant and of light that is
+    /// linear in the direction, exactly what is lost: a sky's in full; of a picture's light, the orders 0 and 1 of its
+    /// harmonics, the second being taken to be lost as much of as of all directions.
+    Rgb at(const Environment& environment, Vec3 n, const SkySeen& seen) const;
     bool is_closed_form() const { return closed_form_; }
 
 private:

@@ -190,10 +190,34 @@ template <typename T> StripOf<T> strip_rows() {
 template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
 template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
 
+/// What lies at as many places of an array.
+inline Floats gather(const float* from, const Ints& places) {
+#if defined(__AVX512F__)
+    return _mm512_i32gather_ps(places, from, 4);
+#elif defined(__AVX2__)
+    return _mm256_i32gather_ps(from, places, 4);
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Ints::size> result;
+    places.store_aligned(at.data());
+    for (std::size_t i = 0; i < Ints::size; ++i) result[i] = from[at[i]];
+    return Floats::load_aligned(result.data());
+#endif
+}
+/// Towards zero.
+inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
+
 /// The number of each sample of a strip.
 inline const StripOf<std::int32_t> kLanes = [] {
     StripOf<std::int32_t> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
+    return result;
+}();
+
+/// The same as floats.
+inline const StripOf<float> kLanesAsFloats = [] {
+    StripOf<float> result;
+    for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<float>(i);
     return result;
 }();
 

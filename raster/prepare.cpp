@@ -1,7 +1,6 @@
 #include "raster/prepare.h"
 
 #include "raster/geometry.h"
-#include "raster/ggx_table.h"
 #include "raster/prefiltered.h"
 #include "raster/shadows.h"
 
@@ -56,9 +55,6 @@ void prepare_rough_metal(const Settings& settings, PreparedData& data) {
         data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
         data.memory_bytes += data.prefiltered->memory_bytes();
     }
-    const bool shines = settings.transformed_cosines && settings.parts.direct && needs.surface_lights;
-    if (mirrors || shines) ggx_albedo(1, 1);
-    if (shines) ggx_lobe(1, 1);
 }
 
 } // namespace

@@ -93,18 +93,26 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
 }
 
 /// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
-std::optional<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
-    if (!needs_screen(frame.data, frame.settings)) return std::nullopt;
+std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
+    if (!needs_screen(frame.data, frame.settings)) return nullptr;
     const std::vector<SampleOffset> centers(1);
     const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
     GeometryLoan geometry(*frame.data.geometries);
     process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
     ImageFloat nearness(view.width, view.height);
+    const bool occluded = needs_occlusion(frame.data, frame.settings);
+    ImageRgb normals(occluded ? view.width : 0, occluded ? view.height : 0);
+    const std::unique_ptr<Program> normal = program(Shading::kNormal);
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (!frame.control.stopped()) keep_nearness(*geometry, central, frame.grid.tile(i), i, nearness);
+        if (frame.control.stopped()) return;
+        if (occluded)
+            keep_nearness_and_colors(frame.data, *geometry, central, *normal, frame.grid.tile(i), i, nearness, normals);
+        else
+            keep_nearness(*geometry, central, frame.grid.tile(i), i, nearness);
     });
-    Screen screen(central.pinhole, centers.front(), std::move(nearness));
-    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, screen);
+    auto screen = std::make_unique<Screen>(central.pinhole, centers.front(), std::move(nearness));
+    if (occluded) add_occlusion(frame.data, frame.settings, normals, *screen);
+    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, *screen);
     return screen;
 }
 
@@ -120,8 +128,8 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
         frame.account.add(*frame.layers);
     }
     const Stopwatch watch;
-    const std::optional<Screen> screen = look_at_screen(frame, view, pass_view);
-    pass_view.screen = screen ? &*screen : nullptr;
+    const std::unique_ptr<const Screen> screen = look_at_screen(frame, view, pass_view);
+    pass_view.screen = screen.get();
     frame.account.prepass += watch.seconds();
     const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {

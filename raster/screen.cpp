@@ -18,22 +18,11 @@ Screen::Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness)
     }
 }
 
-Vec3 Screen::project(Vec3 p) const {
-    const auto row = [&](std::size_t r) {
-        const Vec4& m = to_pixel_[r];
-        return m.x * p.x + m.y * p.y + m.z * p.z + m.w;
-    };
-    const float w = row(3);
-    return {row(0) / w, row(1) / w, row(2)};
-}
-
 std::optional<Vec3> Screen::seen(int x, int y) const {
     if (x < 0 || y < 0 || x >= width() || y >= height()) return std::nullopt;
     const float nearness = nearness_(x, y);
     if (!(nearness > 0)) return std::nullopt;
-    const float fx = static_cast<float>(x), fy = static_cast<float>(y);
-    return (origin_ + origin_dx_ * fx + origin_dy_ * fy) +
-           (direction_ + direction_dx_ * fx + direction_dy_ * fy) * (near_ / nearness);
+    return at(static_cast<float>(x), static_cast<float>(y), nearness);
 }
 
 } // namespace duet::raster

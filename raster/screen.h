@@ -1,19 +1,25 @@
-// What a picture knows of the scene: the depth at each pixel. Effects in screen space look around in it.
+// What a picture knows of the scene: depth and normal at each pixel. Effects in screen space look around in it.
 #pragma once
 
 #include "common/camera/camera.h"
 #include "common/image/image.h"
+#include "raster/lanes.h"
 #include "raster/samples.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace duet::raster {
 
+class OcclusionImage; // raster/occlusion_image.h
+
 /// The depths of one view, one sample a pixel. Positions are relative to the camera's eye.
 class Screen {
 public:
+    Screen(const Screen&) = delete; // its occlusion refers to it
+    Screen& operator=(const Screen&) = delete;
     /// `nearness`: near / depth of each pixel's sample, 0 where nothing is seen.
     Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness);
 
@@ -22,12 +28,62 @@ public:
     Vec3 relative(Vec3 p) const { return Vec3(Vec3d(p) - eye_); }
 
     /// Where a point is seen: x and y in pixels, depth. Depth is 0 or less, and x and y mean nothing, behind the eye.
-    Vec3 project(Vec3 p) const;
+    Vec3 project(Vec3 p) const {
+        const auto [x, y, depth, w] = homogeneous(p);
+        return {x / w, y / w, depth};
+    }
     /// What is seen at a pixel; nothing outside the picture, or where nothing is.
     std::optional<Vec3> seen(int x, int y) const;
     /// Depth at a pixel; infinity where nothing is seen. The pixel must be one.
     float depth(int x, int y) const { return near_ / nearness_(x, y); }
     bool perspective() const { return perspective_; }
+    bool contains(float x, float y) const {
+        return x >= 0 && y >= 0 && x < static_cast<float>(width()) && y < static_cast<float>(height());
+    }
+
+    // The same for one point or a batch of them.
+
+    /// x·w, y·w, depth and w of a point, and their change from a point to the next that is `way` away.
+    template <typename T> std::array<T, 4> homogeneous(Vec3T<T> p) const {
+        std::array<T, 4> h = homogeneous_change(p);
+        for (std::size_t row = 0; row < 4; ++row) h[row] += T(to_pixel_[row].w);
+        return h;
+    }
+    template <typename T> std::array<T, 4> homogeneous_change(Vec3T<T> way) const {
+        const auto row = [&](std::size_t r) {
+            const Vec4& m = to_pixel_[r];
+            return T(m.x) * way.x + T(m.y) * way.y + T(m.z) * way.z;
+        };
+        return {row(0), row(1), row(2), row(3)};
+    }
+    /// What the pixel in column x and row y, both whole numbers, sees at near / depth.
+    template <typename T> Vec3T<T> at(T x, T y, T nearness) const {
+        const T depth = T(near_) / nearness;
+        const auto axis = [&](float Vec3::*c) {
+            return T(origin_.*c) + T(origin_dx_.*c) * x + T(origin_dy_.*c) * y +
+                   (T(direction_.*c) + T(direction_dx_.*c) * x + T(direction_dy_.*c) * y) * depth;
+        };
+        return {axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)};
+    }
+    /// Unit, from what a pixel sees to the viewer.
+    template <typename T> Vec3T<T> to_viewer(Vec3T<T> p) const {
+        const Vec3T<T> way = perspective_ ? p : Vec3T<T>{T(direction_.x), T(direction_.y), T(direction_.z)};
+        return way * -inverse_sqrt(dot(way, way));
+    }
+    /// The width of a pixel at a depth, metres.
+    template <typename T> T pixel_size(T depth) const { return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_)); }
+    float near() const { return near_; }
+    const ImageFloat& nearness() const { return nearness_; }
+
+    /// Shading normals on the viewer's side, unit, once they are there; any where nothing is seen.
+    void set_normals(std::array<ImageFloat, 3> normals) { normals_ = std::move(normals); }
+    const std::array<ImageFloat, 3>& normals() const { return normals_; }
+    Vec3 normal(int x, int y) const { return {normals_[0](x, y), normals_[1](x, y), normals_[2](x, y)}; }
+
+    /// How much of the environment each pixel sees, once it is there; else null.
+    void set_occlusion(std::shared_ptr<const OcclusionImage> occlusion) { occlusion_ = std::move(occlusion); }
+    const OcclusionImage* occlusion() const { return occlusion_.get(); }
+
     /// A picture of what is seen, once it is there; `lamps`: 1 where that is one of Scene::lights.
     void set_radiance(ImageRgb radiance, Image<std::uint8_t> lamps) {
         radiance_ = std::move(radiance);
@@ -35,9 +91,6 @@ public:
     }
     bool is_lamp(int x, int y) const { return lamps_(x, y) != 0; }
     const ImageRgb& radiance() const { return radiance_; }
-    bool contains(float x, float y) const {
-        return x >= 0 && y >= 0 && x < static_cast<float>(width()) && y < static_cast<float>(height());
-    }
 
 private:
     Vec3d eye_;
@@ -46,6 +99,8 @@ private:
     float near_;
     bool perspective_;
     ImageFloat nearness_;
+    std::array<ImageFloat, 3> normals_;
+    std::shared_ptr<const OcclusionImage> occlusion_;
     ImageRgb radiance_;
     Image<std::uint8_t> lamps_;
 };

@@ -1,8 +1,8 @@
 #include "raster/shade.h"
 
-#include "raster/ambient_occlusion.h"
 #include "raster/direct.h"
 #include "raster/ggx_table.h"
+#include "raster/occlusion_image.h"
 #include "raster/point_key.h"
 #include "raster/prefiltered.h"
 #include "raster/screen.h"
@@ -18,21 +18,31 @@ namespace {
 
 /// GGX alpha up to which metal mirrors what the picture shows (roughness 0.32): rougher metal would need too many rays.
 constexpr float kRoughestMirror = 0.1f;
-constexpr int kHorizonSteps = 12; ///< to each side: fewer miss some of the highest
 constexpr int kMirrorSamples = 4; ///< of rough metal, where a pixel has few samples of its own
 
 bool shows_environment(const PreparedData& data, const Settings& settings) {
     return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
 }
 
-/// Light from the environment, which nothing is taken to occlude.
+/// What a diffuse surface in a pixel sees of the environment.
+SkySeen sky_seen(const Settings& settings, const Screen* screen, const ShadingPoint& point) {
+    if (screen == nullptr || screen->occlusion() == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone) return {};
+    const Vec3 p = screen->relative(point.surface.p), place = screen->project(p);
+    if (!(place.z > 0)) return {};
+    const auto pixel = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
+    return screen->occlusion()->at(pixel(place.x, screen->width()), pixel(place.y, screen->height()), p, point.ns);
+}
+
+/// Light from the environment, occluded as far as that is known.
 class EnvironmentLight {
 public:
-    EnvironmentLight(const PreparedData& data, const Settings& settings, const ShadingPoint& point)
-        : data_(data), prefiltered_(settings.prefiltered_environment ? data.prefiltered.get() : nullptr), point_(point) {}
+    EnvironmentLight(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Screen* screen)
+        : data_(data), settings_(settings), prefiltered_(settings.prefiltered_environment ? data.prefiltered.get() : nullptr),
+          point_(point), screen_(screen) {}
 
     Rgb operator()(const DiffuseBsdf& bsdf) const {
-        return bsdf.albedo * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns);
+        if (is_black(bsdf.albedo)) return {};
+        return bsdf.albedo * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns, sky_seen(settings_, screen_, point_));
     }
     /// Of a rough one by the split sum; else what a smooth metal reflects.
     Rgb operator()(const MetalBsdf& bsdf) const {
@@ -63,8 +73,10 @@ private:
     }
 
     const PreparedData& data_;
+    const Settings& settings_;
     const Prefiltered* prefiltered_;
     const ShadingPoint& point_;
+    const Screen* screen_;
 };
 
 struct DirectLight {
@@ -79,19 +91,6 @@ struct DirectLight {
     }
     Direct operator()(const DielectricBsdf&) const { return {}; }
 };
-
-/// The part of the environment that a diffuse surface sees.
-float environment_visibility(const PreparedData& data, const Settings& settings, const Screen* screen,
-                             const ShadingPoint& point, Vec3 to_viewer) {
-    if (screen == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone) return 1;
-    const OcclusionPoint seen{screen->relative(point.surface.p), point.ns, to_viewer};
-    const auto radius = static_cast<float>(occlusion_radius(data, settings));
-    const int spp = settings.samples_per_pixel;
-    const std::uint64_t key = point_key(point.surface.p, 0);
-    if (settings.ambient_occlusion == AmbientOcclusion::kSsao)
-        return screen_space_occlusion(*screen, seen, radius, spp >= 16 ? 8 : spp >= 4 ? 16 : 32, key);
-    return horizon_occlusion(*screen, seen, radius, spp >= 16 ? 2 : spp >= 4 ? 3 : 6, kHorizonSteps, key);
-}
 
 /// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions drawn
 /// from its lobe.
@@ -121,26 +120,23 @@ Rgb mirrored(const PreparedData& data, const Settings& settings, const Screen& s
 }
 
 LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
-               Vec3 to_viewer, const Screen* screen) {
+               Vec3 to_viewer, const Screen* screen, TapRange taps) {
     const Scene& scene = data.scene;
     const PartSet& asked = settings.parts;
     LightParts parts;
     if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], scene.textures, point.surface, to_viewer);
     if (asked.direct) {
-        const SoftTaps taps = Shadows::taps(settings);
-        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, &taps};
+        const Visibility visibility{settings.shadows ? data.shadows.get() : nullptr, taps};
         const Direct direct = std::visit(DirectLight{scene.lights, point, visibility, settings.transformed_cosines}, bsdf);
         parts.direct = direct.arriving, parts.shadowed = direct.shadowed;
     }
     const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
     if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
-        (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point), bsdf);
+        (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point, screen), bsdf);
     const auto* metal = std::get_if<MetalBsdf>(&bsdf);
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
         !screen->radiance().empty() && metal->alpha <= kRoughestMirror)
         parts.reflection = mirrored(data, settings, *screen, point, *metal);
-    if (diffuse && !is_black(parts.environment))
-        parts.environment *= environment_visibility(data, settings, screen, point, to_viewer);
     return parts;
 }
 
@@ -155,10 +151,28 @@ Rgb background(const PreparedData& data, const Settings& settings, const Ray& ra
 
 } // namespace
 
+bool needs_occlusion(const PreparedData& data, const Settings& settings) {
+    const bool shown = settings.parts.environment || needs_screen_radiance(data, settings);
+    return settings.shading == Shading::kLit && settings.output != Output::kNearness &&
+           settings.ambient_occlusion != AmbientOcclusion::kNone && shown && shows_environment(data, settings);
+}
+
 bool needs_screen(const PreparedData& data, const Settings& settings) {
-    const bool occlusion = settings.ambient_occlusion != AmbientOcclusion::kNone && settings.parts.environment &&
-                           shows_environment(data, settings);
-    return settings.shading == Shading::kLit && settings.output != Output::kNearness && (occlusion || needs_screen_radiance(data, settings));
+    return needs_occlusion(data, settings) ||
+           (settings.output != Output::kNearness && needs_screen_radiance(data, settings));
+}
+
+void add_occlusion(const PreparedData& data, const Settings& settings, const ImageRgb& normals, Screen& screen) {
+    std::array<ImageFloat, 3> planes;
+    for (ImageFloat& plane : planes) plane = ImageFloat(screen.width(), screen.height());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Vec3 n(2 * normals[i].r - 1, 2 * normals[i].g - 1, 2 * normals[i].b - 1);
+        const Vec3 unit = n / max(length(n), 1e-6f);
+        planes[0][i] = unit.x, planes[1][i] = unit.y, planes[2][i] = unit.z;
+    }
+    screen.set_normals(std::move(planes));
+    screen.set_occlusion(std::make_shared<const OcclusionImage>(screen, settings.ambient_occlusion,
+                                                                static_cast<float>(occlusion_radius(data, settings)), settings.threads));
 }
 
 bool is_lamp(const Scene& scene, const Hit& hit) {
@@ -195,6 +209,12 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
     Control control;
     const auto screen = std::make_shared<Screen>(CameraModel(view).through(), SampleOffset{},
                                                  render(prepared, view, depths, control).nearness);
+    if (needs_occlusion(prepared.data(), settings)) {
+        Settings normals;
+        normals.shading = Shading::kNormal;
+        normals.threads = settings.threads;
+        add_occlusion(prepared.data(), settings, render(prepared, view, normals, control).radiance, *screen);
+    }
     if (needs_screen_radiance(prepared.data(), settings)) {
         Settings first = settings;
         first.screen_reflections = false;
@@ -212,7 +232,7 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen) {
-    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen);
+    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen, TapRange{});
 }
 
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
@@ -234,8 +254,9 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     const ShadingPoint point(surface, -ray.direction);
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
+    const TapRange taps = settings.samples_per_pixel >= TapRange::kBlocks ? TapRange::of_quadrant(tile.quadrant()) : TapRange{};
     if (settings.shading == Shading::kLit)
-        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen()).sum();
+        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen(), taps).sum();
     return result;
 }
 

@@ -24,6 +24,10 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
 bool needs_screen(const PreparedData& data, const Settings& settings);
 /// Whether that must have its radiance, too, shaded by the same settings without reflections of it.
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
+/// Whether that must have its occlusion.
+bool needs_occlusion(const PreparedData& data, const Settings& settings);
+/// Works it out, given what Shading::kNormal shows at the pixels' centres.
+void add_occlusion(const PreparedData& data, const Settings& settings, const ImageRgb& normals, Screen& screen);
 /// Whether a hit is on one of Scene::lights.
 bool is_lamp(const Scene& scene, const Hit& hit);
 /// Settings::occlusion_radius, or what its 0 stands for.

@@ -42,6 +42,7 @@ public:
     int side() const { return nearness_.width(); }
     /// near / depth at a texel's centre; 0 where nothing is seen.
     float nearness(int x, int y) const { return nearness_(x, y); }
+    const ImageFloat& nearness() const { return nearness_; }
     double near() const { return view_.near; }
     /// The width of a texel at a depth, metres.
     double texel(double depth) const;

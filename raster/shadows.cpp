@@ -1,7 +1,6 @@
 #include "raster/shadows.h"
 
 #include "raster/light_views.h"
-#include "raster/point_key.h"
 
 #include <algorithm>
 #include <cmath>
@@ -182,8 +181,10 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         const bool flat = cell.kind != Emitter::Kind::kBall;
         // Beside it or on it there may be other things in its plane: it looks from just before that.
         const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
-        maps.cubes.push_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
-                                       surface.two_sided, moment, cube_side_ / 2, settings.threads));
+        maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
+                                          surface.two_sided, moment, cube_side_ / 2, settings.threads),
+                                cell);
+        memory_bytes_ += maps.cells.back().memory_bytes();
     }
 }
 
@@ -205,13 +206,7 @@ CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter*
     return cube;
 }
 
-SoftTaps Shadows::taps(const Settings& settings) {
-    const int spp = settings.samples_per_pixel, cells = settings.shadow_cells;
-    const auto shared = [&](int side) { return std::max((side + cells - 1) / cells, 2); };
-    return spp >= 4 ? SoftTaps{shared(6), shared(4), 0} : SoftTaps{shared(8), shared(6), shared(8)};
-}
-
-float Shadows::visibility(std::size_t light, const ShadingPoint& point, const SoftTaps& taps) const {
+float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const {
     if (source_of_[light] == sources_.size()) return 1;
     const Source& source = sources_[source_of_[light]];
     const SurfacePoint& surface = point.surface;
@@ -235,13 +230,11 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, const So
     return visibility(source, source.moments[moment], receiver, taps);
 }
 
-float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, const SoftTaps& taps) const {
+float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
     constexpr double kMargin = ShadowMap::kFilterRadius + 1;
     if (!source.cells.empty()) {
-        const std::uint64_t key = point_key(Vec3(receiver.p), source.lights.front());
         float sum = 0;
-        for (std::size_t i = 0; i < source.cells.size(); ++i)
-            sum += soft_visibility(maps.cubes[i], source.cells[i], receiver, taps, key + i);
+        for (const SoftLight& cell : maps.cells) sum += cell.visibility(receiver, taps);
         return sum / static_cast<float>(source.cells.size());
     }
     for (const CubeMap& cube : maps.cubes) {

@@ -20,10 +20,8 @@ public:
     Shadows(const PreparedData& data, const Settings& settings);
 
     /// The part of the light of Scene::lights[light] that arrives at the point, in [0, 1]. The same for any number of
-    /// threads. 1 for lights that have no map.
-    float visibility(std::size_t light, const ShadingPoint& point, const SoftTaps& taps) const;
-    /// Taps of one sample for each of a light's pieces. Each is jittered by itself, so that many need few.
-    static SoftTaps taps(const Settings& settings);
+    /// threads. 1 for lights that have no map. `taps`: of each piece of a light with an area.
+    float visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const;
 
     std::size_t unshadowed() const { return unshadowed_; } ///< lights left without, weakest first
     std::size_t moments() const { return moments_.size(); }
@@ -37,7 +35,8 @@ private:
     /// A light's maps at one moment; all empty: none. Views are tried in order; a point light has one cube.
     struct Maps {
         std::vector<ShadowMap> views;
-        std::vector<CubeMap> cubes; ///< of surface lights: parallel to Source::cells
+        std::vector<CubeMap> cubes;
+        std::vector<SoftLight> cells; ///< of surface lights: parallel to Source::cells
     };
     /// What shares maps: one point, spot or sun light; or the surface lights of one object that lie in one plane, or
     /// that are all of a lamp.
@@ -52,7 +51,7 @@ private:
     /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
     CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment, int side,
                       int threads);
-    float visibility(const Source& source, const Maps& maps, const Receiver& receiver, const SoftTaps& taps) const;
+    float visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const;
 
     const Scene& scene_;
     double scene_size_;

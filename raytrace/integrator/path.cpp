@@ -7,6 +7,7 @@
 #include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
+#include <vector>
 
 namespace duet::raytrace {
 
@@ -69,41 +70,45 @@ private:
     PathLog& log_;
 };
 
+// The numbers of the vertex that a ray has found, if it is one that uses any.
+VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
+    return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
+}
+
 template <typename Sink> class Path {
 public:
-    Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), footprint_(plan) {}
+    Path(const RenderPlan& plan, RayCounts& counts, Sink sink = {})
+        : plan_(plan), counts_(counts), sink_(sink), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
-    auto trace(Ray ray, Hit hit) {
-        for (int depth = 0;; ++depth) {
-            if (!hit.valid()) {
-                if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
-                add_environment(ray.direction, depth);
-                break;
-            }
-            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
-            if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
-            if (depth == 0) sink_.start(vertex.bsdf);
-            add_emission(vertex, ray.direction, depth);
-            if (depth == plan_.max_depth) {
-                tell_end("it is as long as it may be (--depth)");
-                break;
-            }
-            const VertexNumbers u = vertex_numbers(sampler_, depth);
-            const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
-            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-            if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) {
-                tell_end("nothing is left to find");
-                break;
-            }
-            if (!scatter(vertex, u, ray)) break;
-            if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
+    auto trace(Sampler& sampler, Ray ray, Hit hit) {
+        for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
-            ++counts_.indirect;
-        }
-        return sink_.result();
+        return result();
     }
+
+    /// What the ray has found after `depth` scatterings: adds the light, and turns the ray into the one that goes on from
+    /// there. False where the path ends.
+    bool advance(Ray& ray, const Hit& hit, int depth, const VertexNumbers& u) {
+        if (!hit.valid()) {
+            if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
+            add_environment(ray.direction, depth);
+            return false;
+        }
+        const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
+        if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
+        if (depth == 0) sink_.start(vertex.bsdf);
+        add_emission(vertex, ray.direction, depth);
+        if (depth == plan_.max_depth) return tell_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
+        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
+        if (!scatter(vertex, u, ray)) return false;
+        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
+        ++counts_.indirect;
+        return true;
+    }
+    auto result() const { return sink_.result(); }
 
 private:
     void add_environment(Vec3 w, int bounces) {
@@ -209,7 +214,6 @@ private:
     }
 
     const RenderPlan& plan_;
-    Sampler& sampler_;
     RayCounts& counts_;
     Sink sink_;
     Rgb throughput_{1.0f};
@@ -218,19 +222,58 @@ private:
     PathFootprint footprint_;
 };
 
+// numbers_at of each of the paths that are going on, below the greatest depth; two at a time.
+void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const std::vector<std::uint32_t>& going,
+                  int depth, std::vector<VertexNumbers>& numbers) {
+    constexpr std::uint32_t kNone = ~0u;
+    std::uint32_t waiting = kNone;
+    for (const std::uint32_t i : going) {
+        if (!hits[i].valid()) continue;
+        go_to_vertex(samplers[i], depth);
+        if (waiting == kNone) {
+            waiting = i;
+            continue;
+        }
+        const auto [first, second] = Sampler::get_blocks(samplers[waiting], samplers[i]);
+        numbers[waiting] = vertex_numbers(first);
+        numbers[i] = vertex_numbers(second);
+        waiting = kNone;
+    }
+    if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
+}
+
 } // namespace
 
+void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+                    std::span<Rgb> radiances, RayCounts& counts) {
+    std::vector<Path<Sum>> paths;
+    std::vector<std::uint32_t> going;
+    std::vector<VertexNumbers> numbers(rays.size());
+    paths.reserve(rays.size());
+    going.reserve(rays.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+        paths.emplace_back(plan, counts);
+        going.push_back(i);
+    }
+    for (int depth = 0; !going.empty(); ++depth) {
+        if (depth < plan.max_depth) draw_numbers(samplers, hits, going, depth, numbers);
+        std::erase_if(going, [&](std::uint32_t i) { return !paths[i].advance(rays[i], hits[i], depth, numbers[i]); });
+        for (const std::uint32_t i : going) hits[i] = plan.prepared.accelerator.closest(rays[i]);
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].result();
+}
+
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Sum>(plan, sampler, counts).trace(ray, hit);
+    return Path<Sum>(plan, counts).trace(sampler, ray, hit);
 }
 
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
-    return Path<Told>(plan, sampler, counts, Told(log)).trace(ray, hit);
+    return Path<Told>(plan, counts, Told(log)).trace(sampler, ray, hit);
 }
 
 LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Split>(plan, sampler, counts).trace(ray, hit);
+    return Path<Split>(plan, counts).trace(sampler, ray, hit);
 }
 
 } // namespace duet::raytrace

@@ -2,6 +2,7 @@
 #include "tests/raster/scenes.h"
 
 #include "raster/ambient_occlusion.h"
+#include "raster/lanes.h"
 
 #include <doctest/doctest.h>
 
@@ -77,7 +78,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("horizons converge to the form factor of the strip as steps grow: to 0.01 with 400") {
+    // What is hidden is found by looking: of the directions over a point, those that meet the wall.
+    TEST_CASE("horizons converge to the strip's form factor as steps grow, and what is hidden to its directions: to 0.01 with 400") {
         Scene scene = white_scene();
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}});
         finish_scene(scene);
@@ -86,13 +88,74 @@ TEST_SUITE("unit") {
         depths.output = raster::Output::kNearness;
         const raster::Screen screen(CameraModel(view).through(), {}, render(scene, view, depths).nearness);
         for (const double z : {0.2, 0.7, 1.5}) {
+            const auto all = [](Vec3 v) { return Vec3T<raster::Floats>{raster::Floats(v.x), raster::Floats(v.y), raster::Floats(v.z)}; };
             const Vec3 p = screen.relative(Vec3(Vec3d(0.01, 0, z)));
-            double mean = 0;
-            for (std::uint64_t key = 0; key < 100; ++key)
-                mean += static_cast<double>(raster::horizon_occlusion(screen, {p, {0, 1, 0}, normalize(-p)}, 10, 4, 400, key)) / 100;
+            raster::SkySeen mean{0, {}};
+            constexpr int kPatterns = raster::OcclusionPattern::kPatterns;
+            for (int first = 0; first < kPatterns; first += static_cast<int>(raster::Floats::size)) {
+                const auto seen = raster::horizon_occlusion(screen, {all(p), all({0, 1, 0}), all(normalize(-p))},
+                                                            raster::OcclusionPattern::of_point(first), 10, 4, 400);
+                mean.visible += xsimd::hadd(seen.visible) / kPatterns;
+                mean.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z)) / static_cast<float>(kPatterns);
+            }
             CAPTURE(z);
-            CHECK(std::abs(mean - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);
+            CHECK(std::abs(static_cast<double>(mean.visible) - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);
+            Vec3d hidden;
+            constexpr int kSide = 400; // of cells of equal cos·dw/π: Malley's disk
+            for (int i = 0; i < kSide * kSide; ++i) {
+                const double x = 2 * (i % kSide + 0.5) / kSide - 1, back = 2 * (i / kSide + 0.5) / kSide - 1, r2 = x * x + back * back;
+                if (r2 >= 1 || back >= 0) continue;
+                const double up = std::sqrt(1 - r2);
+                if (up * z / -back < 1) hidden += Vec3d(x, up, back) * (4 / (kPiDouble * kSide * kSide));
+            }
+            CHECK(std::abs(static_cast<double>(mean.hidden.y) - hidden.y) < 0.01);
+            CHECK(std::abs(static_cast<double>(mean.hidden.z) - hidden.z) < 0.015);
+            CHECK(std::abs(mean.hidden.x) < 0.01f);
         }
+    }
+
+    TEST_CASE("no grain: along a wall, where all is the same, pixels differ by less than 1.5 % from the next one") {
+        Scene scene = white_scene();
+        add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
+        finish_scene(scene);
+        const View view{look({0, 3, 4}, {0, 0.3, 0.7}, 50), 160, 120};
+        for (const raster::AmbientOcclusion kind : kBoth) {
+            const ImageRgb found = visible(scene, view, kind, 1);
+            double sum = 0, worst = 0;
+            for (int y = 60; y < 116; ++y)
+                for (int x = 40; x < 120; ++x) {
+                    const double step = std::abs(static_cast<double>(found(x, y).g) - static_cast<double>(found(x + 1, y).g));
+                    sum += step / (56 * 80), worst = std::max(worst, step);
+                }
+            CAPTURE(worst);
+            CHECK(sum < 0.005);
+            CHECK(worst < (kind == raster::AmbientOcclusion::kGtao ? 0.03 : 0.05));
+        }
+    }
+
+    // A white wall over a black floor under a sky that is black below: what the floor hides was black.
+    TEST_CASE("what is hidden of a sky is what it would have given") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-20, 0, 20), Vec3(40, 0, 0), Vec3(0, 0, -40)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
+        add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
+        scene.environment = SkyEnvironment{Rgb(0.0f), Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 8, 8}, {0, 0.5, 2}, 50), 96, 64}; // all of the floor that is near
+        const ImageRgb found = visible(scene, view, raster::AmbientOcclusion::kGtao, 4);
+        const Pinhole pinhole = CameraModel(view).through();
+        int rows = 0;
+        for (int y = 0; y < view.height; ++y) {
+            const Rayd ray = pinhole.ray({48, y + 0.5});
+            const double height = ray.at(-ray.origin.z / ray.direction.z).y;
+            if (height < 0.1 || height > 1) continue;
+            // ½ ∫ (1 + w·y) cos dw / π over the upper half of the wall's hemisphere, where ∫ w·y cos dw is 2/3. As much
+            // of all as is visible would be 0.25.
+            const double all = 0.5 * (0.5 + 2.0 / 3 / kPiDouble);
+            CAPTURE(height);
+            CHECK(std::abs(static_cast<double>(found(48, y).g) - all) < 0.06);
+            ++rows;
+        }
+        CHECK(rows >= 4);
     }
 
     TEST_CASE("the same bits for any number of threads, with motion and lens, too; unknown names are refused") {

@@ -191,6 +191,36 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra is wide") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
+        add(scene, Sphere{Vec3(0.9f, 0.3f, 0), 0.3f});
+        add(scene, QuadList{box_quads(Vec3(-1.2f, 0, -0.3f), Vec3(-0.6f, 0.6f, 0.3f))});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 1024;
+        for (const int spp : {1, 4}) {
+            settings.samples_per_pixel = spp;
+            View from_above = over_floor(2);
+            const ImageFloat found = visible(scene, from_above, settings);
+            int dots = 0, shaded = 0;
+            for (int y = 1; y + 1 < kSize; ++y)
+                for (int x = 1; x + 1 < kSize; ++x) {
+                    float least = 1, most = 0; // of the pixels around
+                    for (int i = 0; i < 9; ++i)
+                        if (i != 4) {
+                            const float other = found(x + i % 3 - 1, y + i / 3 - 1);
+                            least = std::min(least, other), most = std::max(most, other);
+                        }
+                    dots += found(x, y) < least - 0.1f || found(x, y) > most + 0.1f;
+                    shaded += found(x, y) < 0.99f;
+                }
+            CAPTURE(spp);
+            CHECK(shaded > 500);
+            CHECK(dots == 0);
+        }
+    }
+
     TEST_CASE("what moves does not shade itself by its own motion, and leaves a blurred shadow") {
         Scene scene = floor_scene();
         Object& ball = add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));

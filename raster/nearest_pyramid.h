@@ -1,0 +1,27 @@
+// What is nearest in any part of a shadow map, without looking at all of it.
+#pragma once
+
+#include "common/image/image.h"
+
+#include <vector>
+
+namespace duet::raster {
+
+/// The greatest numbers of an image in blocks of 2 × 2, 4 × 4 … pixels (Greene, Kass and Miller 1993, «Hierarchical
+/// Z-Buffer Visibility», §3).
+class NearestPyramid {
+public:
+    explicit NearestPyramid(ImageFloat image);
+
+    /// At least the greatest number in columns x0 to x1 and rows y0 to y1, all within the image; at most the greatest
+    /// in a region of four blocks around them.
+    float greatest(int x0, int y0, int x1, int y1) const;
+    /// Of the whole image.
+    float greatest() const { return levels_.back()[0]; }
+    std::int64_t memory_bytes() const;
+
+private:
+    std::vector<ImageFloat> levels_; ///< the image, then blocks of 2, 4, 8 …
+};
+
+} // namespace duet::raster

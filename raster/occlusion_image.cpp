@@ -1,0 +1,144 @@
+#include "raster/occlusion_image.h"
+
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
+constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
+/// A box of 4 pixels about the middle of a fifth: each of 4 × 4 patterns counts alike.
+constexpr std::array<float, 5> kBox{0.125f, 0.25f, 0.25f, 0.25f, 0.125f};
+constexpr int kLanesWide = static_cast<int>(Floats::size);
+
+/// 1 on the same plane facing the same way, 0 off it.
+template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, T tolerance) {
+    const T off = T(1) - abs(dot(n, to)) / tolerance, facing = (dot(n, other_n) - T(kLeastLike)) * T(1 / (1 - kLeastLike));
+    return max(off, T(0)) * min(max(facing, T(0)), T(1));
+}
+
+Floats load_from(const ImageFloat& image, int x, int y) { return Floats::load_unaligned(&image(x, y)); }
+
+/// Columns at which batches begin that cover a row; the last ones may overlap.
+template <typename F> void for_batches(int width, const F& use) {
+    for (int x = 0; x < width; x += kLanesWide) use(std::min(x, width - kLanesWide));
+}
+
+} // namespace
+
+OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads)
+    : screen_(screen), kind_(kind), radius_(radius) {
+    if (screen.width() < kLanesWide) return; // every point is looked at by itself
+    const auto rows = static_cast<std::size_t>(screen.height());
+    for (ImageFloat& plane : found_) plane = ImageFloat(screen.width(), screen.height());
+    for (ImageFloat& plane : smooth_) plane = ImageFloat(screen.width(), screen.height());
+    parallel_for(rows, threads, [&](std::size_t y) { look_row(static_cast<int>(y)); });
+    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y)); });
+    found_ = {};
+}
+
+SkySeenT<Floats> OcclusionImage::look(const OcclusionPoints& points, const OcclusionPattern& pattern) const {
+    return kind_ == AmbientOcclusion::kSsao ? screen_space_occlusion(screen_, points, pattern, radius_)
+                                            : horizon_occlusion(screen_, points, pattern, radius_, kLines, kSteps);
+}
+
+void OcclusionImage::look_row(int y) {
+    for_batches(screen_.width(), [&](int x) {
+        const Floats nearness = load_from(screen_.nearness(), x, y);
+        if (xsimd::all(nearness <= Floats(0.0f))) return;
+        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
+        OcclusionPoints points;
+        points.p = screen_.at(column, Floats(static_cast<float>(y)), max(nearness, Floats(1e-20f)));
+        points.n = {load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
+                    load_from(screen_.normals()[2], x, y)};
+        points.to_viewer = screen_.to_viewer(points.p);
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
+        seen.visible.store_unaligned(&found_[0](x, y));
+        seen.hidden.x.store_unaligned(&found_[1](x, y));
+        seen.hidden.y.store_unaligned(&found_[2](x, y));
+        seen.hidden.z.store_unaligned(&found_[3](x, y));
+    });
+}
+
+void OcclusionImage::smooth_row(int y) {
+    const int width = screen_.width(), height = screen_.height();
+    const Floats none(0.0f);
+    for_batches(width, [&](int x) {
+        const Floats nearness = load_from(screen_.nearness(), x, y);
+        if (xsimd::all(nearness <= none)) return;
+        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0), last(static_cast<float>(width - 1));
+        const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), max(nearness, Floats(1e-20f)));
+        const Vec3T<Floats> n{load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
+                              load_from(screen_.normals()[2], x, y)};
+        const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / max(nearness, Floats(1e-20f)));
+        Floats weights(0.0f);
+        std::array<Floats, 4> sums{none, none, none, none};
+        for (int dy = -2; dy <= 2; ++dy) {
+            const int row = y + dy;
+            if (row < 0 || row >= height) continue;
+            for (int dx = -2; dx <= 2; ++dx) {
+                const Floats at = column + Floats(static_cast<float>(dx));
+                const bool within = x + dx >= 0 && x + dx + kLanesWide <= width;
+                const Ints places = truncated(min(max(at, none), last));
+                const auto of = [&](const ImageFloat& image) {
+                    return within ? load_from(image, x + dx, row) : gather(&image(0, row), places);
+                };
+                const Floats other = of(screen_.nearness());
+                const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), max(other, Floats(1e-20f)));
+                const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
+                const auto counts = (other > none) & (at >= none) & (at <= last);
+                const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance), none) *
+                                      Floats(kBox[static_cast<std::size_t>(dx + 2)] * kBox[static_cast<std::size_t>(dy + 2)]);
+                weights += weight;
+                for (std::size_t k = 0; k < 4; ++k) sums[k] += weight * of(found_[k]);
+            }
+        }
+        const Floats over = Floats(1.0f) / max(weights, Floats(1e-20f));
+        for (std::size_t k = 0; k < 4; ++k) (sums[k] * over).store_unaligned(&smooth_[k](x, y));
+    });
+}
+
+/// How much what pixel (x, y) sees is of the surface through p.
+float OcclusionImage::likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) const {
+    const std::optional<Vec3> seen = screen_.seen(x, y);
+    return seen ? same_surface(*seen - p, n, screen_.normal(x, y), tolerance) : 0.0f;
+}
+
+SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
+    if (smooth_[0].empty()) return look(p, n);
+    const float depth = screen_.homogeneous(p)[2], tolerance = screen_.pixel_size(kPixels * depth);
+    const auto found = [&](int column, int row) {
+        return SkySeen{smooth_[0](column, row), {smooth_[1](column, row), smooth_[2](column, row), smooth_[3](column, row)}};
+    };
+    if (likeness(x, y, p, n, tolerance) > 0.5f) return found(x, y);
+    float weights = 0;
+    SkySeen sum{0, {}};
+    for (int row = std::max(y - 1, 0); row <= std::min(y + 1, screen_.height() - 1); ++row)
+        for (int column = std::max(x - 1, 0); column <= std::min(x + 1, screen_.width() - 1); ++column) {
+            const float weight = likeness(column, row, p, n, tolerance);
+            if (!(weight > 0)) continue;
+            const SkySeen here = found(column, row);
+            weights += weight;
+            sum.visible += here.visible * weight;
+            sum.hidden += here.hidden * weight;
+        }
+    if (!(weights > 0.25f)) return look(p, n);
+    return {sum.visible / weights, sum.hidden / weights};
+}
+
+SkySeen OcclusionImage::look(Vec3 p, Vec3 n) const {
+    const auto all = [](Vec3 v) { return Vec3T<Floats>{Floats(v.x), Floats(v.y), Floats(v.z)}; };
+    const OcclusionPoints points{all(p), all(n), all(screen_.to_viewer(p))};
+    SkySeen sum{0, {}};
+    for (int first = 0; first < OcclusionPattern::kPatterns; first += kLanesWide) {
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_point(first));
+        sum.visible += xsimd::hadd(seen.visible);
+        sum.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
+    }
+    return {sum.visible / OcclusionPattern::kPatterns, sum.hidden / static_cast<float>(OcclusionPattern::kPatterns)};
+}
+
+} // namespace duet::raster

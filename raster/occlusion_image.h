@@ -1,0 +1,38 @@
+// How much of the environment each pixel of a picture sees.
+#pragma once
+
+#include "raster/ambient_occlusion.h"
+
+namespace duet::raster {
+
+/// The occlusion of what a Screen shows, once a pixel however many samples it has. Each pixel looks in a few directions;
+/// what it finds is averaged with those of its neighbours, 4 × 4 of which look everywhere, that lie on the same surface:
+/// within a pixel's width or two of its plane, facing nearly its way.
+class OcclusionImage {
+public:
+    /// The screen must outlive it. The same for any number of threads.
+    OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads);
+
+    /// At a point (relative to the eye) in pixel (x, y), with its unit shading normal: what the pixel's sample, or one
+    /// of its neighbours', has found if they lie on the same surface; else looked up anew.
+    SkySeen at(int x, int y, Vec3 p, Vec3 n) const;
+    /// At any point in view.
+    SkySeen look(Vec3 p, Vec3 n) const;
+
+    static constexpr int kLines = 2, kSteps = 12;
+
+private:
+    SkySeenT<Floats> look(const OcclusionPoints& points, const OcclusionPattern& pattern) const;
+    void look_row(int y);
+    void smooth_row(int y);
+    float likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) const;
+
+    const Screen& screen_;
+    AmbientOcclusion kind_;
+    float radius_;
+    /// The part visible, and the three coordinates of what is hidden: as found, then smoothed.
+    using Planes = std::array<ImageFloat, 4>;
+    Planes found_, smooth_;
+};
+
+} // namespace duet::raster
