@@ -1,6 +1,5 @@
 // The scenes of models/: they load, and hold what they promise.
 #include "common/scene/scene.h"
-#include "models/test_ball.h"
 #include "common/system/error.h"
 #include "models/test_ball.h"
 
