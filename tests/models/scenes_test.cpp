@@ -1,6 +1,7 @@
 // The scenes of models/: they load, and hold what they promise.
 #include "common/scene/scene.h"
 #include "common/system/error.h"
+#include "models/test_ball.h"
 
 #include <doctest/doctest.h>
 
@@ -265,6 +266,18 @@ TEST_SUITE("unit") {
         CHECK(noise);
         CHECK(marble);
         CHECK(std::ranges::any_of(scene.objects, [](const Object& o) { return o.materials.size() >= 3; })); // MTL
+    }
+
+    TEST_CASE("every test ball's scene loads, and shows a material of its own") {
+        std::size_t count = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(DUET_SOURCE_DIR) / "models/balls")) {
+            CAPTURE(entry.path());
+            const Scene scene = load("balls/" + entry.path().filename().string());
+            CHECK(scene.objects.size() >= 4);
+            CHECK(scene.material_names[scene.objects.front().materials.front()] == "ball");
+            ++count;
+        }
+        CHECK(count == models::ball_scenes().size());
     }
 
     TEST_CASE("every scene loads, and something is seen in it") {
