@@ -63,8 +63,8 @@ Ray rounded(const Rayd& exact, float time) {
             .time = time};
 }
 
-void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
-           std::size_t index, DepthTile& tile) {
+void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect, std::size_t index,
+               DepthTile& tile) {
     tile.reset(rect, offset, view.viewport);
     draw_all(geometry, geometry.outlines.tile(index), &Batch::triangles, &Batch::order,
              [&](const DrawTriangle& triangle) { tile.draw(triangle, geometry.triangles); });
@@ -73,6 +73,12 @@ void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, 
         tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));
     if (!geometry.spheres.empty())
         for (const std::uint32_t i : geometry.sphere_bins.tile(index)) draw(geometry.spheres[i], view, tile);
+}
+
+void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
+           std::size_t index, DepthTile& tile) {
+    draw_tile(geometry, view, offset, rect, index, tile);
+    tile.empty_undrawn();
 }
 
 Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,

@@ -74,19 +74,28 @@ void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport
     rect_ = rect;
     offset_ = offset;
     viewport_ = viewport;
-    nearness_.fill(0);
-    ids_.fill(static_cast<std::int32_t>(kNoTriangle));
     farthest_.fill(0);
     partial_.fill(0);
     drawn_.fill(false);
 }
 
+void DepthTile::empty(std::size_t block) {
+    std::fill_n(nearness_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
+    std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
+                static_cast<std::int32_t>(kNoTriangle));
+}
+
+void DepthTile::empty_undrawn() {
+    for (std::size_t block = 0; block < drawn_.size(); ++block)
+        if (!drawn_[block]) empty(block);
+}
+
 /// A bit for each block of a row whose farthest sample is farther than `nearest`, or as far.
 std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
-    std::uint32_t result = 0;
-    for (int column = 0; column < kBlocks; ++column)
-        result |= static_cast<std::uint32_t>(!(nearest < farthest_[static_cast<std::size_t>(row * kBlocks + column)])) << column;
-    return result;
+    std::uint32_t hidden = 0;
+    for (std::size_t i = 0; i < kBlocks; i += Quads::size)
+        hidden |= duet::lane_bits(Quads(nearest) < Quads::load_unaligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+    return ~hidden;
 }
 
 void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
@@ -103,7 +112,7 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
             const int column = std::countr_zero(left);
             const auto c = static_cast<std::size_t>(column), block = static_cast<std::size_t>(row * kBlocks) + c;
             const bool all = (blocks.all >> c & 1) && triangle.sound;
-            drawn_[block] = true;
+            open(block);
             const std::array<std::int32_t, 3> first{blocks.first[0][c], blocks.first[1][c], blocks.first[2][c]};
             const std::uint64_t edge_samples = all ? draw_block<true>(edges, first, triangle, column, row, y0, y1)
                                                    : draw_block<false>(edges, first, triangle, column, row, y0, y1);
@@ -228,7 +237,7 @@ void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_
     if (samples == 0) return;
     const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    drawn_[block] = true;
+    open(block);
     for (std::size_t i = 0; i < kBlockSamples; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
         if (here == 0) continue;
@@ -241,9 +250,9 @@ void DepthTile::draw(std::span<const Fragment> fragments) {
 }
 
 void DepthTile::keep_nearest(std::size_t place, std::uint32_t id, float nearness) {
+    open(place / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
     const bool tie_won = nearness == nearness_[place] && number < ids_[place] && !sabotaged(Guard::kDrawOrder);
-    drawn_[place / (kBlock * kBlock)] = true;
     if (!(nearness > nearness_[place] || tie_won)) return;
     nearness_[place] = nearness;
     ids_[place] = number;

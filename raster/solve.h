@@ -4,6 +4,8 @@
 #include "raster/set_ups.h"
 #include "raster/strip_samples.h"
 
+#include "common/vec/simd.h"
+
 #include <bit>
 #include <span>
 
@@ -139,7 +141,7 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
             Doubles e1 = zero, e2 = zero, sum = zero, depth_sum = zero;
             set_ups.template for_each<double>(k, [&](const auto& one, const auto& merge) {
                 const auto value = [&](const auto& plane) {
-                    return xsimd::fma(lanes_of(plane[0], k), x, xsimd::fma(lanes_of(plane[1], k), y, lanes_of(plane[2], k)));
+                    return fused(lanes_of(plane[0], k), x, fused(lanes_of(plane[1], k), y, lanes_of(plane[2], k)));
                 };
                 merge(e1, value(one.e1));
                 merge(e2, value(one.e2));

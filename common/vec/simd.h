@@ -71,6 +71,14 @@ xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float,
     return xsimd::fma(a, b, c);
 }
 
+inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_fmadd_pd(a, b, c);
+#else
+    return xsimd::fma(a, b, c);
+#endif
+}
+
 /// A bit for each lane that holds true, lane 0 the lowest.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
