@@ -20,6 +20,7 @@ Subcommand add_ladder(CLI::App& app);
 Subcommand add_images(CLI::App& app);
 Subcommand add_skip(CLI::App& app);
 Subcommand add_bench(CLI::App& app);
+Subcommand add_stop(CLI::App& app);
 Subcommand add_kernels(CLI::App& app);
 Subcommand add_frames(CLI::App& app);
 Subcommand add_stress(CLI::App& app);

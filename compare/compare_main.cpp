@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
         app.require_subcommand(1);
         app.footer("Example:\n  compare run models/cornell.json -o out\n\n`compare SUBCOMMAND --help` explains each.");
         const std::vector<Subcommand> subcommands = {add_run(app),   add_ladder(app),  add_images(app), add_skip(app),
-                                                     add_bench(app), add_kernels(app), add_frames(app), add_stress(app)};
+                                                     add_bench(app), add_stop(app), add_kernels(app), add_frames(app),
+                                                     add_stress(app)};
         const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
         if (!parsed.proceed) return parsed.exit_code;
         for (const Subcommand& subcommand : subcommands)

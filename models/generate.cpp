@@ -1,8 +1,19 @@
 #include "models/generate.h"
 
 #include "models/octopus.h"
+#include "models/test_ball.h"
 
 namespace duet::models {
+
+namespace {
+
+std::vector<std::string> ball_files() {
+    std::vector<std::string> files{"meshes/test-ball.obj"};
+    for (const BallScene& ball : ball_scenes()) files.push_back("balls/" + ball.name + ".json");
+    return files;
+}
+
+} // namespace
 
 std::span<const Model> all_models() {
     using enum Model::Kind;
@@ -14,6 +25,7 @@ std::span<const Model> all_models() {
         {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},
         {"sky", kCommitted, {"textures/sky.hdr"}, write_sky},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
+        {"test-ball", kCommitted, ball_files(), write_test_ball},
         {"hall", kBuilt, {kHallFile}, write_hall},
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
         {"octopus-hundred-thousand", kOnRequest, {kOctopusSmallFile}, write_octopus_hundred_thousand},

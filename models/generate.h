@@ -43,5 +43,6 @@ void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
+void write_test_ball(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -113,6 +113,8 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Rough metal sees each light surface as a distant light in its centre's direction.");
     name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
+    name(parts.reflection && needs.insides, "Glass absorbs as over the mean way through a ball of its size, and overlaps as if it did not.");
+    name(needs.layers, "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
     name(parts.direct && needs.lamp_textures, "Surfaces that emit a picture light others by its mean.");
     name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
     return result;

@@ -2,6 +2,7 @@
 
 #include "common/light/lambert.h"
 #include "common/material/ggx.h"
+#include "common/material/ggx_albedo.h"
 #include "raster/ggx_table.h"
 
 #include <algorithm>
@@ -58,7 +59,10 @@ Rgb area_reflection(const SurfaceLight& light, const MetalBsdf& bsdf, const Shad
         polygon.v[i] = lobe.to_cosine({turn.x * w.x + turn.y * w.y, turn.x * w.y - turn.y * w.x, w.z});
     }
     const double part = polygon_form_factor_times_pi({}, {0, 0, 1}, std::span<const Vec3>(polygon.v.data(), polygon.count));
-    return light.radiance * ggx_albedo(bsdf.alpha, wo.z).of(bsdf.reflectance) * static_cast<float>(part / kPiDouble);
+    // Further reflections leave evenly enough to be taken for diffuse.
+    const GgxAlbedo single = ggx_albedo(bsdf.alpha, wo.z);
+    const Rgb further = bsdf.multiple * ((1 - single.energy) * ggx_means(bsdf.alpha).lost);
+    return light.radiance * single.of(bsdf.reflectance) * static_cast<float>(part / kPiDouble) + irradiance(light, point) * further;
 }
 
 } // namespace duet::raster

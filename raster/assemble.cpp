@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 namespace duet::raster {
 namespace {
@@ -33,12 +34,14 @@ constexpr std::int32_t kSmallSide = 8;
 /// An edge's function at the first sample of a small box, and its steps to the next.
 struct SmallEdge {
     Ints at, step_x, step_y;
+    Ints length; ///< |x| + |y|
 
     SmallEdge(Ints from_x, Ints from_y, Ints to_x, Ints to_y, Ints sample_x, Ints sample_y) {
         const Ints dx = to_x - from_x, dy = to_y - from_y, zero(0);
         const auto left_or_top = dy < zero || (dy == zero && dx > zero);
         at = dx * (sample_y - from_y) - dy * (sample_x - from_x);
         if (!sabotaged(Guard::kTopLeftRule)) at = at + xsimd::select(left_or_top, zero, Ints(-1));
+        length = abs(dx) + abs(dy);
         step_x = zero - dy * Ints(kSubPixels);
         step_y = dx * Ints(kSubPixels);
     }
@@ -70,6 +73,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     }
     small_.clear();
     touches_.clear();
+    patch_touches_.clear();
     const Shape& shape = triangles.shape(run);
     mesh_ = std::get_if<Mesh>(&shape);
     Outlines outlines;
@@ -80,7 +84,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     }
     cover_candidates();
     find_nearness();
-    sorter_.sort(batch, touches_, plan.grid.size());
+    sorter_.sort(batch, touches_, patch_touches_, plan.grid.size());
 }
 
 namespace {
@@ -263,14 +267,14 @@ void Assembler::cover_candidates() {
     for (std::size_t i = 0; i < c.count; i += Ints::size) {
         const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
         Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
-        const auto negative = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < zero; // to be wound the other way
-        const Ints margin = max(max(ax, bx), cx) - min(min(ax, bx), cx) + max(max(ay, by), cy) -
-                            min(min(ay, by), cy) + Ints(1); // inside_margin
+        const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+        const auto negative = area < zero; // to be wound the other way
         const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
                    sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
         const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
         cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
         const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
+        const std::array<Ints, 3> margin = edge_margins({ab.length, bc.length, ca.length}, Ints(abs(area)));
         std::array<Ints, 3> row{ab.at, bc.at, ca.at};
         for (std::size_t word = 0; word < kWords; ++word) {
             Ints some = zero, sure = zero;
@@ -279,7 +283,7 @@ void Assembler::cover_candidates() {
                 for (std::int32_t x = 0; x < kSmallSide; ++x, ++bit) {
                     const Ints least = min(min(e[0], e[1]), e[2]);
                     some = some | as_ints(least >= zero, static_cast<std::int32_t>(1u << bit));
-                    sure = sure | as_ints(least >= margin, static_cast<std::int32_t>(1u << bit));
+                    sure = sure | as_ints(e[0] >= margin[0] && e[1] >= margin[1] && e[2] >= margin[2], static_cast<std::int32_t>(1u << bit));
                     e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
                 }
                 row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
@@ -319,8 +323,14 @@ void Assembler::find_nearness() {
     for (std::size_t first = 0; first < small_.size(); first += kStrip) {
         const std::size_t count = std::min(kStrip, small_.size() - first);
         find_planes(first, count, planes);
-        for (std::size_t i = 0; i < count; ++i)
-            add_fragments(small_[first + i], planes[0][i], planes[1][i], planes[2][i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Small& small = small_[first + i];
+            const NearnessPlane plane{planes[0][i], planes[1][i], planes[2][i]};
+            constexpr int kFew = 2; // cheaper one by one
+            const bool as_patch = plan_->patches && std::popcount(small.covered & small.well_inside) > kFew;
+            if (as_patch) add_patch(small, plane);
+            add_fragments(small, as_patch ? small.covered & ~small.well_inside : small.covered, plane);
+        }
     }
 }
 
@@ -362,21 +372,38 @@ void Assembler::find_planes(std::size_t first, std::size_t count, std::array<Str
     }
 }
 
-/// The covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
-void Assembler::add_fragments(const Small& small, double x, double y, double constant) {
+void Assembler::add_patch(const Small& small, const NearnessPlane& plane) {
+    const auto number = static_cast<std::uint32_t>(batch_->patches.size());
+    const std::uint64_t samples = small.covered & small.well_inside;
+    batch_->patches.push_back(
+        {.samples = samples, .nearness = plane, .id = run_.first_id + small.index - run_.first, .x = small.x, .y = small.y});
+    std::uint64_t columns = samples | samples >> 32; // all rows or-ed
+    columns |= columns >> 16;
+    columns |= columns >> 8;
+    const auto length = [](std::uint64_t bits) { return 64 - std::countl_zero(bits); };
+    const int width = length(columns & 0xff), height = (length(samples) + kSmallSide - 1) / kSmallSide;
+    plan_->grid.for_each({small.x, small.y, small.x + width, small.y + height}, [&](std::size_t tile) {
+        patch_touches_.push_back({static_cast<std::uint32_t>(tile), number});
+    });
+}
+
+/// Covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
+void Assembler::add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane) {
+    if (samples == 0) return;
     constexpr std::uint32_t kSize = TileGrid::kTileSize;
     const std::uint32_t id = run_.first_id + small.index - run_.first;
     const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
                top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
     const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
-    for (std::uint64_t bits = small.covered; bits != 0; bits &= bits - 1) {
+    std::optional<WholeTriangle> whole; // where it is needed
+    for (std::uint64_t bits = samples; bits != 0; bits &= bits - 1) {
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
-        double nearness = (constant + down * y) + across * x;
+        double nearness = (plane.constant + down * plane.y) + across * plane.x;
         if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
-        if (!(small.well_inside >> bit & 1))
-            nearness = interpolate(triangles_->whole(run_, small.index),
-                                   least_.position(small.x + across, small.y + down))
-                           .nearness(plan_->viewport.near);
+        if (!(small.well_inside >> bit & 1)) {
+            if (!whole) whole = whole_triangle(small.index);
+            nearness = interpolate(*whole, least_.position(small.x + across, small.y + down)).nearness(plan_->viewport.near);
+        }
         const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
         batch_->fragments.push_back({id, kept_nearness(nearness),
                                      static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize)),

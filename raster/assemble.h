@@ -17,11 +17,12 @@ struct AssemblyPlan {
     std::vector<SampleOffset> samples;
     Skips skips;
     bool front_faces_only = false;
+    bool patches = true; ///< small triangles of several samples in one piece each; else all of them as fragments
 };
 
 /// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 8 × 8 samples, where there
-/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become fragments. The
-/// others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
+/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become a patch, or fragments where they
+/// are few. The others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
 /// twice), a clipped one a fan.
 class Assembler {
 public:
@@ -48,7 +49,8 @@ private:
     void add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside);
     void find_nearness();
     void find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const;
-    void add_fragments(const Small& small, double x, double y, double constant);
+    void add_patch(const Small& small, const NearnessPlane& plane);
+    void add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane);
 
     const AssemblyPlan* plan_ = nullptr;
     const Triangles* triangles_ = nullptr;
@@ -66,7 +68,7 @@ private:
     };
     Candidates candidates_;
     std::vector<Small> small_;
-    std::vector<TileSorter::Touch> touches_;
+    std::vector<TileSorter::Touch> touches_, patch_touches_;
     TileSorter sorter_;
 };
 

@@ -6,6 +6,9 @@ void Batch::clear() {
     triangles.clear();
     order.clear();
     triangle_segments.clear();
+    patches.clear();
+    patch_order.clear();
+    patch_segments.clear();
     fragments.clear();
     fragment_segments.clear();
     culled = {};
@@ -13,7 +16,8 @@ void Batch::clear() {
 
 std::size_t Batch::memory_bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return bytes(triangles) + bytes(order) + bytes(triangle_segments) + bytes(fragments) + bytes(fragment_segments);
+    return bytes(triangles) + bytes(order) + bytes(triangle_segments) + bytes(patches) + bytes(patch_order) +
+           bytes(patch_segments) + bytes(fragments) + bytes(fragment_segments);
 }
 
 // A counting sort that touches the counters of those tiles only that have any item: the work grows with the items.
@@ -33,12 +37,17 @@ void TileSorter::distribute(std::span<const Item> items, const TileOf& tile_of, 
     for (const Segment& segment : segments) counts_[segment.tile] = 0;
 }
 
-void TileSorter::sort(Batch& batch, const std::vector<Touch>& touches, std::size_t tiles) {
-    if (counts_.size() < tiles) counts_.resize(tiles, 0);
-    batch.order.resize(touches.size());
+void TileSorter::sort(const std::vector<Touch>& touches, std::vector<Segment>& segments, std::vector<std::uint32_t>& order) {
+    order.resize(touches.size());
     distribute(
-        std::span<const Touch>(touches), [](const Touch& touch) { return touch.tile; }, batch.triangle_segments,
-        [&](std::uint32_t i, const Touch& touch) { batch.order[i] = touch.triangle; });
+        std::span<const Touch>(touches), [](const Touch& touch) { return touch.tile; }, segments,
+        [&](std::uint32_t i, const Touch& touch) { order[i] = touch.item; });
+}
+
+void TileSorter::sort(Batch& batch, const std::vector<Touch>& triangles, const std::vector<Touch>& patches, std::size_t tiles) {
+    if (counts_.size() < tiles) counts_.resize(tiles, 0);
+    sort(triangles, batch.triangle_segments, batch.order);
+    sort(patches, batch.patch_segments, batch.patch_order);
     unsorted_.swap(batch.fragments);
     batch.fragments.resize(unsorted_.size());
     distribute(

@@ -20,6 +20,14 @@ struct Fragment {
 };
 static_assert(sizeof(Fragment) == 12);
 
+/// Samples of a triangle so small that a box of 8 × 8 has them all.
+struct Patch {
+    std::uint64_t samples = 0; ///< a bit for each of the box, row by row
+    NearnessPlane nearness;    ///< holds there; counted from the box's first sample
+    std::uint32_t id = 0;
+    std::int32_t x = 0, y = 0; ///< the box's first pixel
+};
+
 /// Where a tile keeps a pixel, both counted from its corner: by blocks of 8 × 8 pixels, row by row in each.
 inline std::uint32_t place_in_tile(std::uint32_t x, std::uint32_t y) {
     return ((y >> 3) * (TileGrid::kTileSize / 8) + (x >> 3)) * 64 + (y & 7) * 8 + (x & 7);
@@ -43,6 +51,9 @@ struct Batch {
     std::vector<DrawTriangle> triangles;
     std::vector<std::uint32_t> order;         ///< indices of triangles, tile by tile
     std::vector<Segment> triangle_segments;   ///< of `order`
+    std::vector<Patch> patches;
+    std::vector<std::uint32_t> patch_order;   ///< and of patches
+    std::vector<Segment> patch_segments;      ///< of `patch_order`
     std::vector<Fragment> fragments;          ///< tile by tile
     std::vector<Segment> fragment_segments;   ///< of `fragments`
     CullCounts culled;
@@ -54,13 +65,15 @@ struct Batch {
 /// Sorts a batch's items by tile, in their order within each. Keeps memory for the next.
 class TileSorter {
 public:
-    /// `triangle_tiles`: (tile, index into batch.triangles) in order.
+    /// An item, by its index in batch.triangles or batch.patches, may be seen in a tile.
     struct Touch {
-        std::uint32_t tile, triangle;
+        std::uint32_t tile, item;
     };
-    void sort(Batch& batch, const std::vector<Touch>& touches, std::size_t tiles);
+    /// `triangles` and `patches` in order.
+    void sort(Batch& batch, const std::vector<Touch>& triangles, const std::vector<Touch>& patches, std::size_t tiles);
 
 private:
+    void sort(const std::vector<Touch>& touches, std::vector<Segment>& segments, std::vector<std::uint32_t>& order);
     template <typename Item, typename TileOf, typename Place>
     void distribute(std::span<const Item> items, const TileOf& tile_of, std::vector<Segment>& segments,
                     const Place& place);

@@ -17,6 +17,27 @@ void draw(const DrawSphere& sphere, const PassView& view, DepthTile& tile) {
         }
 }
 
+/// A tile's items of all batches, in order; asked for from memory ahead of time.
+template <typename Item, typename Draw>
+void draw_all(const Geometry& geometry, std::span<const TileLists::Item> lists, std::vector<Item> Batch::*items,
+              std::vector<std::uint32_t> Batch::*order, const Draw& draw_one) {
+    constexpr std::uint32_t kAhead = 8;
+    const auto item = [&](const TileLists::Item& list, std::uint32_t k) -> const Item& {
+        const Batch& batch = geometry.batches[list.batch];
+        return (batch.*items)[(batch.*order)[list.first + k]];
+    };
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        if (i == 0)
+            for (std::uint32_t k = 0; k < std::min(kAhead, lists[i].count); ++k) prefetch(&item(lists[i], k));
+        if (i + 1 < lists.size())
+            for (std::uint32_t k = 0; k < std::min(kAhead, lists[i + 1].count); ++k) prefetch(&item(lists[i + 1], k));
+        for (std::uint32_t k = 0; k < lists[i].count; ++k) {
+            if (k + kAhead < lists[i].count) prefetch(&item(lists[i], k + kAhead));
+            draw_one(item(lists[i], k));
+        }
+    }
+}
+
 Hit make_hit(std::uint32_t object, std::uint32_t primitive, Piece piece, double b1, double b2, double distance) {
     Hit hit{.object = object, .primitive = primitive, .t = static_cast<float>(distance)};
     switch (piece) {
@@ -42,21 +63,22 @@ Ray rounded(const Rayd& exact, float time) {
             .time = time};
 }
 
-void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
-           std::size_t index, DepthTile& tile) {
+void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect, std::size_t index,
+               DepthTile& tile) {
     tile.reset(rect, offset, view.viewport);
-    for (const TileLists::Item& item : geometry.outlines.tile(index)) {
-        const Batch& batch = geometry.batches[item.batch];
-        constexpr std::uint32_t kAhead = 8;
-        for (std::uint32_t k = 0; k < item.count; ++k) {
-            if (k + kAhead < item.count) prefetch(&batch.triangles[batch.order[item.first + k + kAhead]]);
-            tile.draw(batch.triangles[batch.order[item.first + k]], geometry.triangles);
-        }
-    }
+    draw_all(geometry, geometry.outlines.tile(index), &Batch::triangles, &Batch::order,
+             [&](const DrawTriangle& triangle) { tile.draw(triangle, geometry.triangles); });
+    draw_all(geometry, geometry.patches.tile(index), &Batch::patches, &Batch::patch_order, [&](const Patch& patch) { tile.draw(patch); });
     for (const TileLists::Item& item : geometry.fragments.tile(index))
         tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));
     if (!geometry.spheres.empty())
         for (const std::uint32_t i : geometry.sphere_bins.tile(index)) draw(geometry.spheres[i], view, tile);
+}
+
+void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
+           std::size_t index, DepthTile& tile) {
+    draw_tile(geometry, view, offset, rect, index, tile);
+    tile.empty_undrawn();
 }
 
 Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
@@ -92,14 +114,10 @@ Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, V
 class HitTile::Filler {
 public:
     Filler(HitTile& tile, const Geometry& geometry, const PassView& view)
-        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_) {}
+        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
-        const bool seen = samples_seen(place.ids) != 0;
-        if (seen) {
-            solver_.load(place.ids);
-            solver_.solve(place);
-        }
+        solver_.solve(std::span(&place, 1), std::span(&strip_, 1), false);
         for (std::size_t i = 0; i < kStrip; ++i) {
             const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
             if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
@@ -107,7 +125,7 @@ public:
             const Rayd exact = view_.pinhole.ray(place.position(i));
             tile_.rays_[at] = rounded(exact, view_.time);
             tile_.distance_per_depth_[at] = exact.t_min / view_.pinhole.near;
-            if (!seen || !(solver_.seen() >> i & 1)) continue;
+            if (!(strip_.seen >> i & 1)) continue;
             tile_.hits_[at] = hit(i, place, at);
             tile_.nearness_[at] = place.nearness != nullptr
                                       ? place.nearness[i]
@@ -118,11 +136,12 @@ public:
 private:
     Hit hit(std::size_t i, const StripPlace& place, std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
-        if (!(solver_.inside() >> i & 1)) return find_hit(geometry_, view_, solver_.id(i), place.position(i));
-        const Run& run = solver_.run(i);
-        const double depth = std::max(solver_.depth[i], view_.pinhole.near);
-        return make_hit(triangles.objects[run.object].object, Triangles::index(run, solver_.id(i)), Piece::kTriangle,
-                        solver_.b1[i], solver_.b2[i], depth * tile_.distance_per_depth_[at]);
+        if (!(strip_.on_mesh & strip_.inside & 1u << i))
+            return find_hit(geometry_, view_, strip_.id(i), place.position(i));
+        const Run& run = solver_.run_of(strip_.id(i));
+        const double depth = std::max(strip_.depth[i], view_.pinhole.near);
+        return make_hit(triangles.objects[run.object].object, Triangles::index(run, strip_.id(i)), Piece::kTriangle,
+                        strip_.b1[i], strip_.b2[i], depth * tile_.distance_per_depth_[at]);
     }
 
     HitTile& tile_;
@@ -130,6 +149,7 @@ private:
     const PassView& view_;
     NoVaryings nothing_;
     StripSolver<NoVaryings> solver_;
+    SolvedStrip<NoVaryings> strip_;
 };
 
 void HitTile::make_room() {

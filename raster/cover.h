@@ -15,7 +15,10 @@ namespace duet::raster {
 /// The ray in float.
 Ray rounded(const Rayd& exact, float time);
 
-/// Draws all that may be seen of a tile of the picture: its depths, and the number of what each sample sees.
+/// Draws all that may be seen of a tile of the picture: its depths, and the number of what each sample sees. draw_tile() leaves
+/// the samples of blocks that nothing was drawn to undefined.
+void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect, std::size_t index,
+               DepthTile& tile);
 void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
            std::size_t index, DepthTile& tile);
 

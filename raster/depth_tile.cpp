@@ -1,100 +1,146 @@
 #include "raster/depth_tile.h"
 
+#include "common/vec/simd.h"
+
 #include <bit>
 
 namespace duet::raster {
 
 /// A triangle's edge functions at the samples of a tile. All samples of a tile have the same place in their pixel, so a
 /// function's values differ by multiples of 256: divided by that and rounded down, their signs stay, and the steps from
-/// pixel to pixel are a and b themselves. Within a block that an edge passes through they fit into 32 bits, whatever
-/// the triangle's size: |a|, |b| < 2^25.2 (kGuardBand), so no sample of the block is as far as 14 · 2^25.2 < 2^30 from
-/// one of the other sign.
+/// pixel to pixel are a and b themselves. From block to block they are counted in doubles: exactly, being below 2^53. Within
+/// a block that an edge passes through they fit into 32 bits, whatever the triangle's size: |a|, |b| < 2^25.2 (kGuardBand),
+/// so no sample of the block is as far as 14 · 2^25.2 < 2^30 from one of the other sign.
 struct DepthTile::Edges {
-    std::array<std::int64_t, 3> at; ///< at the tile's first sample
-    std::array<std::int64_t, 3> a, b;
+    std::array<double, 3> at; ///< at the tile's first sample
+    std::array<double, 3> a, b;
     Origin origin; ///< of the triangle's plane
-    std::int64_t margin;
+    std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
+    std::array<std::int32_t, 3> next_strip;    ///< from a strip to the one below
 
     Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
-        : origin(raster::origin(triangle.corners, viewport)), margin((inside_margin(triangle) + kSubPixels - 1) >> kSubPixelBits) {
+        : origin(raster::origin(triangle.corners, viewport)) {
         const auto& p = triangle.corners;
+        const std::array<std::int64_t, 3> margins = edge_margins(triangle);
+        constexpr std::int32_t kNever = 0x7fffffff;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
-            at[k] = edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >>
-                    kSubPixelBits;
-            a[k] = edge.a;
-            b[k] = edge.b;
-            const Ints right(static_cast<std::int32_t>(a[k])), down(static_cast<std::int32_t>(b[k]));
+            at[k] = static_cast<double>(
+                edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >>
+                kSubPixelBits);
+            a[k] = static_cast<double>(edge.a);
+            b[k] = static_cast<double>(edge.b);
+            margin[k] = triangle.sound ? static_cast<std::int32_t>((margins[k] + kSubPixels - 1) >> kSubPixelBits) : kNever;
+            next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
+            const Ints right(static_cast<std::int32_t>(edge.a)), down(static_cast<std::int32_t>(edge.b));
             for (std::size_t i = 0; i < kStrip; i += Ints::size)
                 store(step[k], i, right * load(kColumns<std::int32_t>, i) + down * load(kRows<std::int32_t>, i));
         }
     }
+};
 
-    enum class Cover { kNone, kSome, kAll };
-    /// Of the block whose first sample is `x` pixels to the right of the tile's first and `y` below.
-    Cover of_block(int x, int y) const {
-        bool all = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::int64_t first = at[k] + a[k] * x + b[k] * y;
-            constexpr std::int64_t kLast = kBlock - 1, kZero = 0;
-            if (first + kLast * (std::max(a[k], kZero) + std::max(b[k], kZero)) < 0) return Cover::kNone;
-            all = all && first + kLast * (std::min(a[k], kZero) + std::min(b[k], kZero)) >= margin;
+/// A row of blocks of a tile, all of them side by side.
+struct DepthTile::BlockRow {
+    std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle covers some samples; all, well inside
+    std::array<std::array<std::int32_t, kBlocks>, 3> first; ///< edge functions at its first sample, as far as it matters
+
+    BlockRow(const Edges& edges, int row) {
+        constexpr double kLast = kBlock - 1, kFar = 1 << 30;
+        for (std::size_t i = 0; i < kBlocks; i += Doubles::size) {
+            const Doubles x = load(kBlockColumns, i);
+            auto not_all_out = Doubles(0.0) <= Doubles(0.0), all_in = not_all_out;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double right = edges.a[k] * kLast, down = edges.b[k] * kLast;
+                const double most = std::max(right, 0.0) + std::max(down, 0.0), least = std::min(right, 0.0) + std::min(down, 0.0);
+                const Doubles here = Doubles(edges.at[k] + edges.b[k] * (row * kBlock)) + Doubles(edges.a[k]) * x;
+                not_all_out = not_all_out && here >= Doubles(-most);
+                all_in = all_in && here >= Doubles(edges.margin[k] - least);
+                store_ints(min(max(here, Doubles(-kFar)), Doubles(kFar)), &first[k][i]);
+            }
+            some |= lane_bits(not_all_out) << i;
+            all |= lane_bits(all_in) << i;
         }
-        return all ? Cover::kAll : Cover::kSome;
     }
-    /// An edge's value at a place, as far as it matters.
-    std::int32_t clamped(std::size_t k, int x, int y) const {
-        constexpr std::int64_t kFar = 1 << 30;
-        return static_cast<std::int32_t>(std::clamp(at[k] + a[k] * x + b[k] * y, -kFar, kFar));
-    }
+
+    static inline const StripOf<double> kBlockColumns = [] { // of which the first kBlocks are asked for
+        StripOf<double> result;
+        for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<double>(i) * kBlock;
+        return result;
+    }();
 };
 
 void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport) {
     rect_ = rect;
     offset_ = offset;
     viewport_ = viewport;
-    nearness_.fill(0);
-    ids_.fill(static_cast<std::int32_t>(kNoTriangle));
     farthest_.fill(0);
     partial_.fill(0);
     drawn_.fill(false);
+}
+
+void DepthTile::empty(std::size_t block) {
+    std::fill_n(nearness_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
+    std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
+                static_cast<std::int32_t>(kNoTriangle));
+}
+
+void DepthTile::empty_undrawn() {
+    for (std::size_t block = 0; block < drawn_.size(); ++block)
+        if (!drawn_[block]) empty(block);
+}
+
+/// A bit for each block of a row whose farthest sample is farther than `nearest`, or as far.
+std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
+    std::uint32_t hidden = 0;
+    for (std::size_t i = 0; i < kBlocks; i += Quads::size)
+        hidden |= duet::lane_bits(Quads(nearest) < Quads::load_unaligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+    return ~hidden;
 }
 
 void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
     const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
     if (r.empty()) return;
     const Edges edges(triangle, rect_, offset_, viewport_);
-    const bool large = r.width() > kBlock || r.height() > kBlock; // worth to ask for whole blocks
-    for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row)
-        for (int column = (r.x0 - rect_.x0) / kBlock; column <= (r.x1 - 1 - rect_.x0) / kBlock; ++column) {
-            const auto block = static_cast<std::size_t>(row * kBlocks + column);
-            if (triangle.nearest < farthest_[block]) continue;
-            const Edges::Cover cover =
-                large ? edges.of_block(column * kBlock, row * kBlock) : Edges::Cover::kSome;
-            if (cover == Edges::Cover::kNone) continue;
-            const bool all = cover == Edges::Cover::kAll && triangle.sound;
-            drawn_[block] = true;
-            const int top = rect_.y0 + row * kBlock;
-            const std::uint64_t edge_samples = draw_block(edges, triangle, column, row, std::max(r.y0 - top, 0),
-                                                          std::min(r.y1 - top, kBlock) - 1, all);
+    const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
+    const std::uint32_t touched = (2u << last_column) - (1u << first_column);
+    for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
+        const BlockRow blocks(edges, row);
+        const int top = rect_.y0 + row * kBlock;
+        const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
+        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0; left &= left - 1) {
+            const int column = std::countr_zero(left);
+            const auto c = static_cast<std::size_t>(column), block = static_cast<std::size_t>(row * kBlocks) + c;
+            const bool all = (blocks.all >> c & 1) && triangle.sound;
+            open(block);
+            const std::array<std::int32_t, 3> first{blocks.first[0][c], blocks.first[1][c], blocks.first[2][c]};
+            const std::uint64_t edge_samples = all ? draw_block<true>(edges, first, triangle, column, row, y0, y1)
+                                                   : draw_block<false>(edges, first, triangle, column, row, y0, y1);
             if (edge_samples != 0) draw_edge_samples(triangle, whole, block, edge_samples);
             constexpr std::uint8_t kOften = 16;
             if (all || ++partial_[block] >= kOften) find_farthest(block);
         }
+    }
 }
 
-/// Nearness over strips.
+/// Nearness over a block: of a row of it at a time.
 struct DepthTile::Nearness {
-    const NearnessPlane& plane;
     const Viewport& viewport;
-    Doubles slope = Doubles(plane.x);
+    alignas(64) std::array<double, kBlock> start; ///< of each row
+    alignas(64) std::array<double, kBlock> along; ///< of each column, from there
 
-    /// Of the samples from the i-th of a strip on, whose first lies at (x, y) from the plane's origin.
-    Floats at(double x, double y, std::size_t i) const {
+    /// The block's first sample lies at (x, y) from the plane's origin.
+    Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
+        for (std::size_t i = 0; i < kBlock; i += Doubles::size) {
+            const Doubles step = load(kColumns<double>, i);
+            (Doubles(plane.constant) + (Doubles(y) + step) * Doubles(plane.y)).store_aligned(&start[i]);
+            ((Doubles(x) + step) * Doubles(plane.x)).store_aligned(&along[i]);
+        }
+    }
+    /// Of the samples from the i-th of the block on.
+    Floats at(std::size_t i) const {
         const auto half = [&](std::size_t first) {
-            const double start = plane.constant + (y + kRows<double>[first]) * plane.y;
-            const Doubles value = Doubles(start) + (Doubles(x) + raster::load(kColumns<double>, first)) * slope;
+            const Doubles value = Doubles(start[first / kBlock]) + Doubles::load_aligned(&along[first % kBlock]);
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
         const Floats nearness = narrowed(half(i), half(i + Doubles::size));
@@ -102,45 +148,50 @@ struct DepthTile::Nearness {
     }
 };
 
-/// Draws those samples of a block that are covered for certain and lie well inside; `all` of them do, or the edges say
-/// which. Returns the other covered ones, a bit each. Only the strips of rows y0 to y1 of the block are looked at.
-std::uint64_t DepthTile::draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0,
-                                    int y1, bool all) {
-    const auto id = static_cast<std::int32_t>(triangle.id);
+/// The samples from a place on, as many as there are lanes, of which those given show a triangle.
+template <typename Lanes>
+void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
+    const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
+    const Floats before = Floats::load_aligned(&nearness_[place]);
+    auto wins = nearness > before;
+    if (!sabotaged(Guard::kDrawOrder)) wins = wins || (nearness == before && xsimd::bool_cast(id < id_before));
+    wins = wins && lanes;
+    xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
+    xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
+}
+
+/// Draws those samples of a block that are covered for certain and lie well inside; `kAll` of them do, or the edges say
+/// which, from their values at the block's first sample on. Returns the other covered ones, a bit each. Only the strips of
+/// rows y0 to y1 of the block are looked at.
+template <bool kAll>
+std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle,
+                                    int column, int row, int y0, int y1) {
+    const Ints zero(0);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    const Ints zero(0), margin(static_cast<std::int32_t>(triangle.sound ? edges.margin : std::int64_t{0x7fffffff}));
-    const Nearness nearness{triangle.nearness, viewport_};
-    const int x = column * kBlock;
-    const double from_x = rect_.x0 + x - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels;
-    const double from_y = rect_.y0 - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels;
+    const Nearness nearness(triangle.nearness, viewport_,
+                            rect_.x0 + column * kBlock - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
+                            rect_.y0 + row * kBlock - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels);
+    const int first_strip = y0 / kStripRows, last_strip = y1 / kStripRows;
     std::uint64_t edge_samples = 0;
-    for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip) {
-        const int y = row * kBlock + strip * kStripRows;
-        const auto first = static_cast<std::size_t>(strip) * kStrip;
-        const std::array<Ints, 3> value{Ints(edges.clamped(0, x, y)), Ints(edges.clamped(1, x, y)),
-                                        Ints(edges.clamped(2, x, y))};
+    std::array<std::int32_t, 3> value{};
+    for (std::size_t k = 0; k < 3; ++k) value[k] = at[k] + first_strip * edges.next_strip[k];
+    for (int strip = first_strip; strip <= last_strip; ++strip) {
         for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+            const std::size_t in_block = static_cast<std::size_t>(strip) * kStrip + i, place = block * kBlockSamples + in_block;
             xsimd::batch_bool<float> inside(true);
-            if (!all) {
-                const Ints e0 = value[0] + load(edges.step[0], i), e1 = value[1] + load(edges.step[1], i),
-                           e2 = value[2] + load(edges.step[2], i);
-                const Ints least = min(min(e0, e1), e2);
-                const auto covered = least >= zero, well_inside = least >= margin;
-                if (!xsimd::any(covered)) continue;
-                const auto at_edge = covered && !well_inside;
-                edge_samples |= std::uint64_t{lane_bits(at_edge)} << (first + i);
+            if constexpr (!kAll) {
+                const Ints e0 = Ints(value[0]) + load(edges.step[0], i), e1 = Ints(value[1]) + load(edges.step[1], i),
+                           e2 = Ints(value[2]) + load(edges.step[2], i);
+                const auto covered = min(min(e0, e1), e2) >= zero;
+                const auto well_inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
+                const std::uint32_t covered_bits = lane_bits(covered);
+                if (covered_bits == 0) continue;
+                edge_samples |= std::uint64_t{covered_bits & ~lane_bits(well_inside)} << in_block;
                 inside = xsimd::bool_cast(well_inside);
             }
-            const std::size_t place = block * kBlock * kBlock + first + i;
-            const Floats before = Floats::load_aligned(&nearness_[place]), here = nearness.at(from_x, from_y + y, i);
-            const Ints id_before = Ints::load_aligned(&ids_[place]);
-            auto wins = here > before;
-            if (!sabotaged(Guard::kDrawOrder))
-                wins = wins || (here == before && xsimd::bool_cast(Ints(id) < id_before));
-            wins = wins && inside;
-            xsimd::select(wins, here, before).store_aligned(&nearness_[place]);
-            xsimd::select(xsimd::bool_cast(wins), Ints(id), id_before).store_aligned(&ids_[place]);
+            keep_nearest(place, static_cast<std::int32_t>(triangle.id), nearness.at(in_block), inside);
         }
+        for (std::size_t k = 0; k < 3; ++k) value[k] += edges.next_strip[k];
     }
     return edge_samples;
 }
@@ -159,14 +210,49 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTrian
     }
 }
 
+namespace {
+
+/// Those bits of a box of 8 × 8 that lie in a block, if its first is `x` to the right of the block's and `y` below.
+std::uint64_t moved(std::uint64_t bits, int x, int y) {
+    constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
+    if (x >= 0)
+        bits = (bits & kFirstColumn * (0xffu >> x)) << x;
+    else
+        bits = bits >> -x & kFirstColumn * (0xffu >> -x);
+    return y >= 0 ? bits << 8 * y : bits >> 8 * -y;
+}
+
+} // namespace
+
+// Its box lies over up to four blocks.
+void DepthTile::draw(const Patch& patch) {
+    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
+    for (int row = std::max(y >> 3, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
+        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column)
+            draw_block(patch, column, row, moved(patch.samples, x - column * kBlock, y - row * kBlock));
+}
+
+/// Draws those samples of a block.
+void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_t samples) {
+    if (samples == 0) return;
+    const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
+    const auto block = static_cast<std::size_t>(row * kBlocks + column);
+    open(block);
+    for (std::size_t i = 0; i < kBlockSamples; i += Floats::size) {
+        const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
+        if (here == 0) continue;
+        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(patch.id), nearness.at(i), lanes_from<float>(here));
+    }
+}
+
 void DepthTile::draw(std::span<const Fragment> fragments) {
     for (const Fragment& f : fragments) keep_nearest(f.place, f.id, f.nearness);
 }
 
 void DepthTile::keep_nearest(std::size_t place, std::uint32_t id, float nearness) {
+    open(place / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
     const bool tie_won = nearness == nearness_[place] && number < ids_[place] && !sabotaged(Guard::kDrawOrder);
-    drawn_[place / (kBlock * kBlock)] = true;
     if (!(nearness > nearness_[place] || tie_won)) return;
     nearness_[place] = nearness;
     ids_[place] = number;
@@ -176,9 +262,7 @@ void DepthTile::find_farthest(std::size_t block) {
     Floats least(1.0f);
     for (std::size_t i = 0; i < kBlock * kBlock; i += Floats::size)
         least = min(least, Floats::load_aligned(&nearness_[block * kBlock * kBlock + i]));
-    alignas(64) std::array<float, Floats::size> lanes;
-    least.store_aligned(lanes.data());
-    farthest_[block] = *std::min_element(lanes.begin(), lanes.end());
+    farthest_[block] = lowest(least);
     partial_[block] = 0;
 }
 

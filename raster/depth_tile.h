@@ -22,11 +22,13 @@ class DepthTile {
 public:
     DepthTile() {} // what is not reset has no contents
 
-    /// Empties the tile and moves it: at most TileGrid::kTileSize pixels a side.
+    /// Empties the tile and moves it: at most TileGrid::kTileSize pixels a side. Blocks get their samples as they are first
+    /// drawn to.
     void reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport);
 
     /// Draws a triangle. `whole` is asked for what it is a part of where snapping has a say.
     void draw(const DrawTriangle& triangle, const WholeTriangles& whole);
+    void draw(const Patch& patch);
     void draw(std::span<const Fragment> fragments);
     /// One sample: `x` and `y` are the pixel's.
     void draw(int x, int y, std::uint32_t id, float nearness) { keep_nearest(place(x, y), id, nearness); }
@@ -34,12 +36,20 @@ public:
     const PixelRect& rect() const { return rect_; }
     SampleOffset offset() const { return offset_; }
     /// kNoTriangle where nothing is seen.
-    std::uint32_t id(int x, int y) const { return static_cast<std::uint32_t>(ids_[place(x, y)]); }
-    float nearness(int x, int y) const { return nearness_[place(x, y)]; }
+    std::uint32_t id(int x, int y) const {
+        const std::uint32_t at = place(x, y);
+        return drawn(at / kBlockSamples) ? static_cast<std::uint32_t>(ids_[at]) : kNoTriangle;
+    }
+    float nearness(int x, int y) const {
+        const std::uint32_t at = place(x, y);
+        return drawn(at / kBlockSamples) ? nearness_[at] : 0;
+    }
     std::uint32_t place(int x, int y) const {
         return place_in_tile(static_cast<std::uint32_t>(x - rect_.x0), static_cast<std::uint32_t>(y - rect_.y0));
     }
-    /// The same by place, for who walks along strips.
+    /// Empties the samples of blocks that were not drawn to.
+    void empty_undrawn();
+    /// The same by place, for who walks along strips: of blocks drawn to, or after empty_undrawn() of all.
     const std::int32_t* ids() const { return ids_.data(); }
     const float* nearness() const { return nearness_.data(); }
     /// Whether any sample of the block may see something.
@@ -51,13 +61,23 @@ public:
 
 private:
     struct Edges;
+    struct BlockRow;
     struct Nearness;
-    std::uint64_t draw_block(const Edges& edges, const DrawTriangle& triangle, int column, int row, int y0, int y1,
-                             bool all);
+    std::uint32_t not_hidden(int row, float nearest) const;
+    template <bool kAll>
+    std::uint64_t draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle, int column,
+                             int row, int y0, int y1);
+    void draw_block(const Patch& patch, int column, int row, std::uint64_t samples);
+    template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
     void keep_nearest(std::size_t place, std::uint32_t id, float nearness);
     void find_farthest(std::size_t block);
+    void empty(std::size_t block);
+    void open(std::size_t block) {
+        if (!drawn_[block]) empty(block);
+        drawn_[block] = true;
+    }
 
     PixelRect rect_;
     SampleOffset offset_;

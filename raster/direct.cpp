@@ -117,6 +117,28 @@ Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, cons
     return sum;
 }
 
+Direct direct_light(std::span<const Light> lights, const RoughDiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility) {
+    Direct sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
+        if (surface != nullptr && is_own(*surface, point.surface)) continue;
+        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p);
+        if (!incident) continue;
+        // How rough it is turns with the light's direction, the irradiance is a surface light's own.
+        Rgb light;
+        if (surface != nullptr) {
+            Vec3 wi = point.frame.to_local(incident->wi);
+            wi.z = std::abs(wi.z) * (point.wo.z < 0 ? -1.0f : 1.0f); // a light on the horizon may have its centre below
+            light = bsdf.eval(point.wo, wi, TransportMode::kRadiance) * irradiance(*surface, point);
+        } else {
+            light = reflected(bsdf, point, *incident);
+        }
+        if (!is_black(light)) sum.add(light, visibility(i, point));
+    }
+    return sum;
+}
+
 Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility, bool transformed_cosines) {
     Direct sum;

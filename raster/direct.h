@@ -57,6 +57,9 @@ struct Visibility {
 /// centre. Smooth metal: none.
 Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility);
+/// Rough diffuse: exact for point, spot and sun; a surface light by its irradiance, reflected as from its centre.
+Direct direct_light(std::span<const Light> lights, const RoughDiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility);
 Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility, bool transformed_cosines);
 

@@ -17,21 +17,48 @@ namespace {
 Rgba8 encoded(const SrgbEncoder& encode, Rgb c) { return {encode(c.r), encode(c.g), encode(c.b), 255}; }
 
 bool is_empty(const Geometry& geometry, std::size_t index) {
-    return geometry.outlines.tile(index).empty() && geometry.fragments.tile(index).empty() &&
+    return geometry.outlines.tile(index).empty() && geometry.patches.tile(index).empty() &&
+           geometry.fragments.tile(index).empty() &&
            (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
 }
 
 template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
-    for (int y = rect.y0; y < rect.y1; ++y) std::fill_n(&picture(rect.x0, y), rect.width(), pixel);
+    static_assert(sizeof(Pixel) == 4);
+    const Pixel value = pixel; // of one's own, so that the compiler makes wide stores
+    const int width = rect.width(), end = rect.y1;
+    for (int y = rect.y0; y < end; ++y) {
+        Pixel* row = &picture(rect.x0, y);
+        for (int i = 0; i < width; ++i) std::memcpy(static_cast<void*>(row + i), &value, sizeof(Pixel));
+    }
+}
+
+constexpr int kBlock = DepthTile::kBlock;
+
+/// Rows of blocks of a tile to the picture, from pixel row y on: whole rows of memory at a time. row_of(block, row) is where
+/// eight pixels of the block lie.
+template <typename Pixel, typename RowOf>
+void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>& picture) {
+    for (int row = 0; row < std::min(kBlock, rect.y1 - y); ++row) {
+        Pixel* to = &picture(rect.x0, y + row);
+        for (int column = 0, width = rect.width(); width > 0; ++column, width -= kBlock, to += kBlock) {
+            const Pixel* from = row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+            if (width >= kBlock)
+                std::memcpy(static_cast<void*>(to), from, sizeof(Pixel) * kBlock);
+            else
+                std::copy_n(from, width, to);
+        }
+    }
 }
 
 void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
+    static constexpr std::array<float, kBlock> kNothing{};
     const PixelRect& rect = tile.rect();
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        int x = rect.x0;
-        for (; x + DepthTile::kBlock <= rect.x1; x += DepthTile::kBlock)
-            std::memcpy(&picture(x, y), tile.nearness() + tile.place(x, y), sizeof(float) * DepthTile::kBlock);
-        for (; x < rect.x1; ++x) picture(x, y) = tile.nearness(x, y);
+    for (int y = rect.y0; y < rect.y1; y += kBlock) {
+        const std::size_t first = tile.place(rect.x0, y) / kBlockSamples;
+        const auto row_of = [&](std::size_t column, std::size_t row) {
+            return tile.drawn(first + column) ? tile.nearness() + (first + column) * kBlockSamples + row * kBlock : kNothing.data();
+        };
+        copy_blocks(rect, y, row_of, picture);
     }
 }
 
@@ -46,51 +73,61 @@ public:
 
     void run() {
         const PixelRect& rect = tile_.rect();
-        for (int y = rect.y0; y < rect.y1; y += kStripRows)
-            for (int x = rect.x0; x < rect.x1; x += static_cast<int>(kStripWidth)) strip(x, y);
-    }
-
-private:
-    static constexpr int kStripRows = DepthTile::kStripRows;
-
-    void strip(int x, int y) {
-        const StripPlace place = strip_place(tile_, x, y);
-        const bool drawn = tile_.drawn(static_cast<std::size_t>(place.ids - tile_.ids()) / kBlockSamples);
-        std::array<Rgba8, kStrip> codes;
-        if (!drawn && background_)
-            codes.fill(*background_);
-        else if (shader_ != nullptr)
-            shade_together(place, codes);
-        else if (background_ && samples_seen(place.ids) == 0)
-            codes.fill(*background_);
-        else
-            return shade_one_by_one(x, y);
-        for (int row = 0; row < std::min(kStripRows, tile_.rect().y1 - y); ++row) {
-            const auto from = codes.begin() + row * static_cast<int>(kStripWidth);
-            const int width = std::min(static_cast<int>(kStripWidth), tile_.rect().x1 - x);
-            if (width == kStripWidth)
-                std::copy_n(from, kStripWidth, &picture_(x, y + row));
-            else
-                std::copy_n(from, width, &picture_(x, y + row));
+        for (int y = rect.y0; y < rect.y1; y += kBlock) {
+            for (int x = rect.x0; x < rect.x1; x += kBlock) block(intersect(rect, {x, y, x + kBlock, y + kBlock}));
+            shade_together();
+            const auto row_of = [&](std::size_t column, std::size_t row) {
+                return codes_[column * kStrips + row / kStripRows].at(row % kStripRows * kStripWidth);
+            };
+            copy_blocks(rect, y, row_of, picture_);
         }
     }
 
-    void shade_together(const StripPlace& place, std::array<Rgba8, kStrip>& codes) {
-        StripColors colors;
-        const std::uint32_t seen = shader_->shade(place, colors);
-        if (seen == 0) return codes.fill(*background_); // a program has one
-        encode_strip(colors, codes);
-        if (seen != (1u << kStrip) - 1)
-            for (std::size_t i = 0; i < kStrip; ++i)
-                if (!(seen >> i & 1)) codes[i] = *background_;
+private:
+    static constexpr std::size_t kStripRows = DepthTile::kStripRows, kStrips = kBlock / kStripRows; ///< of a block
+
+    void block(const PixelRect& rect) {
+        const std::uint32_t place = tile_.place(rect.x0, rect.y0);
+        const std::size_t block = place / kBlockSamples, slot = block % DepthTile::kBlocks * kStrips;
+        const bool undrawn = background_ && !tile_.drawn(block);
+        for (std::size_t s = 0; s < kStrips; ++s) {
+            if (undrawn || (background_ && samples_seen(tile_.ids() + place + s * kStrip) == 0))
+                codes_[slot + s].fill(*background_);
+            else
+                strip(intersect(rect, strip_rect(rect, s)), place + static_cast<std::uint32_t>(s * kStrip), slot + s);
+        }
+    }
+    static PixelRect strip_rect(const PixelRect& block, std::size_t s) {
+        const int y = block.y0 + static_cast<int>(s * kStripRows);
+        return {block.x0, y, block.x1, y + static_cast<int>(kStripRows)};
     }
 
-    void shade_one_by_one(int x0, int y0) {
+    void strip(const PixelRect& rect, std::uint32_t place, std::size_t slot) {
+        if (shader_ == nullptr) return shade_one_by_one(rect, codes_[slot]);
+        slots_[count_] = slot;
+        StripPlace& next = places_[count_++]; // written once, not copied: it will be read at once
+        next.x = rect.x0;
+        next.y = rect.y0;
+        next.ids = tile_.ids() + place;
+        next.nearness = tile_.nearness() + place;
+        next.offset = tile_.offset();
+    }
+
+    /// The strips of a row of blocks that are left.
+    void shade_together() {
+        if (count_ == 0) return;
+        shader_->shade(std::span(places_).first(count_), colors_.data(), seen_.data());
+        for (std::size_t i = 0; i < count_; ++i)
+            encode_strip(colors_[i], seen_[i], *background_, codes_[slots_[i]]); // a program has one
+        count_ = 0;
+    }
+
+    void shade_one_by_one(const PixelRect& r, StripCodes& codes) {
         if (!hits_) hits_.emplace(tile_, geometry_, view_);
-        const PixelRect r = intersect(tile_.rect(), {x0, y0, x0 + static_cast<int>(kStripWidth), y0 + kStripRows});
         for (int y = r.y0; y < r.y1; ++y)
             for (int x = r.x0; x < r.x1; ++x)
-                picture_(x, y) = encoded(srgb_encoder(), shade(data_, settings_, *hits_, x, y).radiance);
+                codes[static_cast<std::size_t>(y - r.y0) * kStripWidth + static_cast<std::size_t>(x - r.x0)] =
+                    encoded(srgb_encoder(), shade(data_, settings_, *hits_, x, y).radiance);
     }
 
     static std::optional<Rgba8> one_background(const PreparedData& data, const Settings& settings) {
@@ -106,6 +143,13 @@ private:
     const DepthTile& tile_;
     Image<Rgba8>& picture_;
     std::unique_ptr<StripShader> shader_;
+    static constexpr std::size_t kMost = DepthTile::kBlocks * kStrips;
+    std::array<StripCodes, kMost> codes_;  ///< of a row of blocks
+    std::array<StripPlace, kMost> places_; ///< strips to be shaded
+    std::array<std::size_t, kMost> slots_{}; ///< and where their codes go
+    std::array<StripColors, kMost> colors_;
+    std::array<std::uint32_t, kMost> seen_{};
+    std::size_t count_ = 0;
     std::optional<HitTile> hits_; ///< where one is needed
     std::optional<Rgba8> background_;
 };
@@ -114,12 +158,14 @@ private:
 
 void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
                   const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture) {
-    if (const auto background = constant_background(data, settings); background && is_empty(geometry, index)) {
+    const auto background = constant_background(data, settings);
+    if (background && is_empty(geometry, index)) {
         fill(rect, encoded(srgb_encoder(), *background), picture);
         return;
     }
     DepthTile tile;
-    cover(geometry, view, view.samples.front(), rect, index, tile);
+    draw_tile(geometry, view, view.samples.front(), rect, index, tile);
+    if (!background || program == nullptr) tile.empty_undrawn(); // what was not drawn to is looked at, too
     TileDisplay(data, settings, program, geometry, view, tile, picture).run();
 }
 
@@ -130,7 +176,7 @@ void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRe
         return;
     }
     DepthTile depths;
-    cover(geometry, view, view.samples.front(), rect, index, depths);
+    draw_tile(geometry, view, view.samples.front(), rect, index, depths);
     copy_nearness(depths, picture);
 }
 

@@ -1,69 +1,70 @@
 #include "raster/encode_strip.h"
 
 #include "common/image/srgb.h"
+#include "common/vec/simd.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace duet::raster {
 namespace {
 
-/// How far from a change of code the polynomial's word is taken: four times its error.
+/// How far from a change of code the polynomial's word is taken: three times its error.
 constexpr float kDoubt = 0x1p-11f;
 
-/// 255 · srgb_encode(x) + ½ to within 1.3e-4 + rounding, for x in [0, 1]: above the straight part a polynomial in
-/// ⁴√x, whose 5/3rd power the curve is; Chebyshev interpolation between ⁴√0.0031308 and 1.
+/// 255 · srgb_encode(x) + ½ to within 1.6e-4, for x in [0, 1]: above the straight part x = m·2^e, m in [1, 2), and x^(5/12)
+/// is a polynomial in m (Chebyshev interpolation) times a power of two that a table has.
 Floats code_and_half(Floats x) {
-    constexpr std::array<float, 8> kPolynomial{-14.438328742980957f, 32.004051208496094f,   369.8117370605469f,
-                                               -285.8165588378906f,  292.361328125f,        -212.61557006835938f,
-                                               91.53132629394531f,   -17.33802604675293f};
-    // Where x is tiny, the straight part is chosen.
-    const Floats positive = max(x, Floats(1e-6f)), root = positive * inverse_sqrt(positive), q = root * inverse_sqrt(root);
-    Floats curve(kPolynomial.back());
-    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) curve = xsimd::fma(curve, q, Floats(kPolynomial[i]));
-    return xsimd::select(x <= Floats(0.0031308f), x * Floats(255 * 12.92f) + Floats(0.5f), curve);
+    constexpr std::array<float, 7> kPolynomial{0.3518701494f, 1.057500362f, -0.6761592627f, 0.3797715604f, -0.1397501379f, 0.029459171f, -0.002691525733f};
+    static const StripOf<float> kScales = [] { // of e from -15 on; of 0 the last
+        StripOf<float> scales;
+        for (std::size_t i = 0; i < kStrip; ++i)
+            scales[i] = static_cast<float>(255 * 1.055 * std::pow(2.0, (static_cast<double>(i) - 15) / 2.4));
+        return scales;
+    }();
+    const Ints bits = xsimd::bitwise_cast<Ints>(x);
+    const Floats m = xsimd::bitwise_cast<Floats>((bits & Ints(0x007fffff)) | Ints(0x3f800000));
+    Floats power(kPolynomial.back());
+    for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) power = fused(power, m, Floats(kPolynomial[i]));
+    const Floats curve = fused(power, look_up(kScales, bits >> 23), Floats(static_cast<float>(0.5 - 255 * 0.055)));
+    return xsimd::select(x <= Floats(0.0031308f), fused(x, Floats(static_cast<float>(255 * 12.92)), Floats(0.5f)), curve);
 }
 
-/// One channel; true where some value is too close to a change of code to be told by the polynomial.
-bool encode_channel(const StripOf<float>& linear, StripOf<std::int32_t>& codes, StripOf<std::int32_t>& doubtful) {
-    bool any = false;
-    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        const Floats value = load(linear, i), zero(0.0f);
-        // Written so that NaN becomes 0.
-        const Floats x = min(xsimd::select(value > zero, value, zero), Floats(1.0f));
-        const Floats code = code_and_half(x), whole = xsimd::floor(code), rest = code - whole;
-        const auto doubt = rest < Floats(kDoubt) || rest > Floats(1 - kDoubt);
-        store(codes, i, xsimd::to_int(whole));
-        if (!xsimd::any(doubt)) continue;
-        any = true;
-        store(doubtful, i, xsimd::select(xsimd::bool_cast(doubt), Ints(1), Ints(0)));
-    }
-    return any;
+/// The codes of one channel; `worst` grows to the distance from the middle of a code of what lies farthest from it.
+inline Ints encode_channel(const Floats& value, Floats& worst) {
+    // Written so that NaN becomes 0.
+    const Floats zero(0.0f), x = min(xsimd::select(value > zero, value, zero), Floats(1.0f));
+    const Floats code = code_and_half(x), whole = xsimd::floor(code);
+    worst = max(worst, abs(code - whole - Floats(0.5f)));
+    return xsimd::to_int(whole);
 }
 
-void encode_exactly(const StripOf<float>& linear, const StripOf<std::int32_t>& doubtful, StripOf<std::int32_t>& codes) {
-    const SrgbEncoder& encode = srgb_encoder();
-    for (std::size_t i = 0; i < kStrip; ++i)
-        if (doubtful[i] != 0) codes[i] = encode(linear[i]);
-}
+// The bytes r, g, b, a in the order of memory.
+constexpr bool kLittle = std::endian::native == std::endian::little;
+constexpr std::array<int, 4> kShift{kLittle ? 0 : 24, kLittle ? 8 : 16, kLittle ? 16 : 8, kLittle ? 24 : 0};
 
 } // namespace
 
-void encode_strip(const StripColors& colors, std::array<Rgba8, kStrip>& codes) {
-    std::array<StripOf<std::int32_t>, 3> channels;
-    const std::array<const StripOf<float>*, 3> linear{&colors.r, &colors.g, &colors.b};
-    for (std::size_t c = 0; c < 3; ++c) {
-        StripOf<std::int32_t> doubtful;
-        if (encode_channel(*linear[c], channels[c], doubtful)) encode_exactly(*linear[c], doubtful, channels[c]);
+void encode_strip(const StripColors& colors, std::uint32_t seen, Rgba8 background, StripCodes& codes) {
+    const SrgbEncoder& encode = srgb_encoder();
+    const Ints behind(std::bit_cast<std::int32_t>(background));
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+        Floats worst(0.0f);
+        const Ints r = encode_channel(load(colors.r, i), worst), g = encode_channel(load(colors.g, i), worst),
+                   b = encode_channel(load(colors.b, i), worst);
+        const Ints pixels = (r << kShift[0]) | (g << kShift[1]) | (b << kShift[2]) |
+                            Ints(static_cast<std::int32_t>(255u << kShift[3]));
+        const std::uint32_t here = seen >> i;
+        alignas(64) std::array<std::int32_t, Ints::size> words;
+        xsimd::select(xsimd::bool_cast(lanes_from<float>(here)), pixels, behind).store_aligned(words.data());
+        std::memcpy(static_cast<void*>(codes.at(i)), words.data(), sizeof(words));
+        // Too close to a change of code to be told by the polynomial.
+        for (std::uint32_t left = lane_bits(worst > Floats(0.5f - kDoubt)) & here; left != 0; left &= left - 1) {
+            const std::size_t k = i + static_cast<std::size_t>(std::countr_zero(left));
+            codes[k] = {encode(colors.r[k]), encode(colors.g[k]), encode(colors.b[k]), 255};
+        }
     }
-    // The bytes r, g, b, 255 in the order of memory.
-    constexpr bool kLittle = std::endian::native == std::endian::little;
-    constexpr std::array<int, 4> kShift{kLittle ? 0 : 24, kLittle ? 8 : 16, kLittle ? 16 : 8, kLittle ? 24 : 0};
-    StripOf<std::int32_t> pixels;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size)
-        store(pixels, i, (load(channels[0], i) << kShift[0]) | (load(channels[1], i) << kShift[1]) |
-                             (load(channels[2], i) << kShift[2]) | Ints(static_cast<std::int32_t>(255u << kShift[3])));
-    std::memcpy(static_cast<void*>(codes.data()), pixels.at(0), sizeof(codes));
 }
 
 } // namespace duet::raster

@@ -10,7 +10,10 @@ namespace duet::raster {
 /// Sixteen colours, linear.
 using StripColors = RgbT<StripOf<float>>;
 
-/// Codes as SrgbEncoder gives them, for every float; opaque.
-void encode_strip(const StripColors& colors, std::array<Rgba8, kStrip>& codes);
+/// Codes, sixteen of them, in one row of the cache.
+using StripCodes = StripOf<Rgba8>;
+
+/// Codes as SrgbEncoder gives them, for every float; opaque. The background's where `seen` has no bit for a sample.
+void encode_strip(const StripColors& colors, std::uint32_t seen, Rgba8 background, StripCodes& codes);
 
 } // namespace duet::raster

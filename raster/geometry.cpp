@@ -10,7 +10,9 @@
 namespace duet::raster {
 namespace {
 
-constexpr std::uint32_t kRun = 4096; ///< triangles at most
+/// Triangles of a run: enough runs that threads are done at the same time, of so many triangles that a run's own work is
+/// none to speak of.
+constexpr std::uint32_t kMostInRun = 4096, kLeastInRun = 512, kRuns = 32;
 
 /// The objects whose bounds touch the frustum; the others' primitives are counted.
 std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
@@ -28,6 +30,13 @@ std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vecto
 /// Runs of the objects' triangles and of the spheres, in the order of objects. Spheres get their numbers.
 std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
                             std::vector<DrawSphere>& spheres) {
+    const auto triangles = [&](std::uint32_t object) {
+        const Shape& shape = scene.shapes[scene.objects[object].shape];
+        return primitive_count(shape) * (std::holds_alternative<Mesh>(shape) ? 1 : 2);
+    };
+    std::uint64_t all = 0;
+    for (const std::uint32_t object : polygonal) all += triangles(object);
+    const auto run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(all / kRuns, kLeastInRun, kMostInRun));
     std::vector<Run> runs;
     std::uint64_t id = 0;
     std::size_t sphere = 0;
@@ -39,10 +48,9 @@ std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>
     };
     for (std::uint32_t slot = 0; slot < polygonal.size(); ++slot) {
         add_spheres(polygonal[slot]);
-        const Shape& shape = scene.shapes[scene.objects[polygonal[slot]].shape];
-        const std::uint32_t count = primitive_count(shape) * (std::holds_alternative<Mesh>(shape) ? 1 : 2);
-        for (std::uint32_t first = 0; first < count; first += kRun) {
-            runs.push_back({slot, first, std::min(kRun, count - first), static_cast<std::uint32_t>(id), false});
+        const std::uint32_t count = triangles(polygonal[slot]);
+        for (std::uint32_t first = 0; first < count; first += run) {
+            runs.push_back({slot, first, std::min(run, count - first), static_cast<std::uint32_t>(id), false});
             id += runs.back().count;
         }
         if (id >= kNoTriangle) throw Error("more than 2^31 triangles in view");
@@ -107,7 +115,7 @@ void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
 
 std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
-                        fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
+                        patches.memory_bytes() + fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
     for (const TransformedObject& object : triangles.objects)
         bytes += object.vertices.size() * sizeof(SnappedVertex);
     for (const Batch& batch : batches) bytes += batch.memory_bytes();
@@ -118,7 +126,7 @@ namespace {
 
 void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
              const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const Settings& settings, Geometry& result) {
+             const Settings& settings, bool patches, Geometry& result) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
@@ -134,11 +142,12 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
-    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only}, settings.threads,
+    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only, patches}, settings.threads,
              result);
     result.setup_seconds = watch.lap();
 
     result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
+    result.patches.gather(result.batches, &Batch::patch_segments, grid.size());
     result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
     result.sphere_bins = bin(grid, result.spheres);
     result.bin_seconds = watch.lap();
@@ -148,12 +157,12 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result) {
-    process(data, data.polygonal, data.spheres, grid, view, settings, result);
+    process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
 }
 
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result) {
-    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, result);
+    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, false, result);
 }
 
 } // namespace duet::raster

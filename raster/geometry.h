@@ -26,7 +26,7 @@ struct PassView {
 struct Geometry {
     Triangles triangles;
     std::vector<Batch> batches; ///< a run each
-    TileLists outlines, fragments;
+    TileLists outlines, patches, fragments;
     std::vector<DrawSphere> spheres;
     Bins sphere_bins;
     CullCounts culled;

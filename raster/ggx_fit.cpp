@@ -20,7 +20,7 @@ float cosine_of(int column, int side) {
     return std::max(1 - x * x, 1e-3f);
 }
 
-constexpr int kAlbedoSamples = 512, kFitSamples = 160;
+constexpr int kMomentSamples = 512, kFitSamples = 160;
 
 Vec2d point(int i, int count) {
     return {(i + 0.5) / count, reverse_bits(static_cast<std::uint32_t>(i)) * 0x1p-32 + 0x1p-33};
@@ -44,18 +44,16 @@ struct Lobe {
 
 /// All of the lobe's light and where it goes in the mean.
 struct Moments {
-    double energy = 0, offset = 0; ///< of it: Schlick's share, weighed by (1 − cos)⁵
+    double energy = 0;
     Vec3d mean;
 };
 Moments moments(const Lobe& lobe) {
     Moments sum;
-    for (int i = 0; i < kAlbedoSamples; ++i) {
-        const Vec3d wi = lobe.sample(point(i, kAlbedoSamples));
-        const double weight = lobe.weight(wi) / kAlbedoSamples;
+    for (int i = 0; i < kMomentSamples; ++i) {
+        const Vec3d wi = lobe.sample(point(i, kMomentSamples));
+        const double weight = lobe.weight(wi) / kMomentSamples;
         if (weight == 0) continue;
-        const double x = 1 - 0.5 * length(lobe.wo + wi);
         sum.energy += weight;
-        sum.offset += weight * x * x * x * x * x;
         sum.mean += wi * weight;
     }
     sum.mean.y = 0;
@@ -176,19 +174,6 @@ LobeMatrix fit(float alpha, float cosine, Parameters& parameters) {
 }
 
 } // namespace
-
-GgxTable<2, kAlbedoSide> compute_albedo_table() {
-    GgxTable<2, kAlbedoSide> table;
-    parallel_for(kAlbedoSide, 0, [&](std::size_t i) {
-        const int row = static_cast<int>(i);
-        for (int column = 0; column < kAlbedoSide; ++column) {
-            const Moments m = moments({static_cast<double>(sqr(roughness_of(row, kAlbedoSide))),
-                                       viewer(static_cast<double>(cosine_of(column, kAlbedoSide)))});
-            table(row, column) = {static_cast<float>(m.energy - m.offset), static_cast<float>(m.offset)};
-        }
-    });
-    return table;
-}
 
 /// Straight above, from the roughest down; then each row from there to the horizon: each fit starts from its
 /// neighbour's.

@@ -1,4 +1,4 @@
-// How the tables of raster/ggx_table.h are computed: nothing but common/material/ggx.h says what they hold.
+// How the table of raster/ggx_table.h is computed: nothing but common/material/ggx.h says what it holds.
 #pragma once
 
 #include "raster/ggx_table.h"
@@ -18,11 +18,10 @@ template <std::size_t N, int Side> struct GgxTable {
     }
 };
 
-inline constexpr int kAlbedoSide = 32, kLobeSide = 16; // entries by roughness and by angle
+inline constexpr int kLobeSide = 16; // entries by roughness and by angle
 inline constexpr float kSmoothest = 0.05f, kRoughest = 1; // roughness is √alpha
 
-/// All of them, in parallel: half a second of work, which is done when the project is built (raster/ggx_table_main.cpp).
-GgxTable<2, kAlbedoSide> compute_albedo_table();
+/// All of it, in parallel: half a second of work, which is done when the project is built (raster/ggx_table_main.cpp).
 GgxTable<5, kLobeSide> compute_lobe_table();
 
 /// The lobe of one entry, by fitting; `start` is where the search begins.

@@ -8,8 +8,7 @@
 
 namespace duet::raster {
 
-extern const GgxTable<2, kAlbedoSide> kAlbedoTable; // both written by raster/ggx_table_main.cpp
-extern const GgxTable<5, kLobeSide> kLobeTable;
+extern const GgxTable<5, kLobeSide> kLobeTable; // written by raster/ggx_table_main.cpp
 
 namespace {
 
@@ -27,11 +26,6 @@ template <std::size_t N, int Side> std::array<float, N> look_up(const GgxTable<N
 }
 
 } // namespace
-
-Albedo ggx_albedo(float alpha, float cosine) {
-    const auto a = look_up(kAlbedoTable, alpha, cosine);
-    return {a[0], a[1]};
-}
 
 LobeMatrix ggx_lobe(float alpha, float cosine) {
     const auto m = look_up(kLobeTable, alpha, cosine);

@@ -1,18 +1,10 @@
-// What GGX microfacets do to light from everywhere, and the linearly transformed cosine that looks most like them, by
-// roughness and angle: the two tables that lights with an area and environments need of a rough metal.
+// The linearly transformed cosine that looks most like the light that GGX microfacets reflect, by roughness and angle:
+// what lights with an area need of a rough metal.
 #pragma once
 
-#include "common/material/metal.h"
+#include "common/vec/vec.h"
+
 namespace duet::raster {
-
-/// The part of white light from all around that a metal of reflectance R returns to the viewer: scale·R + offset, with
-/// Schlick's Fresnel term inside the integral (the second factor of the split sum; Karis 2013, «Real Shading in Unreal
-/// Engine 4»). Less than 1 for R = 1: light that a second microfacet would reflect is left out, as by MetalBsdf.
-struct Albedo {
-    float scale = 1, offset = 0;
-
-    Rgb of(Rgb reflectance) const { return reflectance * scale + Rgb(offset); }
-};
 
 /// The map that takes a clamped cosine's directions to the lobe's, in the frame of the normal, the viewer in the plane
 /// y = 0: columns of [m11 0 m13; 0 m22 0; m31 0 m33] (Heitz et al. 2016, «Real-Time Polygonal-Light Shading with
@@ -27,10 +19,8 @@ struct LobeMatrix {
     }
 };
 
-// Both tables are computed when the project is built (raster/ggx_fit.h).
-// alpha in (0, 1]; below (1/20)² that stands in. cosine: between normal and viewer, in (0, 1].
-
-Albedo ggx_albedo(float alpha, float cosine);
+/// Of a table that is computed when the project is built (raster/ggx_fit.h). alpha in (0, 1]; below (1/20)² that stands
+/// in. cosine: between normal and viewer, in (0, 1].
 LobeMatrix ggx_lobe(float alpha, float cosine);
 
 } // namespace duet::raster

@@ -1,4 +1,4 @@
-// Writes the tables of raster/ggx_table.h as a source file, when the project is built.
+// Writes the table of raster/ggx_table.h as a source file, when the project is built.
 #include "raster/ggx_fit.h"
 
 #include <cstdio>
@@ -34,7 +34,6 @@ int main(int count, char** arguments) {
     }
     std::ofstream out(arguments[1]);
     out << "#include \"raster/ggx_fit.h\"\n\nnamespace duet::raster {\n\n";
-    write(out, "kAlbedoTable", compute_albedo_table());
     write(out, "kLobeTable", compute_lobe_table());
     out << "\n} // namespace duet::raster\n";
     out.close();

@@ -93,6 +93,32 @@ inline Doubles widened(const std::int32_t* from) {
 #endif
 }
 
+/// Whole numbers of 32 bits to memory.
+inline void store_ints(const Doubles& value, std::int32_t* to) {
+#if defined(__AVX512F__)
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtpd_epi32(value));
+#elif defined(__AVX__)
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_cvtpd_epi32(value));
+#else
+    std::array<double, Doubles::size> wide;
+    value.store_unaligned(wide.data());
+    for (std::size_t i = 0; i < wide.size(); ++i) to[i] = static_cast<std::int32_t>(wide[i]);
+#endif
+}
+
+/// From a table of sixteen, by the lower four bits of each number.
+inline Floats look_up(const StripOf<float>& table, const Ints& index) {
+#if defined(__AVX512F__)
+    return _mm512_permutexvar_ps(index, load(table, 0));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Floats::size> found;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i] & 15)];
+    return Floats::load_aligned(found.data());
+#endif
+}
+
 /// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
@@ -134,6 +160,19 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
     return static_cast<std::uint32_t>(_mm256_movemask_pd(lanes));
 #else
     return static_cast<std::uint32_t>(_mm_movemask_pd(lanes));
+#endif
+}
+
+inline std::uint32_t lane_bits(const xsimd::batch_bool<float>& lanes) { return lane_bits(xsimd::bool_cast(lanes)); }
+
+/// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
+template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
+#if defined(__AVX512F__)
+    return typename xsimd::batch_bool<T>::register_type(bits);
+#else
+    std::array<bool, xsimd::batch<T>::size> lanes;
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = bits >> i & 1;
+    return xsimd::batch_bool<T>::load_unaligned(lanes.data());
 #endif
 }
 

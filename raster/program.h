@@ -6,33 +6,34 @@
 #include "raster/one_sample.h"
 #include "raster/solve.h"
 
+#include "common/vec/robust.h"
+
 namespace duet::raster {
 
 template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
 public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
-        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader),
+        : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
           ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
           eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile) {}
 
-    std::uint32_t shade(const StripPlace& place, StripColors& colors) override {
-        solver_.load(place.ids);
-        if (solver_.seen() == 0) return 0;
-        place_ = &place;
-        if (solver_.on_mesh() == solver_.seen()) {
-            solver_.solve_all(place);
-            shade_together(place, colors);
-            return solver_.seen();
+    using StripShader::shade;
+    void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
+        constexpr std::size_t kMost = StripSolver<S>::kMost;
+        if (solved_.size() < std::min(places.size(), kMost)) solved_.resize(std::min(places.size(), kMost));
+        for (std::size_t first = 0; first < places.size(); first += kMost) {
+            const auto some = places.subspan(first, std::min(kMost, places.size() - first));
+            solver_.solve(some, std::span(solved_).first(some.size()), true);
+            for (std::size_t s = 0; s < some.size(); ++s) {
+                seen[first + s] = solved_[s].seen;
+                place_ = &some[s];
+                strip_ = &solved_[s];
+                if (strip_->on_mesh == strip_->seen)
+                    shade_together(*place_, *strip_, colors[first + s]);
+                else
+                    shade_one_by_one(*place_, *strip_, colors[first + s]);
+            }
         }
-        for (std::size_t i = 0; i < kStrip; ++i) {
-            if (!(solver_.seen() >> i & 1)) continue;
-            const Vec2d pixel = place.position(i);
-            const Rgb c = shade_one(data_, view_, shader_, find_hit(geometry_, view_, solver_.id(i), pixel), pixel,
-                                    samples_per_pixel(place, view_),
-                                    place.nearness != nullptr ? place.nearness + i : nullptr);
-            colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
-        }
-        return solver_.seen();
     }
 
 private:
@@ -52,7 +53,19 @@ private:
         }
     };
 
-    void shade_together(const StripPlace& place, StripColors& colors) {
+    void shade_one_by_one(const StripPlace& place, const StripSamples& strip, StripColors& colors) const {
+        for (std::uint32_t left = strip.seen; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const Vec2d pixel = place.position(i);
+            const Rgb c = shade_one(data_, view_, shader_, find_hit(geometry_, view_, strip.id(i), pixel), pixel,
+                                    samples_per_pixel(place, view_),
+                                    place.nearness != nullptr ? place.nearness + i : nullptr);
+            colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
+        }
+    }
+
+    void shade_together(const StripPlace& place, const SolvedStrip<S>& strip, StripColors& colors) const {
+        if (strip.seen == 0) return;
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -62,17 +75,17 @@ private:
                 x += in_pixel(*place.offsets, i, &SampleOffset::x);
                 y += in_pixel(*place.offsets, i, &SampleOffset::y);
             }
-            const Floats depth = narrowed(load(solver_.depth, i), load(solver_.depth, i + Doubles::size));
-            const FragmentOf<S, Floats> fragment{derivatives(i),
-                                                 varyings<S, Floats>(gather(solver_.at, i)),
-                                                 strips::vector(solver_.ng, 0, i),
-                                                 eyes_.at(x, y),
+            const Floats depth = narrowed(load(strip.depth, i), load(strip.depth, i + Doubles::size));
+            const FragmentOf<S, Floats> fragment{derivatives(strip, i),
+                                                 varyings<S, Floats>(gather(strip.at, i)),
+                                                 strips::vector(strip.ng, 0, i),
+                                                 view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
                                                  depth,
                                                  place.nearness != nullptr
                                                      ? Floats::load_aligned(place.nearness + i)
                                                      : min(Floats(static_cast<float>(view_.pinhole.near)) / depth, Floats(1.0f)),
-                                                 solver_.object(),
+                                                 *strip.object_view,
                                                  *this,
                                                  i};
             const RgbT<Floats> c = shader_.template fragment<Floats>(fragment);
@@ -92,44 +105,48 @@ private:
         for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
         return result;
     }
-    auto derivatives(std::size_t i) const {
+    static auto derivatives(const SolvedStrip<S>& strip, std::size_t i) {
         if constexpr (wants_derivatives<S>())
-            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(solver_.dx, i)),
-                                                 varyings<S, Floats>(gather(solver_.dy, i))};
+            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(strip.dx, i)),
+                                                 varyings<S, Floats>(gather(strip.dy, i))};
         else
             return ScreenDerivatives<Many, false>{};
     }
 
-    /// As surface_point() has it, but for what base colours don't depend on.
+    /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
+    /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
     Rgb base_color(std::size_t sample) const override {
-        if (!(solver_.seen() >> sample & 1)) return {};
-        if (data_.scene.needs.footprints) return filtered_color(sample);
-        const Mesh& mesh = *solver_.one_mesh();
-        const double u = solver_.b1[sample], v = solver_.b2[sample];
-        const auto& corners = mesh.triangles[solver_.index(sample)];
+        if (!(strip_->seen >> sample & 1)) return {};
+        const Mesh& mesh = *strip_->mesh;
+        const bool filtered = data_.scene.needs.footprints;
+        const auto kept = [&](double b) { return filtered ? static_cast<double>(static_cast<float>(b)) : b; }; // as by a Hit
+        const double u = kept(strip_->b1[sample]), v = kept(strip_->b2[sample]);
+        const auto& corners = mesh.triangles[strip_->index(sample)];
         SurfacePoint point;
-        point.object = solver_.object().object;
-        point.primitive = static_cast<std::uint32_t>(solver_.index(sample));
+        point.object = strip_->object->object;
+        point.primitive = static_cast<std::uint32_t>(strip_->index(sample));
         point.material = material_index(data_.scene, point.object, point.primitive);
         point.time = view_.time;
         const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
         point.p_object = Vec3(a + (b - a) * u + (c - a) * v);
         point.uv = Vec2(static_cast<float>(u), static_cast<float>(v));
+        Vec2d along_u(1, 0), along_v(0, 1); // changes of the texture coordinates
         if (!mesh.uvs.empty()) {
             const auto uv = [&](std::size_t k) { return Vec2d(mesh.uvs[corners[k]]); };
             point.uv = Vec2(uv(0) * (1 - u - v) + uv(1) * u + uv(2) * v);
+            along_u = uv(1) - uv(0);
+            along_v = uv(2) - uv(0);
+        }
+        if (filtered && difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0) {
+            const double scale = 1 / std::sqrt(samples_per_pixel(*place_, view_)); // as PixelFootprint's
+            const auto step = [&](std::size_t axis) {
+                return Vec2((along_u * static_cast<double>(strip_->b1_steps[axis][sample]) +
+                             along_v * static_cast<double>(strip_->b2_steps[axis][sample])) * scale);
+            };
+            point.duv_dx = step(0);
+            point.duv_dy = step(1);
         }
         return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
-    }
-
-    Rgb filtered_color(std::size_t sample) const {
-        const Rayd exact = view_.pinhole.ray(place_->position(sample));
-        const Hit hit{.object = solver_.object().object,
-                      .primitive = static_cast<std::uint32_t>(solver_.index(sample)),
-                      .u = static_cast<float>(solver_.b1[sample]),
-                      .v = static_cast<float>(solver_.b2[sample]),
-                      .t = static_cast<float>(solver_.depth[sample] * exact.t_min / view_.pinhole.near)};
-        return hit_color(data_.scene, view_, rounded(exact, view_.time), hit, samples_per_pixel(*place_, view_));
     }
 
     const PreparedData& data_;
@@ -138,7 +155,9 @@ private:
     const S& shader_;
     StripSolver<S> solver_;
     Linear ways_, eyes_; ///< camera rays
+    std::vector<SolvedStrip<S>> solved_;
     const StripPlace* place_ = nullptr; ///< of the strip at hand
+    const SolvedStrip<S>* strip_ = nullptr;
 };
 
 /// A shader, kept by value.

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "common/system/sabotage.h"
+#include "common/vec/scalar.h"
+#include "raster/cull.h"
+#include "raster/lanes.h"
 #include "raster/samples.h"
 #include "raster/tiles.h"
 #include "raster/transform.h"
@@ -9,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 
 namespace duet::raster {
 
@@ -129,17 +133,38 @@ inline PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset 
             floor_pixel(y1 - offset.y) + 1};
 }
 
-/// How far inside of the snapped outline, in values of its edge functions, a sample must lie to be inside of the
-/// unsnapped triangle for certain. Snapping moves each corner by at most half a grid point along x and y. So at a point
-/// of the box of width w and height h that bounds the corners, an edge function (pₖ − pᵢ) × (p − pᵢ) changes by at
-/// most ½ (w + h) for each of its two corners, and ½ for both at once: w + h + ½. New corners, where it is clipped, have
-/// rounding errors besides: a whole pixel is left to them.
-inline std::int64_t inside_margin(const DrawTriangle& triangle) {
+/// How far inside of each edge of the snapped outline, in values of its edge function, a sample that the outline covers must
+/// lie to be inside of the unsnapped triangle's, too, for certain. Snapping moves each corner by at most half a grid point
+/// along x and y. With a and b the ways from the sample to an edge's ends, its function a × b changes by at most
+/// ½|a| + ½|b| + ½, where |v| = |x| + |y|. |a| + |b| is convex in the sample: so at a sample of which the third corner's
+/// barycentric is β, it is at most (1 − β)·L + β·(M + N), L being the edge's length and M and N the other two's, in the same
+/// measure. As β = a × b / A, A the doubled area, a × b ≥ (½L + ½) / (1 − (M + N − L) / 2A) is enough. Where
+/// A ≥ 4·(L + M + N), that is less than ⅝L + 1. In slivers w + h + 1 is, w and h being the sides of the box that bounds the
+/// corners, for |a| and |b| are at most w + h, which is ½ (L + M + N). New corners, where it is clipped, have rounding errors
+/// besides: a whole pixel is left to them.
+///
+/// T is a number or a batch of them; `lengths` L of each edge.
+template <typename T> std::array<T, 3> edge_margins(const std::array<T, 3>& lengths, T doubled_area) {
+    using xsimd::select, duet::select;
+    const T circumference = lengths[0] + lengths[1] + lengths[2];
+    const auto sliver = doubled_area < circumference * T(4);
+    const T of_sliver = (circumference >> 1) + T(1);
+    std::array<T, 3> margins;
+    for (std::size_t k = 0; k < 3; ++k) margins[k] = select(sliver, of_sliver, T((lengths[k] * T(5) >> 3) + T(2)));
+    return margins;
+}
+inline std::array<std::int64_t, 3> edge_margins(const DrawTriangle& triangle) {
     const auto& p = triangle.corners;
-    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    const std::int64_t size = std::int64_t{x1} - x0 + y1 - y0;
-    return size + 1 + (triangle.clipped ? size * kSubPixels : 0);
+    std::array<std::int64_t, 3> lengths; // of edges from corner k to the next
+    for (std::size_t k = 0; k < 3; ++k) {
+        const FixedPoint &a = p[k], &b = p[(k + 1) % 3];
+        lengths[k] = std::abs(std::int64_t{b.x} - a.x) + std::abs(std::int64_t{b.y} - a.y);
+    }
+    if (triangle.clipped) {
+        const std::int64_t size = (lengths[0] + lengths[1] + lengths[2]) / 2, margin = size + 1 + size * kSubPixels;
+        return {margin, margin, margin};
+    }
+    return edge_margins(lengths, doubled_area(p[0], p[1], p[2]));
 }
 
 } // namespace duet::raster

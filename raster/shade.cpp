@@ -51,8 +51,10 @@ public:
         if (bsdf.smooth() || prefiltered_ == nullptr) return look_up(MetalBsdf{bsdf.reflectance, 0}, false);
         const Vec3 mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
         const Vec3 axis = Prefiltered::axis(point_.ns, mirrored, bsdf.alpha);
-        return prefiltered_->at(data_.scene.environment, axis, bsdf.alpha) *
-               ggx_albedo(bsdf.alpha, std::abs(point_.wo.z)).of(bsdf.reflectance);
+        return prefiltered_->at(data_.scene.environment, axis, bsdf.alpha) * bsdf.albedo(std::abs(point_.wo.z));
+    }
+    Rgb operator()(const RoughDiffuseBsdf& bsdf) const {
+        return bsdf.reflected(std::abs(point_.wo.z)) * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns, sky_seen(settings_, screen_, point_));
     }
     /// The mirror image, and what is seen through this side of the glass alone: refracted once, tinted as by two
     /// crossings; weighed by Fresnel's equations.
@@ -62,8 +64,26 @@ public:
         return sum;
     }
 
+    /// The same, blurred.
+    Rgb operator()(const RoughDielectricBsdf& bsdf) const {
+        const DielectricBsdf smooth{bsdf.eta, bsdf.tint};
+        if (prefiltered_ == nullptr) return (*this)(smooth);
+        Rgb sum;
+        for (const bool transmitted : {false, true}) sum += look_up(smooth, transmitted, bsdf.alpha);
+        return sum;
+    }
+    /// The mirror image, and what is straight behind.
+    Rgb operator()(const ThinDielectricBsdf& bsdf) const {
+        const ThinDielectricBsdf::Parts parts = bsdf.parts(std::abs(point_.wo.z));
+        const Vec3 mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
+        Rgb sum = radiance(data_.scene.environment, normalize(point_.frame.to_world(-point_.wo))) * parts.transmitted;
+        if (point_.receives(mirrored)) sum += radiance(data_.scene.environment, normalize(mirrored)) * parts.reflected;
+        return sum;
+    }
+    Rgb operator()(const LayeredBsdf&) const { return {}; } // its layers are shaded each by itself
+
 private:
-    template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted) const {
+    template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted, float alpha = 0) const {
         // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
         const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
         const auto sample = bsdf.sample(point_.wo, lobe, {0.5f, 0.5f}, TransportMode::kImportance);
@@ -71,7 +91,9 @@ private:
         const Vec3 wi = point_.frame.to_world(sample->wi);
         if (point_.receives(wi) == transmitted) return {}; // the two normals disagree
         const Rgb crossings = transmitted ? sample->weight * sample->weight : sample->weight;
-        return radiance(data_.scene.environment, normalize(wi)) * crossings * sample->pdf;
+        const Vec3 way = normalize(wi);
+        const Rgb light = alpha > 0 ? prefiltered_->at(data_.scene.environment, way, alpha) : radiance(data_.scene.environment, way);
+        return light * crossings * sample->pdf;
     }
 
     const PreparedData& data_;
@@ -91,7 +113,15 @@ struct DirectLight {
     Direct operator()(const MetalBsdf& bsdf) const {
         return direct_light(lights, bsdf, point, visibility, transformed_cosines);
     }
+    Direct operator()(const RoughDiffuseBsdf& bsdf) const { return direct_light(lights, bsdf, point, visibility); }
+    /// What shines on its outside is mirrored as by a metal of the same reflectance.
+    Direct operator()(const RoughDielectricBsdf& bsdf) const {
+        const MetalBsdf surface{Rgb(sqr((bsdf.eta - 1) / (bsdf.eta + 1))), bsdf.alpha};
+        return direct_light(lights, surface, point, visibility, transformed_cosines);
+    }
     Direct operator()(const DielectricBsdf&) const { return {}; }
+    Direct operator()(const ThinDielectricBsdf&) const { return {}; }
+    Direct operator()(const LayeredBsdf&) const { return {}; } // its layers are shaded each by itself
 };
 
 /// Ray number i of kMirrorRays from a rough metal: a (0,2)-net, of which each aligned part is one.
@@ -154,10 +184,35 @@ private:
     float depth_ = 0, spread_ = 0; ///< radians between a pixel's mirrored ray and the next one's
 };
 
-LightParts lit(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Bsdf& bsdf,
-               Vec3 to_viewer, const Screen* screen, TapRange taps) {
+LightParts lit(const PreparedData& data, const Settings& settings, const PartSet& asked, const ShadingPoint& point,
+               const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen, TapRange taps);
+
+/// Layers side by side, each by as much as a viewer at this angle sees of it. All that they reflect of the environment
+/// counts as reflection, as in the path tracer's parts.
+LightParts lit_layers(const PreparedData& data, const Settings& settings, PartSet asked, const ShadingPoint& point,
+                      const LayeredBsdf& layers, Vec3 to_viewer, const Screen* screen, TapRange taps) {
+    asked.environment = asked.reflection;
+    asked.emission = false;
+    const LayeredBsdf::Albedos seen = layers.albedos(std::abs(point.wo.z));
+    const float under = 1 - seen.coat.r;
+    LightParts sum;
+    const auto add = [&](const Bsdf& layer, float weight) {
+        const LightParts parts = lit(data, settings, asked, point, layer, to_viewer, screen, taps);
+        sum.direct += parts.direct * weight;
+        sum.shadowed += parts.shadowed * weight;
+        sum.reflection += (parts.reflection + parts.environment) * weight;
+    };
+    if (!is_black(seen.diffuse)) add(DiffuseBsdf{seen.diffuse}, 1);
+    add(MetalBsdf(layers.glossy.normal, layers.glossy.alpha), under);
+    if (layers.coat > 0) add(MetalBsdf(Rgb(LayeredBsdf::kCoatNormal), layers.coat_alpha), layers.coat);
+    return sum;
+}
+
+LightParts lit(const PreparedData& data, const Settings& settings, const PartSet& asked, const ShadingPoint& point,
+               const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen, TapRange taps) {
+    if (const auto* layers = std::get_if<LayeredBsdf>(&bsdf))
+        return lit_layers(data, settings, asked, point, *layers, to_viewer, screen, taps);
     const Scene& scene = data.scene;
-    const PartSet& asked = settings.parts;
     LightParts parts;
     if (asked.emission) parts.emission = emitted(scene.materials[point.surface.material], scene.textures, point.surface, to_viewer);
     if (asked.direct) {
@@ -165,7 +220,7 @@ LightParts lit(const PreparedData& data, const Settings& settings, const Shading
         const Direct direct = std::visit(DirectLight{scene.lights, point, visibility, settings.transformed_cosines}, bsdf);
         parts.direct = direct.arriving, parts.shadowed = direct.shadowed;
     }
-    const bool diffuse = std::holds_alternative<DiffuseBsdf>(bsdf);
+    const bool diffuse = is_diffuse(bsdf);
     if (shows_environment(data, settings) && (diffuse ? asked.environment : asked.reflection))
         (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point, screen), bsdf);
     const auto* metal = std::get_if<MetalBsdf>(&bsdf);
@@ -175,8 +230,31 @@ LightParts lit(const PreparedData& data, const Settings& settings, const Shading
     return parts;
 }
 
+/// Glass that absorbs is tinted as by the mean way through a ball that fills its object's box: 4/3 of the radius, which
+/// is 0.385 of the box's diagonal; half of it at each crossing.
+Rgb tint_by_absorption(const PreparedData& data, const Dielectric& glass, std::uint32_t object) {
+    const float way = 0.385f / 2 * length(data.objects[object].bounds.diagonal());
+    return {std::exp(-way * glass.absorption.r), std::exp(-way * glass.absorption.g), std::exp(-way * glass.absorption.b)};
+}
+
 Bsdf bsdf_of(const PreparedData& data, const SurfacePoint& surface) {
-    return bsdf_at(data.scene.materials[surface.material], data.scene.textures, surface);
+    const Material& material = data.scene.materials[surface.material];
+    Bsdf bsdf = bsdf_at(material, data.scene.textures, surface);
+    const auto* glass = data.scene.needs.insides ? std::get_if<Dielectric>(&material) : nullptr;
+    if (glass == nullptr || is_black(glass->absorption)) return bsdf;
+    const Rgb tint = tint_by_absorption(data, *glass, surface.object);
+    if (auto* smooth = std::get_if<DielectricBsdf>(&bsdf)) smooth->tint *= tint;
+    if (auto* rough = std::get_if<RoughDielectricBsdf>(&bsdf)) rough->tint *= tint;
+    return bsdf;
+}
+
+/// Whether a material, somewhere, mirrors what the picture shows.
+bool may_mirror(const Material& material) {
+    const auto mirrors = [](const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; };
+    if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
+    if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
+    const auto* layers = std::get_if<Principled>(&material);
+    return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
 }
 
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
@@ -206,10 +284,7 @@ void add_occlusion(const PreparedData& data, const Settings& settings, Screen& s
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {
     const std::vector<Material>& materials = data.scene.materials;
     return settings.shading == Shading::kLit && settings.screen_reflections && settings.parts.reflection &&
-           std::any_of(materials.begin(), materials.end(), [](const Material& material) {
-               const auto* metal = std::get_if<Metal>(&material);
-               return metal != nullptr && (!metal->roughness.constant() || sqr(metal->roughness.value) <= kRoughestMirror);
-           });
+           std::any_of(materials.begin(), materials.end(), may_mirror);
 }
 
 double occlusion_radius(const PreparedData& data, const Settings& settings) {
@@ -227,7 +302,7 @@ std::optional<Rgb> constant_background(const PreparedData& data, const Settings&
 }
 
 std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
-    if (!hit.valid() || std::holds_alternative<Metal>(scene.materials[material_index(scene, hit.object, hit.primitive)])) return 0;
+    if (!hit.valid() || may_mirror(scene.materials[material_index(scene, hit.object, hit.primitive)])) return 0;
     return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
 }
 
@@ -282,7 +357,7 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen) {
-    return lit(prepared.data(), settings, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen, TapRange{});
+    return lit(prepared.data(), settings, settings.parts, ShadingPoint(surface, to_viewer), bsdf, to_viewer, screen, TapRange{});
 }
 
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
@@ -306,7 +381,7 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};
     const TapRange taps = settings.samples_per_pixel >= TapRange::kBlocks ? TapRange::of_quadrant(tile.quadrant()) : TapRange{};
     if (settings.shading == Shading::kLit)
-        result.radiance = lit(data, settings, point, bsdf_of(data, surface), -ray.direction, tile.screen(), taps).sum();
+        result.radiance = lit(data, settings, settings.parts, point, bsdf_of(data, surface), -ray.direction, tile.screen(), taps).sum();
     return result;
 }
 

@@ -37,7 +37,7 @@ public:
     void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance);
     Screen::FirstLook finish() &&;
 
-    /// Of what a pixel sees: 0 of metal, which mirrors, and of nothing.
+    /// Of what a pixel sees: 0 of what mirrors the picture, and of nothing.
     static std::uint32_t key(const Scene& scene, const Hit& hit);
 
 private:

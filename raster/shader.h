@@ -133,18 +133,23 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     RgbT<T> base_color() const;
 };
 
+/// A strip's base colours from sample `first` on. Never inlined: so a fragment whose object has one colour need not lie in
+/// memory.
+template <typename T> [[gnu::noinline]] RgbT<T> sampled_colors(const ColorSource& colors, std::size_t first) {
+    RgbT<StripOf<float>> found;
+    for (std::size_t lane = 0; lane < T::size; ++lane) {
+        const Rgb c = colors.base_color(first + lane);
+        found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
+    }
+    return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+}
+
 template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
     if (object.color) return spread<T>(*object.color);
-    if constexpr (std::same_as<T, float>) {
+    if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
-    } else {
-        RgbT<StripOf<float>> found;
-        for (std::size_t lane = 0; lane < T::size; ++lane) {
-            const Rgb c = colors.base_color(first + lane);
-            found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
-        }
-        return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
-    }
+    else
+        return sampled_colors<T>(colors, first);
 }
 
 /// Whether a shader asks for derivatives: `static constexpr bool kDerivatives = true;`

@@ -1,71 +1,88 @@
 // Where on its triangle each of sixteen samples lies, side by side: barycentrics, depth, and a shader's varyings.
 #pragma once
 
-#include "raster/planes.h"
-#include "raster/shader.h"
+#include "raster/set_ups.h"
 #include "raster/strip_samples.h"
 
+#include "common/vec/simd.h"
+
 #include <bit>
-#include <optional>
+#include <span>
 
 namespace duet::raster {
 
-/// Solves for the samples that see a mesh's triangle; S's vertex function is asked for what is interpolated.
-template <VertexShader S> class StripSolver : public StripSamples {
-public:
-    /// Pixels are counted from the tile's corner.
-    StripSolver(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
-        : StripSamples(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {}
-
-    /// Finds the numbers below for the samples loaded, which are those of `place`.
-    void solve(const StripPlace& place);
-    /// The same, with those solutions mended that do not hold as they are: see inside().
-    void solve_all(const StripPlace& place);
-
-    /// After solve(): a bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
-    std::uint32_t inside() const { return inside_; }
-    const ObjectView& object() const { return *object_; }
-
+/// Where the samples of a strip that see a mesh's triangle lie on it.
+template <VertexShader S> struct SolvedStrip : StripSamples {
     static constexpr std::size_t kCount = kVaryings<S>;
     static constexpr bool kDerivatives = wants_derivatives<S>();
-    std::array<StripOf<float>, kCount> at;                           ///< varyings
-    std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy;    ///< and their derivatives by the sample's place
-    std::array<StripOf<float>, 3> ng; ///< VertexInput::ng
-    StripOf<double> b1, b2;           ///< barycentrics of the second and third corner
-    StripOf<double> depth;            ///< camera-space −z
+
+    const ObjectView* object_view = nullptr;
+    std::array<StripOf<float>, kCount> at;                        ///< varyings
+    std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
+    std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
+    StripOf<double> b1, b2;                                       ///< barycentrics of the second and third corner
+    StripOf<double> depth;                                        ///< camera-space −z
+    std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
+    /// A bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
+    std::uint32_t inside = 0;
+    std::array<std::uint32_t, kFew> few_kept{}; ///< where the few triangles' set-ups are
+};
+
+/// Solves for the samples that see a mesh's triangle; S's vertex function is asked for what is interpolated.
+template <VertexShader S> class StripSolver {
+public:
+    using Solved = SolvedStrip<S>;
+    static constexpr std::size_t kMost = 32; ///< strips at a time
+
+    /// Pixels are counted from the tile's corner. `steps`: find the barycentrics' derivatives, too.
+    StripSolver(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader, bool steps)
+        : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
+          origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
+
+    /// For up to kMost strips, of which those that see no mesh are only read. `mend`: solve otherwise where the solution does
+    /// not hold as it is.
+    void solve(std::span<const StripPlace> places, std::span<Solved> strips, bool mend);
+    const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
 private:
-    /// What follows from one triangle, for all its samples; D and F are numbers, or strips of them, a triangle each.
-    /// Planes are the coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's e[1] and
-    /// e[2], the sum of its three, and Σ(e·depth).
-    template <typename D, typename F> struct SetUp {
-        std::array<D, 3> e1, e2, sum, depth_sum;
-        std::array<F, kCount> n, n1, n2; ///< the first corner's varyings, and their changes along the barycentrics
-        std::array<F, 3> ng;
-    };
-    struct CachedSetUp : SetUp<double, float> {
-        std::uint32_t id = kNoTriangle;
-    };
+    static constexpr std::size_t kCount = Solved::kCount, kFew = Solved::kFew;
+    static constexpr bool kDerivatives = Solved::kDerivatives;
+    using One = typename SetUps<S>::One;
+    using Many = typename SetUps<S>::Many;
 
-    const CachedSetUp& set_up_of(std::size_t i);
-    void set_up_each();
-    void gather_vertices(std::array<std::array<StripOf<float>, 8>, 3>& corners);
-    std::uint32_t set_up_planes(const std::array<std::array<StripOf<float>, 8>, 3>& corners);
-    template <typename T, typename ToSetUp>
-    void set_up_varyings(const std::array<Vec3T<T>, 3>& p, const std::array<Vec3T<T>, 3>& n,
-                         const std::array<Vec2T<T>, 3>& uv, T side, const ToSetUp& keep) const;
-    template <typename Planes, typename Positions>
-    void solve_lanes(const Planes& planes, const Positions& positions, std::uint32_t lanes, bool only);
-    template <typename Positions> void solve_at(const Positions& positions);
+    /// The set-ups of a strip's samples: each its own, or some, each for several samples. for_each<T>() calls
+    /// body(set-up, merge) for each of them; merge(to, value) is for the samples from k on that it is of, as many as a batch
+    /// of T has lanes.
+    struct OfEach {
+        const Many& many;
+        template <typename T, typename Body> void for_each(std::size_t, const Body& body) const {
+            body(many, [](auto& to, const auto& value) { to = value; });
+        }
+    };
+    struct OfFew {
+        const SetUps<S>& set_ups;
+        const Solved& strip;
+        template <typename T, typename Body> void for_each(std::size_t k, const Body& body) const {
+            body(set_ups.kept(strip.few_kept[0]), [](auto& to, const auto& value) { to = value; });
+            for (std::size_t i = 1; i < strip.few; ++i) {
+                const xsimd::batch_bool<T> here = lanes_from<T>(strip.few_lanes[i] >> k);
+                body(set_ups.kept(strip.few_kept[i]), [&](auto& to, const auto& value) { to = xsimd::select(here, value, to); });
+            }
+        }
+    };
+    void read(std::span<const StripPlace> places, std::span<Solved> strips);
+    void solve_one(const StripPlace& place, Solved& strip, bool mend);
+    template <typename SetUpsOf> void solve_at(const SetUpsOf& set_ups, const StripPlace& place, Solved& strip) const;
+    template <typename SetUpsOf, typename Positions>
+    void solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const;
+    void mend_strip(const Many* many, const StripPlace& place, Solved& strip) const;
 
+    const Triangles& triangles_;
     const PassView& view_;
-    const S& shader_;
-    std::optional<ObjectView> object_;
-    std::uint32_t inside_ = 0;
+    StripReader reader_;
+    SetUps<S> set_ups_;
     int origin_x_, origin_y_;
-    SetUp<StripOf<double>, StripOf<float>> lanes_; ///< of many triangles
-    static constexpr std::size_t kCached = 64;
-    std::array<CachedSetUp, kCached> cache_; ///< by id; the next strip sees much the same triangles
+    bool steps_;
 };
 
 /// What has nothing to interpolate: for who wants barycentrics and depths alone.
@@ -108,261 +125,161 @@ struct Scattered {
 
 } // namespace strips
 
-/// The vertex function's numbers at three corners: keep(k, first corner's, change along b1, along b2), and the normal.
-template <VertexShader S>
-template <typename T, typename ToSetUp>
-void StripSolver<S>::set_up_varyings(const std::array<Vec3T<T>, 3>& p, const std::array<Vec3T<T>, 3>& n,
-                                     const std::array<Vec2T<T>, 3>& uv, T side, const ToSetUp& keep) const {
-    const Vec3T<T> ng_here = cross(p[1] - p[0], p[2] - p[0]) * side;
-    const Vec3T<T> middle = (p[0] + p[1] + p[2]) * T(1.0f / 3);
-    std::array<std::array<T, kCount>, 3> v;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3T<T> edges(T(k == 0 ? 1 : 0), T(k == 1 ? 1 : 0), T(k == 2 ? 1 : 0));
-        v[k] = numbers<S, T>(shader_.vertex(VertexInput<T>{p[k], n[k], uv[k], ng_here, middle, edges, *object_}));
-    }
-    for (std::size_t c = 0; c < kCount; ++c) keep(c, v[0][c], v[1][c] - v[0][c], v[2][c] - v[0][c]);
-    keep.normal(ng_here);
-}
-
-template <VertexShader S> const typename StripSolver<S>::CachedSetUp& StripSolver<S>::set_up_of(std::size_t i) {
-    CachedSetUp& entry = cache_[id(i) % kCached];
-    if (entry.id == id(i)) return entry;
-    entry.id = id(i);
-    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object()->object].shape];
-    const auto& corners = one_mesh()->triangles[index(i)];
-    std::array<double, 3> x, y, w, d;
-    std::array<Vec3, 3> p, n;
-    std::array<Vec2, 3> uv;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const PackedVertex& packed = vertices[corners[k]];
-        const PixelVertex v = pixel_vertex(*one_object(), packed.p);
-        x[k] = v.xw - origin_x_ * v.w;
-        y[k] = v.yw - origin_y_ * v.w;
-        w[k] = v.w;
-        d[k] = v.depth;
-        p[k] = packed.p, n[k] = packed.n, uv[k] = {packed.u, packed.v};
-    }
-    const TrianglePlanes<double> planes = triangle_planes(x, y, w, d);
-    entry.e1 = planes.e1;
-    entry.e2 = planes.e2;
-    entry.sum = planes.sum;
-    entry.depth_sum = planes.depth_sum;
-    // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
-    const bool front = (planes.determinant < 0) != one_object()->mirrored;
-    struct Keep {
-        CachedSetUp& entry;
-        void operator()(std::size_t c, float first, float along_1, float along_2) const {
-            entry.n[c] = first, entry.n1[c] = along_1, entry.n2[c] = along_2;
-        }
-        void normal(Vec3 v) const { entry.ng = {v.x, v.y, v.z}; }
-    };
-    set_up_varyings(p, n, uv, front ? 1.0f : -1.0f, Keep{entry});
-    return entry;
-}
-
-/// Of each of three corners eight numbers: position and u, normal and v.
-template <VertexShader S>
-void StripSolver<S>::gather_vertices(std::array<std::array<StripOf<float>, 8>, 3>& corners) {
-    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[one_object()->object].shape];
-    std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
-    for (std::size_t i = 0; i < kStrip; ++i) { // all the waiting for memory at once
-        triangles[i] = one_mesh()->triangles[index(i)];
-        for (const std::uint32_t corner : triangles[i]) prefetch(&vertices[corner]);
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < kStrip; i += Quads::size)
-            for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
-                const auto from = [&](std::size_t lane) {
-                    return Quads::load_aligned(&vertices[triangles[i + lane][k]].p.x + first);
-                };
-                const Transposed four = transposed(from(0), from(1), from(2), from(3));
-                four.x.store_aligned(corners[k][first].at(i));
-                four.y.store_aligned(corners[k][first + 1].at(i));
-                four.z.store_aligned(corners[k][first + 2].at(i));
-                if constexpr (wants_texture_coordinates<S>()) four.w.store_aligned(corners[k][first + 3].at(i));
-            }
-}
-
-/// Returns a bit for each triangle that runs counter-clockwise in the picture.
-template <VertexShader S>
-std::uint32_t StripSolver<S>::set_up_planes(const std::array<std::array<StripOf<float>, 8>, 3>& corners) {
-    const Mat4d& m = one_object()->to_pixel;
-    const auto entry = [&](std::size_t r, std::size_t c) { return Doubles(m[r][c]); };
-    const Doubles left(static_cast<double>(origin_x_)), top(static_cast<double>(origin_y_));
-    std::uint32_t front = 0;
-    for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
-        std::array<Doubles, 3> x, y, w, d;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto& p = corners[k];
-            const Doubles px = widened(p[0].at(i)), py = widened(p[1].at(i)), pz = widened(p[2].at(i));
-            const auto row = [&](std::size_t r) {
-                return entry(r, 0) * px + entry(r, 1) * py + entry(r, 2) * pz + entry(r, 3);
-            };
-            d[k] = row(2);
-            w[k] = view_.viewport.orthographic ? Doubles(1.0) : d[k];
-            x[k] = row(0) - left * w[k];
-            y[k] = row(1) - top * w[k];
-        }
-        const TrianglePlanes<Doubles> planes = triangle_planes(x, y, w, d);
-        for (std::size_t c = 0; c < 3; ++c) {
-            store(lanes_.e1[c], i, planes.e1[c]);
-            store(lanes_.e2[c], i, planes.e2[c]);
-            store(lanes_.sum[c], i, planes.sum[c]);
-            store(lanes_.depth_sum[c], i, planes.depth_sum[c]);
-        }
-        front |= lane_bits(planes.determinant < Doubles(0.0)) << i;
-    }
-    return front;
-}
-
-template <VertexShader S> void StripSolver<S>::set_up_each() {
-    std::array<std::array<StripOf<float>, 8>, 3> corners;
-    gather_vertices(corners);
-    std::uint32_t front = set_up_planes(corners);
-    if (one_object()->mirrored) front = ~front;
-    StripOf<float> side;
-    for (std::size_t i = 0; i < kStrip; ++i) side[i] = front >> i & 1 ? 1.0f : -1.0f;
-    struct Keep {
-        SetUp<StripOf<double>, StripOf<float>>& lanes;
-        std::size_t i;
-        void operator()(std::size_t c, Floats first, Floats along_1, Floats along_2) const {
-            store(lanes.n[c], i, first);
-            store(lanes.n1[c], i, along_1);
-            store(lanes.n2[c], i, along_2);
-        }
-        void normal(Vec3T<Floats> v) const {
-            store(lanes.ng[0], i, v.x);
-            store(lanes.ng[1], i, v.y);
-            store(lanes.ng[2], i, v.z);
-        }
-    };
-    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        std::array<Vec3T<Floats>, 3> p, n;
-        std::array<Vec2T<Floats>, 3> uv;
-        for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = strips::vector(corners[k], 0, i);
-            n[k] = strips::vector(corners[k], 4, i);
-            if constexpr (wants_texture_coordinates<S>())
-                uv[k] = {raster::load(corners[k][3], i), raster::load(corners[k][7], i)};
-            else
-                uv[k] = {Floats(0.0f), Floats(0.0f)};
-        }
-        set_up_varyings(p, n, uv, raster::load(side, i), Keep{lanes_, i});
-    }
-}
-
 /// Barycentrics are bᵢ = eᵢ / Σe, depth is Σ(e·depth) / Σe: see Interpolation. The derivative of such a quotient by x is
-/// (eᵢ' − bᵢ·(Σe)') / Σe. For the lanes given; `only`: the others need not be kept.
+/// (eᵢ' − bᵢ·(Σe)') / Σe.
 template <VertexShader S>
-template <typename Planes, typename Positions>
-void StripSolver<S>::solve_lanes(const Planes& planes, const Positions& positions, std::uint32_t lanes, bool only) {
+template <typename SetUpsOf, typename Positions>
+void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const {
     using strips::lanes_of;
-    std::uint32_t inside = 0;
-    StripOf<std::int32_t> chosen;
-    if (!only)
-        for (std::size_t i = 0; i < kStrip; i += Ints::size)
-            store(chosen, i, (Ints(static_cast<std::int32_t>(lanes)) >> raster::load(kLanes, i)) & Ints(1));
+    const Doubles zero(0.0);
+    strip.inside = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        std::array<Doubles, 2> first_b, second_b, d1_dx, d1_dy, d2_dx, d2_dy;
+        std::array<Doubles, 2> first_b, second_b, d1_dx{zero, zero}, d1_dy{zero, zero}, d2_dx{zero, zero}, d2_dy{zero, zero};
         for (std::size_t half = 0; half < 2; ++half) {
             const std::size_t k = i + half * Doubles::size;
-            const Doubles x = positions.x(k), y = positions.y(k), zero(0.0);
-            const auto value = [&](const auto& plane) {
-                return xsimd::fma(lanes_of(plane[0], k), x, xsimd::fma(lanes_of(plane[1], k), y, lanes_of(plane[2], k)));
-            };
-            const Doubles e1 = value(planes.e1), e2 = value(planes.e2), sum = value(planes.sum), inverse = Doubles(1.0) / sum;
-            inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
-            // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
-            const Doubles depth_sum =
-                view_.viewport.orthographic ? value(planes.depth_sum) : lanes_of(planes.depth_sum[2], k);
+            const Doubles x = positions.x(k), y = positions.y(k);
+            Doubles e1 = zero, e2 = zero, sum = zero, depth_sum = zero;
+            set_ups.template for_each<double>(k, [&](const auto& one, const auto& merge) {
+                const auto value = [&](const auto& plane) {
+                    return fused(lanes_of(plane[0], k), x, fused(lanes_of(plane[1], k), y, lanes_of(plane[2], k)));
+                };
+                merge(e1, value(one.e1));
+                merge(e2, value(one.e2));
+                merge(sum, value(one.sum));
+                // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
+                merge(depth_sum, view_.viewport.orthographic ? value(one.depth_sum) : lanes_of(one.depth_sum[2], k));
+            });
+            const Doubles inverse = Doubles(1.0) / sum;
+            strip.inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
             first_b[half] = e1 * inverse;
             second_b[half] = e2 * inverse;
-            if constexpr (kDerivatives) {
-                const auto along = [&](const auto& plane, const Doubles& b, std::size_t axis) {
-                    return (lanes_of(plane[axis], k) - b * lanes_of(planes.sum[axis], k)) * inverse;
-                };
-                d1_dx[half] = along(planes.e1, first_b[half], 0);
-                d1_dy[half] = along(planes.e1, first_b[half], 1);
-                d2_dx[half] = along(planes.e2, second_b[half], 0);
-                d2_dy[half] = along(planes.e2, second_b[half], 1);
-            }
-            const Doubles depth_here = depth_sum * inverse;
-            if (only) {
-                store(b1, k, first_b[half]);
-                store(b2, k, second_b[half]);
-                store(depth, k, depth_here);
-            } else {
-                const auto here = widened(chosen.at(k)) > zero;
-                store(b1, k, xsimd::select(here, first_b[half], raster::load(b1, k)));
-                store(b2, k, xsimd::select(here, second_b[half], raster::load(b2, k)));
-                store(depth, k, xsimd::select(here, depth_here, raster::load(depth, k)));
-            }
+            if (kDerivatives || steps_)
+                set_ups.template for_each<double>(k, [&](const auto& one, const auto& merge) {
+                    const auto along = [&](const auto& plane, const Doubles& b, std::size_t axis) -> Doubles {
+                        return (lanes_of(plane[axis], k) - b * lanes_of(one.sum[axis], k)) * inverse;
+                    };
+                    merge(d1_dx[half], along(one.e1, first_b[half], 0));
+                    merge(d1_dy[half], along(one.e1, first_b[half], 1));
+                    merge(d2_dx[half], along(one.e2, second_b[half], 0));
+                    merge(d2_dy[half], along(one.e2, second_b[half], 1));
+                });
+            store(strip.b1, k, first_b[half]);
+            store(strip.b2, k, second_b[half]);
+            store(strip.depth, k, depth_sum * inverse);
         }
-        const auto mask = xsimd::bool_cast(raster::load(chosen, i) != Ints(0));
-        const auto keep = [&](StripOf<float>& to, const Floats& v) {
-            store(to, i, only ? v : xsimd::select(mask, v, raster::load(to, i)));
-        };
         const Floats u = narrowed(first_b[0], first_b[1]), v = narrowed(second_b[0], second_b[1]);
-        for (std::size_t c = 0; c < kCount; ++c)
-            keep(at[c], xsimd::fma(lanes_of(planes.n1[c], i), u,
-                                   xsimd::fma(lanes_of(planes.n2[c], i), v, lanes_of(planes.n[c], i))));
-        for (std::size_t axis = 0; axis < 3; ++axis) keep(ng[axis], lanes_of(planes.ng[axis], i));
+        std::array<Floats, kCount> at_here;
+        Vec3T<Floats> ng_here;
+        set_ups.template for_each<float>(i, [&](const auto& one, const auto& merge) {
+            for (std::size_t c = 0; c < kCount; ++c)
+                merge(at_here[c], xsimd::fma(lanes_of(one.n1[c], i), u, xsimd::fma(lanes_of(one.n2[c], i), v, lanes_of(one.n[c], i))));
+            merge(ng_here.x, lanes_of(one.ng[0], i));
+            merge(ng_here.y, lanes_of(one.ng[1], i));
+            merge(ng_here.z, lanes_of(one.ng[2], i));
+        });
+        for (std::size_t c = 0; c < kCount; ++c) store(strip.at[c], i, at_here[c]);
+        store(strip.ng[0], i, ng_here.x);
+        store(strip.ng[1], i, ng_here.y);
+        store(strip.ng[2], i, ng_here.z);
+        if (!kDerivatives && !steps_) continue;
+        const Floats u_dx = narrowed(d1_dx[0], d1_dx[1]), v_dx = narrowed(d2_dx[0], d2_dx[1]);
+        const Floats u_dy = narrowed(d1_dy[0], d1_dy[1]), v_dy = narrowed(d2_dy[0], d2_dy[1]);
+        store(strip.b1_steps[0], i, u_dx);
+        store(strip.b1_steps[1], i, u_dy);
+        store(strip.b2_steps[0], i, v_dx);
+        store(strip.b2_steps[1], i, v_dy);
         if constexpr (kDerivatives) {
-            const Floats u_dx = narrowed(d1_dx[0], d1_dx[1]), v_dx = narrowed(d2_dx[0], d2_dx[1]);
-            const Floats u_dy = narrowed(d1_dy[0], d1_dy[1]), v_dy = narrowed(d2_dy[0], d2_dy[1]);
+            std::array<Floats, kCount> dx_here, dy_here;
+            set_ups.template for_each<float>(i, [&](const auto& one, const auto& merge) {
+                for (std::size_t c = 0; c < kCount; ++c) {
+                    merge(dx_here[c], Floats(lanes_of(one.n1[c], i) * u_dx + lanes_of(one.n2[c], i) * v_dx));
+                    merge(dy_here[c], Floats(lanes_of(one.n1[c], i) * u_dy + lanes_of(one.n2[c], i) * v_dy));
+                }
+            });
             for (std::size_t c = 0; c < kCount; ++c) {
-                keep(dx[c], lanes_of(planes.n1[c], i) * u_dx + lanes_of(planes.n2[c], i) * v_dx);
-                keep(dy[c], lanes_of(planes.n1[c], i) * u_dy + lanes_of(planes.n2[c], i) * v_dy);
+                store(strip.dx[c], i, dx_here[c]);
+                store(strip.dy[c], i, dy_here[c]);
             }
         }
     }
-    inside_ |= inside & lanes;
 }
 
-template <VertexShader S> template <typename Positions> void StripSolver<S>::solve_at(const Positions& positions) {
-    if (each_)
-        solve_lanes(lanes_, positions, ~0u, true);
-    else
-        for (std::size_t k = 0; k < few_; ++k)
-            solve_lanes(set_up_of(static_cast<std::size_t>(std::countr_zero(few_lanes_[k]))), positions, few_lanes_[k],
-                        k == 0);
-}
-
-template <VertexShader S> void StripSolver<S>::solve(const StripPlace& place) {
-    inside_ = 0;
-    if (on_mesh() == 0) return;
-    if (!object_ || object_->object != one_object()->object) object_.emplace(*triangles_.prepared, view_, one_object()->object);
-    if (each_ && changed_) set_up_each();
-    changed_ = false;
+template <VertexShader S>
+template <typename SetUpsOf>
+void StripSolver<S>::solve_at(const SetUpsOf& set_ups, const StripPlace& place, Solved& strip) const {
     if (place.offsets == nullptr) {
-        solve_at(strips::OnGrid{place.offset.position(place.x - origin_x_, place.y - origin_y_)});
-    } else {
-        strips::Scattered positions;
-        for (std::size_t i = 0; i < kStrip; ++i) {
-            const Vec2d p = place.position(i);
-            positions.xs[i] = p.x - origin_x_;
-            positions.ys[i] = p.y - origin_y_;
-        }
-        solve_at(positions);
+        solve_lanes(set_ups, strips::OnGrid{place.offset.position(place.x - origin_x_, place.y - origin_y_)}, strip);
+        return;
     }
-    inside_ &= sabotaged(Guard::kPerspective) ? 0 : on_mesh();
+    strips::Scattered positions;
+    for (std::size_t i = 0; i < kStrip; ++i) {
+        const Vec2d p = place.position(i);
+        positions.xs[i] = p.x - origin_x_;
+        positions.ys[i] = p.y - origin_y_;
+    }
+    solve_lanes(set_ups, positions, strip);
 }
 
-template <VertexShader S> void StripSolver<S>::solve_all(const StripPlace& place) {
-    solve(place);
-    for (std::uint32_t left = on_mesh() & ~inside_; left != 0; left &= left - 1) {
+template <VertexShader S> void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, Solved& strip) const {
+    for (std::uint32_t left = strip.on_mesh & ~strip.inside; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        const WholeTriangle whole = triangles_.whole(run(i), Triangles::index(run(i), id(i)));
+        const Run& run = run_of(strip.id(i));
+        const WholeTriangle whole = triangles_.whole(run, Triangles::index(run, strip.id(i)));
         const Interpolated here = interpolate(whole, place.position(i));
-        b1[i] = here.b1 / here.sum;
-        b2[i] = here.b2 / here.sum;
-        depth[i] = here.depth_sum / here.sum;
-        const auto u = static_cast<float>(b1[i]), v = static_cast<float>(b2[i]);
-        const CachedSetUp* few = each_ ? nullptr : &set_up_of(i);
+        strip.b1[i] = here.b1 / here.sum;
+        strip.b2[i] = here.b2 / here.sum;
+        strip.depth[i] = here.depth_sum / here.sum;
+        const auto u = static_cast<float>(strip.b1[i]), v = static_cast<float>(strip.b2[i]);
+        const One* one = nullptr;
+        for (std::size_t k = 0; k < strip.few && many == nullptr; ++k)
+            if (strip.few_lanes[k] >> i & 1) one = &set_ups_.kept(strip.few_kept[k]);
         for (std::size_t c = 0; c < kCount; ++c)
-            at[c][i] = few != nullptr ? few->n[c] + few->n1[c] * u + few->n2[c] * v
-                                      : lanes_.n[c][i] + lanes_.n1[c][i] * u + lanes_.n2[c][i] * v;
+            strip.at[c][i] = one != nullptr ? one->n[c] + one->n1[c] * u + one->n2[c] * v
+                                            : many->n[c][i] + many->n1[c][i] * u + many->n2[c][i] * v;
     }
+}
+
+template <VertexShader S> void StripSolver<S>::solve_one(const StripPlace& place, Solved& strip, bool mend) {
+    set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
+    strip.object_view = &set_ups_.object();
+    const Many* many = strip.each ? &set_ups_.set_up(strip.ids) : nullptr;
+    if (many != nullptr)
+        solve_at(OfEach{*many}, place, strip);
+    else
+        solve_at(OfFew{set_ups_, strip}, place, strip);
+    strip.inside &= sabotaged(Guard::kPerspective) ? 0 : strip.on_mesh;
+    if (mend) mend_strip(many, place, strip);
+}
+
+/// Reads all, and sets up what they see, side by side across strips.
+template <VertexShader S>
+void StripSolver<S>::read(std::span<const StripPlace> places, std::span<Solved> strips) {
+    set_ups_.make_room(places.size() * kFew);
+    for (std::size_t s = 0; s < places.size(); ++s) {
+        Solved& strip = strips[s];
+        reader_.read(places[s].ids, strip);
+        if (strip.on_mesh == 0 || strip.each) continue;
+        set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
+        for (std::size_t k = 0; k < strip.few; ++k) strip.few_kept[k] = set_ups_.keep(strip.few_id(k));
+    }
+    set_ups_.finish();
+}
+
+// By the number of triangles they see: so many branches go the same way, one strip after the other, and one's work overlaps
+// with the next's.
+template <VertexShader S>
+void StripSolver<S>::solve(std::span<const StripPlace> places, std::span<Solved> strips, bool mend) {
+    static_assert(kMost * kFew <= SetUps<S>::kRoom);
+    read(places, strips);
+    constexpr std::size_t kKinds = kFew + 2; // none, 1 to kFew, each
+    const auto kind = [&](std::size_t s) { return strips[s].on_mesh == 0 ? 0 : strips[s].each ? kFew + 1 : strips[s].few; };
+    std::array<std::size_t, kKinds + 1> first{};
+    for (std::size_t s = 0; s < places.size(); ++s) ++first[kind(s) + 1];
+    for (std::size_t k = 1; k < kKinds; ++k) first[k] += first[k - 1];
+    const std::size_t begin = first[1];
+    std::array<std::size_t, kMost> order;
+    for (std::size_t s = 0; s < places.size(); ++s) order[first[kind(s)]++] = s;
+    for (std::size_t i = begin; i < places.size(); ++i) solve_one(places[order[i]], strips[order[i]], mend);
 }
 
 } // namespace duet::raster

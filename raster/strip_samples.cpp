@@ -5,49 +5,58 @@
 
 namespace duet::raster {
 
-void StripSamples::load(const std::int32_t* ids) {
-    const Ints none(static_cast<std::int32_t>(kNoTriangle));
-    const std::uint32_t seen = samples_seen(ids), before = seen_;
-    seen_ = seen;
-    on_mesh_ = one_object_ != nullptr ? seen : 0;
-    if (seen == 0) return;
-    const Ints first(ids[std::countr_zero(seen)]);
-    bool same = before != 0;
-    std::int32_t low = kNoTriangle, high = 0;
+bool StripReader::all_of_last_object(const StripSamples& samples) const {
+    if (object_ == nullptr) return false;
+    bool all = true;
     for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const Ints read = Ints::load_aligned(ids + i), filled = xsimd::select(read == none, first, read);
-        same = same && xsimd::all(filled == raster::load(ids_, i));
-        store(ids_, i, filled);
+        const Ints id = load(samples.ids, i);
+        all = all && xsimd::all(id >= Ints(low_id_) && id < Ints(end_id_));
     }
-    if (same) return;
-    for (const std::int32_t id : ids_.v) {
-        low = std::min(low, id);
-        high = std::max(high, id);
-    }
-    one_object_ = nullptr;
-    one_mesh_ = nullptr;
-    on_mesh_ = 0;
-    last_run_ = &triangles_.run_of(static_cast<std::uint32_t>(low),
+    return all;
+}
+
+void StripReader::find_object(const StripSamples& samples) {
+    object_ = nullptr;
+    const auto [low, high] = std::minmax_element(samples.ids.v.begin(), samples.ids.v.end());
+    last_run_ = &triangles_.run_of(static_cast<std::uint32_t>(*low),
                                    last_run_ != nullptr ? *last_run_ : triangles_.runs.front());
-    const Run& last = triangles_.run_of(static_cast<std::uint32_t>(high), *last_run_);
+    const Run& last = triangles_.run_of(static_cast<std::uint32_t>(*high), *last_run_);
     // Numbers are in the order of objects: between two of one object there is no other's.
     if (last_run_->sphere || last.sphere || last.object != last_run_->object) return;
-    one_mesh_ = std::get_if<Mesh>(&triangles_.shape(last));
-    if (one_mesh_ == nullptr) return;
-    one_object_ = &triangles_.objects[last.object];
-    on_mesh_ = seen;
+    mesh_ = std::get_if<Mesh>(&triangles_.shape(last));
+    if (mesh_ == nullptr) return;
+    object_ = &triangles_.objects[last.object];
     first_id_ = last.first_id - last.first;
-    few_ = 0;
-    each_ = false;
-    for (std::uint32_t left = (1u << kStrip) - 1; left != 0 && !each_; left &= ~few_lanes_[few_ - 1]) {
-        each_ = few_ == kFew;
-        if (each_) break;
-        const Ints id(ids_[static_cast<std::size_t>(std::countr_zero(left))]);
-        std::uint32_t lanes = 0;
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(raster::load(ids_, i) == id) << i;
-        few_lanes_[few_++] = lanes;
+    low_id_ = static_cast<std::int32_t>(first_id_);
+    end_id_ = low_id_ + static_cast<std::int32_t>(mesh_->triangles.size());
+}
+
+void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
+    const Ints none(static_cast<std::int32_t>(kNoTriangle));
+    samples.seen = samples_seen(ids);
+    samples.on_mesh = 0;
+    if (samples.seen == 0) return;
+    const Ints first(ids[std::countr_zero(samples.seen)]);
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const Ints read = Ints::load_aligned(ids + i);
+        store(samples.ids, i, xsimd::select(read == none, first, read));
     }
-    changed_ = true;
+    if (!all_of_last_object(samples)) find_object(samples);
+    samples.object = object_;
+    if (object_ == nullptr) return;
+    samples.on_mesh = samples.seen;
+    samples.mesh = mesh_;
+    samples.first_id = first_id_;
+    samples.few = 0;
+    std::uint32_t left = (1u << kStrip) - 1;
+    while (left != 0 && samples.few < StripSamples::kFew) {
+        const Ints id(samples.ids[static_cast<std::size_t>(std::countr_zero(left))]);
+        std::uint32_t lanes = 0;
+        for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(load(samples.ids, i) == id) << i;
+        samples.few_lanes[samples.few++] = lanes;
+        left &= ~lanes;
+    }
+    samples.each = left != 0;
 }
 
 } // namespace duet::raster

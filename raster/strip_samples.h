@@ -4,6 +4,7 @@
 #include "raster/depth_tile.h"
 #include "raster/strip_shader.h"
 
+#include <bit>
 #include <cstdint>
 
 namespace duet::raster {
@@ -22,41 +23,46 @@ inline StripPlace strip_place(const DepthTile& tile, int x, int y) {
     return {.x = x, .y = y, .ids = tile.ids() + place, .nearness = tile.nearness() + place, .offset = tile.offset()};
 }
 
-/// Walks from strip to strip: what two of them have in common is not looked up again.
-class StripSamples {
+/// What the samples of a strip see.
+struct StripSamples {
+    static constexpr std::size_t kFew = 8;
+
+    StripOf<std::int32_t> ids; ///< where nothing is seen: another's
+    std::uint32_t seen = 0;    ///< a bit for each sample that sees something
+    std::uint32_t on_mesh = 0; ///< and for each that sees a mesh's triangle, where only one object's are seen
+    const TransformedObject* object = nullptr; ///< that one, or null
+    const Mesh* mesh = nullptr;
+    std::size_t first_id = 0; ///< number of the mesh's first triangle
+    bool each = false;        ///< so many triangles that each sample's is worked on by itself, side by side
+    std::size_t few = 0;      ///< else: how many there are
+    std::array<std::uint32_t, kFew> few_lanes{}; ///< and a bit for each of their samples
+
+    std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids[i]); }
+    /// Triangle of the one mesh.
+    std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids[i]) - first_id; }
+    /// Number of one of the few.
+    std::uint32_t few_id(std::size_t k) const { return id(static_cast<std::size_t>(std::countr_zero(few_lanes[k]))); }
+};
+
+/// Walks from strip to strip: the object that two of them have in common is not looked up again.
+class StripReader {
 public:
-    StripSamples(const Triangles& triangles) : triangles_(triangles) {}
+    explicit StripReader(const Triangles& triangles) : triangles_(triangles) {}
 
     /// Takes the numbers of what the sixteen samples see (DepthTile::ids).
-    void load(const std::int32_t* ids);
-
-    /// A bit for each sample that sees something, and for each that sees a mesh's triangle.
-    std::uint32_t seen() const { return seen_; }
-    std::uint32_t on_mesh() const { return on_mesh_; }
-
-    std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids_[i]); }
-    const Run& run(std::size_t i) const { return triangles_.run_of(id(i), *last_run_); }
-    /// The only object that is seen of all meshes, or null.
-    const TransformedObject* one_object() const { return one_object_; }
-    const Mesh* one_mesh() const { return one_mesh_; }
-    /// Triangle of the one mesh.
-    std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids_[i]) - first_id_; }
-
-protected:
-    const Triangles& triangles_;
-    StripOf<std::int32_t> ids_; ///< where nothing is seen: another's
-    bool changed_ = false;      ///< by load(): other triangles, until who uses them resets it
-    bool each_ = false;         ///< so many triangles that each sample's is worked on by itself, side by side
-    static constexpr std::size_t kFew = 5;
-    std::size_t few_ = 0;                         ///< else: how many there are
-    std::array<std::uint32_t, kFew> few_lanes_{}; ///< and a bit for each of their samples
+    void read(const std::int32_t* ids, StripSamples& samples);
+    const Run& run_of(std::uint32_t id) const { return triangles_.run_of(id, *last_run_); }
 
 private:
+    bool all_of_last_object(const StripSamples& samples) const;
+    void find_object(const StripSamples& samples);
+
+    const Triangles& triangles_;
     const Run* last_run_ = nullptr;
-    const TransformedObject* one_object_ = nullptr;
-    const Mesh* one_mesh_ = nullptr;
-    std::size_t first_id_ = 0; ///< number of the object's first triangle
-    std::uint32_t seen_ = 0, on_mesh_ = 0;
+    const TransformedObject* object_ = nullptr; ///< null: of the last samples' meshes there was not just one
+    const Mesh* mesh_ = nullptr;
+    std::size_t first_id_ = 0;
+    std::int32_t low_id_ = 0, end_id_ = 0; ///< numbers of the mesh's triangles
 };
 
 } // namespace duet::raster

@@ -7,6 +7,7 @@
 #include "common/geometry/hit.h"
 
 #include <memory>
+#include <span>
 
 namespace duet::raster {
 
@@ -35,8 +36,14 @@ inline int samples_per_pixel(const StripPlace& place, const PassView& view) {
 class StripShader {
 public:
     virtual ~StripShader() = default;
-    /// Colours of those samples that see something, and a bit for each of them; the others have any.
-    virtual std::uint32_t shade(const StripPlace& place, StripColors& colors) = 0;
+    /// Of each strip the colours of those samples that see something, and a bit for each of them; the others have any.
+    /// Any number at a time: several are shaded faster than one by one.
+    virtual void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) = 0;
+    std::uint32_t shade(const StripPlace& place, StripColors& colors) {
+        std::uint32_t seen = 0;
+        shade(std::span(&place, 1), &colors, &seen);
+        return seen;
+    }
 };
 
 /// A shader, ready for any tile.

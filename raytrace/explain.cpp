@@ -73,6 +73,7 @@ std::string explain(const Prepared& prepared, const View& view, const Settings& 
     }
     out << "\n" << integrator_name(settings.integrator) << ": " << std::setprecision(9) << radiance.r << ' '
         << radiance.g << ' ' << radiance.b << "\n";
+    if (!Film::valid(radiance)) out << "invalid: the picture leaves this sample out\n";
     return out.str();
 }
 

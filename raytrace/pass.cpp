@@ -11,11 +11,21 @@
 
 namespace duet::raytrace {
 
+namespace {
+
+// Whether a camera ray uses all of its block's numbers, or the first two alone.
+bool uses_all(const RenderPlan& plan) { return plan.lens || plan.motion; }
+
+CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
+    return {Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), u.lens, u.time};
+}
+
+} // namespace
+
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    const bool all = plan.lens || plan.motion;
-    const CameraNumbers u = all ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
-    const Vec2d in_picture = Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel);
-    return camera.ray(in_picture, Vec2d(u.lens), static_cast<double>(u.time));
+    const CameraNumbers u = uses_all(plan) ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
+    const CameraModel::Point point = camera_point(plan, x, y, u);
+    return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
 namespace {
@@ -48,49 +58,75 @@ private:
 class CameraBatch {
 public:
     CameraBatch(const PassTarget& target, const CameraModel& camera)
-        : target_(target), camera_(camera), radiance_(radiance_function(target.settings.integrator)),
-          sampler_(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel) {
+        : target_(target), camera_(camera),
+          samplers_(kSize, Sampler(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel)) {
         samples_.reserve(kSize);
     }
 
     void add(int x, int y, std::uint32_t index) {
-        sampler_.start(x, y, index);
-        rays_[samples_.size()] = camera_ray(target_.plan, camera_, x, y, sampler_);
-        samples_.push_back({x, y, index, sampler_});
+        samplers_[samples_.size()].start(x, y, index);
+        samples_.push_back({x, y, index});
         if (samples_.size() == kSize) finish();
     }
 
     // Renders what has been added and not been rendered yet.
     void finish() {
         const std::size_t size = samples_.size();
-        target_.plan.prepared.accelerator.closest(std::span(rays_).first(size), std::span(hits_).first(size));
+        const auto rays = std::span(rays_).first(size);
+        const auto hits = std::span(hits_).first(size);
+        start_rays(rays);
+        target_.plan.prepared.accelerator.closest(rays, hits);
+        if (target_.aovs.any())
+            for (std::size_t i = 0; i < size; ++i)
+                target_.aovs.add(samples_[i].x, samples_[i].y, samples_[i].index, rays[i], hits[i]);
+        radiances(target_.settings.integrator, target_.plan, rays, hits, std::span(samplers_).first(size), std::span(radiances_).first(size),
+                  counts_);
         for (std::size_t i = 0; i < size; ++i) {
-            auto& [x, y, index, sampler] = samples_[i];
-            target_.keeper.film().add(x, y, index & 1u, radiance_(target_.plan, rays_[i], hits_[i], sampler, counts_));
-            if (target_.aovs.any()) target_.aovs.add(x, y, index, rays_[i], hits_[i]);
+            const auto [x, y, index] = samples_[i];
+            if (!target_.keeper.film().add(x, y, index & 1u, radiances_[i]))
+                first_invalid_ = first_of(first_invalid_, InvalidSample{index, y, x});
         }
         counts_.camera += static_cast<std::int64_t>(size);
         samples_.clear();
     }
 
     const RayCounts& counts() const { return counts_; }
+    const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
     static constexpr std::size_t kSize = 64;
     struct Sample {
         int x, y;
         std::uint32_t index;
-        Sampler sampler;
     };
+
+    // As camera_ray has them.
+    void start_rays(std::span<Ray> rays) {
+        const auto set = [&](std::size_t i, const CameraNumbers& u) {
+            points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, u);
+        };
+        std::size_t i = 0;
+        if (uses_all(target_.plan))
+            for (; i + 1 < rays.size(); i += 2) {
+                const auto [first, second] = Sampler::get_blocks(samplers_[i], samplers_[i + 1]);
+                set(i, samplers_[i].camera_numbers(first));
+                set(i + 1, samplers_[i + 1].camera_numbers(second));
+            }
+        for (; i < rays.size(); ++i)
+            set(i, uses_all(target_.plan) ? samplers_[i].camera_numbers() : CameraNumbers{samplers_[i].pixel_numbers()});
+        camera_.rays(std::span(points_).first(rays.size()), rays);
+    }
 
     const PassTarget& target_;
     const CameraModel& camera_;
-    RadianceFunction radiance_;
-    Sampler sampler_;
     RayCounts counts_;
-    std::vector<Sample> samples_; // so many of rays_ and hits_
+    std::optional<InvalidSample> first_invalid_;
+    std::vector<Sample> samples_; // so many of those below
+    std::vector<Sampler> samplers_;
+    std::array<CameraModel::Point, kSize> points_;
     std::array<Ray, kSize> rays_;
     std::array<Hit, kSize> hits_;
+    std::array<Rgb, kSize> radiances_;
 };
 
 // The bits at even places of a number below 2¹⁶, together: a Morton code's x, or y after a shift.
@@ -100,7 +136,12 @@ int even_bits(unsigned code) {
     return bits;
 }
 
-RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile) {
+struct TileTally {
+    RayCounts counts;
+    std::optional<InvalidSample> first_invalid;
+};
+
+TileTally render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile) {
     CameraBatch batch(target, camera);
     for (unsigned code = 0; code < kTile * kTile; ++code) { // along a Z-curve: pixels near in order are near
         const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
@@ -110,7 +151,7 @@ RayCounts render_tile(const PassTarget& target, const CameraModel& camera, const
             batch.add(x, y, target.settings.first_sample + index);
     }
     batch.finish();
-    return batch.counts();
+    return {batch.counts(), batch.first_invalid()};
 }
 
 } // namespace
@@ -126,10 +167,11 @@ bool render_pass(const PassTarget& target, double begin, double end) {
             complete = false;
             return;
         }
-        RayCounts counts;
-        target.keeper.add([&] { counts = render_tile(target, camera, tiles[i]); });
+        TileTally tally;
+        target.keeper.add([&] { tally = render_tile(target, camera, tiles[i]); });
         const std::lock_guard lock(mutex);
-        target.counts += counts;
+        target.counts += tally.counts;
+        target.first_invalid = first_of(target.first_invalid, tally.first_invalid);
         target.control.report(lerp(begin, end, static_cast<double>(++finished) / static_cast<double>(tiles.count())));
     });
     return complete;

@@ -20,6 +20,7 @@ struct PassTarget {
     FilmKeeper& keeper;
     AovBuffers& aovs;
     RayCounts& counts;
+    std::optional<InvalidSample>& first_invalid;
 };
 
 /// Renders the samples that the film's pixels have been promised and do not have yet, tile by tile on all threads. False

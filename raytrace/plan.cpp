@@ -47,6 +47,7 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) details.push_back(surface_detail(scene, i));
     emission = prepared.emitters || !skips.emission;
     mirror_light = !skips.mirror_light;
+    insides = scene.needs.insides;
     black_shadow_rays = !skips.shadow_rays;
     const bool with_environment =
         settings.environment && (prepared.environment || !skips.environment) && shows_light(settings.integrator);
@@ -71,6 +72,7 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
     if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
+    if (!plan.insides) skip("insides", "no glass absorbs, or stands in other glass");
     if (!plan.pixel) skip("texture footprints", "no material has a picture that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");

@@ -23,6 +23,7 @@ struct RenderPlan {
     bool emission = false;                                   ///< surfaces that are hit may emit
     bool hits_find_light = false;   ///< a ray may find light by itself: an emitter, or the environment
     bool mirror_light = false;      ///< light is sampled at mirrors and glass, too, which cannot reflect it
+    bool insides = false;           ///< some dielectric absorbs, or knows of others that it may stand in
     bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
     int max_depth = 0;
     bool russian_roulette = false;

@@ -57,9 +57,9 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     Film& film = keeper.film();
     AovBuffers aovs(plan, view, settings.aovs);
     RayCounts rays;
-    const PassTarget target{plan, view, settings, control, keeper, aovs, rays};
-
     Rendering rendering;
+    const PassTarget target{plan, view, settings, control, keeper, aovs, rays, rendering.statistics.first_invalid};
+
     RenderStatistics& statistics = rendering.statistics;
     const auto pixels = static_cast<double>(film.pixels().size());
     const std::int64_t begun = film.all_taken();

@@ -7,9 +7,6 @@ namespace duet::raytrace {
 
 namespace {
 
-// A first few samples that all miss the lights look converged: what the film tells of errors is asked from so many on.
-constexpr double kMinForError = 16;
-
 std::int64_t pixel_count(const Film& film) { return std::int64_t{film.width()} * film.height(); }
 
 void raise_all(Film& film, std::uint32_t samples) {
@@ -17,13 +14,20 @@ void raise_all(Film& film, std::uint32_t samples) {
         for (int x = 0; x < film.width(); ++x) film.pixels()(x, y).target = film.taken(x, y) + samples;
 }
 
-// Of one sample, over (mean² + 0.01), mean of the channels; negative where it is not known.
-double relative_variance(const Film& film, int x, int y) {
+// The variance of one sample, as it is and over (mean² + 0.01), mean of the channels; negative where it is not known.
+struct OneSample {
+    double absolute = -1, relative = -1;
+};
+OneSample variance_of_one(const Film& film, int x, int y) {
     const Rgbd variance = film.variance(x, y), mean = film.mean(x, y);
-    if (!is_finite(variance)) return -1;
-    double sum = 0;
-    for (std::size_t c = 0; c < 3; ++c) sum += variance[c] / (sqr(mean[c]) + 0.01);
-    return sum / 3 * film.samples(x, y);
+    if (!is_finite(variance)) return {};
+    OneSample sum{0, 0};
+    for (std::size_t c = 0; c < 3; ++c) {
+        sum.absolute += variance[c];
+        sum.relative += variance[c] / (sqr(mean[c]) + 0.01);
+    }
+    const double samples = film.samples(x, y);
+    return {sum.absolute / 3 * samples, sum.relative / 3 * samples};
 }
 
 // What each pixel's neighbours have, in the mean; 0 where none knows.
@@ -44,11 +48,38 @@ Image<double> of_neighbours(const Image<double>& own) {
     return result;
 }
 
+// Divides by the mean, if there is one.
+void normalize(Image<double>& values) {
+    double sum = 0;
+    for (const double v : values) sum += v;
+    const double mean = sum / static_cast<double>(values.size());
+    if (mean > 0)
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] /= mean;
+}
+
+// s of each pixel.
+Image<double> needed_variance(const Film& film) {
+    Image<double> absolute(film.width(), film.height()), relative(film.width(), film.height());
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x) {
+            const OneSample own = variance_of_one(film, x, y);
+            absolute(x, y) = own.absolute;
+            relative(x, y) = own.relative;
+        }
+    Image<double> s = of_neighbours(relative), other = of_neighbours(absolute);
+    normalize(s);
+    normalize(other);
+    for (std::size_t i = 0; i < s.size(); ++i) s[i] = (s[i] + other[i]) / 2;
+    return s;
+}
+
 // A pixel: √s, and the samples it has.
 struct Need {
     double root, taken;
     double more(double scale) const { return std::clamp(scale * root - taken, 0.0, taken); }
 };
+
+constexpr double kLeast = 0.01; // of s, whose mean is 1
 
 double all_more(const std::vector<Need>& needs, double scale) {
     double sum = 0;
@@ -59,24 +90,19 @@ double all_more(const std::vector<Need>& needs, double scale) {
 } // namespace
 
 void spread_samples(Film& film, std::int64_t samples) {
-    Image<double> own(film.width(), film.height());
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) own(x, y) = relative_variance(film, x, y);
-    const Image<double> variance = of_neighbours(own);
-    double mean = 0;
-    for (const double v : variance) mean += v / static_cast<double>(pixel_count(film));
+    const Image<double> variance = needed_variance(film);
     std::vector<Need> needs;
     needs.reserve(variance.size());
     double high = 0;
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
-            const Need need{std::sqrt(std::max(variance(x, y), mean / 100)), static_cast<double>(film.taken(x, y))};
-            if (need.root > 0) high = std::max(high, 2 * need.taken / need.root);
+            const Need need{std::sqrt(std::max(variance(x, y), kLeast)), static_cast<double>(film.taken(x, y))};
+            high = std::max(high, 2 * need.taken / need.root);
             needs.push_back(need);
         }
     const auto wanted = static_cast<double>(samples);
     double low = 0;
-    for (int i = 0; i < 50; ++i) { // the scale at which the samples are just used up: halved until nothing changes
+    for (int i = 0; i < 24; ++i) { // the scale at which the samples are just used up, or hardly too many
         const double middle = (low + high) / 2;
         (all_more(needs, middle) < wanted ? low : high) = middle;
     }
@@ -96,7 +122,9 @@ bool plan_pass(const Settings& settings, const Spent& spent, Film& film) {
     const double left = settings.samples_per_pixel - done;
     if (left < 0.5) return false;
     const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
-    double count = limited || settings.adaptive ? std::clamp(std::floor(done / 8) * 2, 2.0, 32.0) : 16.0;
+    double count = kMinForError;
+    if ((limited || settings.adaptive) && done >= kMinForError) count = std::clamp(std::floor(done / 8) * 2, 2.0, 32.0);
+    if (settings.time_limit > 0 && done < kMinForError) count = std::max(done, 2.0);
     count = std::min(count, std::ceil(left));
     if (settings.error_limit > 0 && done >= kMinForError) {
         const double error = film.estimated_relmse();
@@ -105,8 +133,10 @@ bool plan_pass(const Settings& settings, const Spent& spent, Film& film) {
         if (error >= 0) count = std::min(count, std::max(2 * std::ceil(done * (error / settings.error_limit - 1) / 2), 2.0));
     }
     if (spent.samples > 0 && settings.time_limit > 0) {
-        const double expected = spent.seconds / static_cast<double>(spent.samples) * count * pixels;
-        if (spent.seconds + expected / 2 > settings.time_limit) return false;
+        const double each = spent.seconds / static_cast<double>(spent.samples) * pixels;
+        const double fits = 2 * std::round((settings.time_limit - spent.seconds) / each / 2);
+        if (fits < 1) return false;
+        count = std::min(count, fits);
     }
     if (settings.adaptive && done >= kMinForError) {
         spread_samples(film, static_cast<std::int64_t>(count * pixels));

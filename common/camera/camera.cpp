@@ -1,7 +1,10 @@
 #include "common/camera/camera.h"
 
 #include "common/sampling/warp.h"
+#include "common/vec/simd.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace duet {
@@ -9,8 +12,26 @@ namespace duet {
 namespace {
 
 // The nearest point with float coordinates. Both pipelines then see the scene, whose vertices are floats, from the very
-// same point.
-Vec3d rounded(Vec3d p) { return Vec3d(Vec3(p)); }
+// same point. (By the instruction, not by a cast there and back: GCC 12 takes that for nothing where it works on several
+// numbers at once, and rays through the lens no longer met their origin.)
+Vec3d rounded(Vec3d p) {
+    const auto one = [](double x) {
+        return _mm_cvtsd_f64(_mm_cvtss_sd(_mm_setzero_pd(), _mm_cvtsd_ss(_mm_setzero_ps(), _mm_set_sd(x))));
+    };
+    return {one(p.x), one(p.y), one(p.z)};
+}
+
+// The same number in all lanes of a batch.
+template <typename T> Vec3T<T> in_all(Vec3d v) { return {T(v.x), T(v.y), T(v.z)}; }
+
+Vec3T<DoubleBatch> rounded(const Vec3T<DoubleBatch>& p) {
+    const auto one = [](DoubleBatch x) {
+        alignas(64) std::array<float, kDoubleLanes> floats;
+        store_floats(x, floats.data());
+        return load_doubles(floats.data());
+    };
+    return {one(p.x), one(p.y), one(p.z)};
+}
 
 // A vector not parallel to `forward` to stand for an `up` that is.
 Vec3d usable_up(Vec3d forward, Vec3d up) {
@@ -89,17 +110,24 @@ CameraModel::CameraModel(const View& view)
     center_.world_to_pixel = pixel_matrix(center_, right_, up_, orthographic);
 }
 
+// What a ray is computed in before it is rounded, T being double or a batch of doubles.
+template <typename T> struct CameraModel::Exact {
+    Vec3T<T> origin, direction;
+    T t_min;
+};
+
 // The lens point's offset from the centre, ending on float coordinates.
-Vec3d CameraModel::lens_offset(Vec2d lens_sample) const {
-    const Vec2d lens = Vec2d(concentric_disk(Vec2(lens_sample))) * aperture_radius_;
-    return rounded(center_.origin + right_ * lens.x + up_ * lens.y) - center_.origin;
+template <typename T> Vec3T<T> CameraModel::lens_offset(Vec2T<T> on_disk) const {
+    const Vec2T<T> lens = on_disk * T(aperture_radius_);
+    const Vec3T<T> origin = in_all<T>(center_.origin);
+    return rounded(origin + in_all<T>(right_) * lens.x + in_all<T>(up_) * lens.y) - origin;
 }
 
 // Seen from another point of the lens, the plane in focus stays where it is: a pixel's ray goes to the point
 // focus_distance · direction from the centre. (The offset has a tiny depth of its own, from rounding.)
 Pinhole CameraModel::through(Vec2d lens_sample) const {
     if (!has_lens()) return center_;
-    const Vec3d offset = lens_offset(lens_sample);
+    const Vec3d offset = lens_offset(Vec2d(concentric_disk(Vec2(lens_sample))));
     const double depth = focus_distance_ - dot(offset, center_.forward);
     Pinhole view = center_;
     view.origin = center_.origin + offset;
@@ -110,23 +138,77 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
     return view;
 }
 
-Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
-    Rayd exact;
-    if (has_lens()) { // as through(), without the matrix
-        const Vec3d offset = lens_offset(lens_sample);
-        const Vec3d centered = center_.direction + center_.direction_dx * pixel.x + center_.direction_dy * pixel.y;
-        const Vec3d d = (centered * focus_distance_ - offset) / (focus_distance_ - dot(offset, center_.forward));
-        const double per_depth = length(d);
-        exact = {center_.origin + offset, d / per_depth, center_.near * per_depth};
+// As through(lens point).ray(pixel), without the matrix.
+template <typename T> CameraModel::Exact<T> CameraModel::exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const {
+    Vec3T<T> d = in_all<T>(center_.direction) + in_all<T>(center_.direction_dx) * pixel.x +
+                 in_all<T>(center_.direction_dy) * pixel.y;
+    Vec3T<T> origin;
+    if (has_lens()) {
+        const Vec3T<T> offset = lens_offset(on_disk);
+        d = (d * T(focus_distance_) - offset) / (T(focus_distance_) - dot(offset, in_all<T>(center_.forward)));
+        origin = in_all<T>(center_.origin) + offset;
     } else {
-        exact = center_.ray(pixel);
+        origin = in_all<T>(center_.origin) + in_all<T>(center_.origin_dx) * pixel.x +
+                 in_all<T>(center_.origin_dy) * pixel.y;
     }
+    const T per_depth = length(d); // distance along the ray for each unit of depth
+    return {origin, d / per_depth, T(center_.near) * per_depth};
+}
+
+Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
+    const Exact<double> exact =
+        exact_ray<double>(pixel, has_lens() ? Vec2d(concentric_disk(Vec2(lens_sample))) : Vec2d());
     Ray ray;
     ray.origin = Vec3(exact.origin);
     ray.direction = Vec3(exact.direction);
     ray.t_min = static_cast<float>(exact.t_min);
     ray.time = static_cast<float>(time(time_sample));
     return ray;
+}
+
+void CameraModel::rays(std::span<const Point> points, std::span<Ray> rays) const {
+    using Floats = FloatBatch<kSimdLanes>;
+    constexpr std::size_t kLanes = std::max(kSimdLanes, kDoubleLanes);
+    using Row = std::array<float, kLanes>;
+    std::size_t done = 0;
+    for (; points.size() - done >= kLanes; done += kLanes) {
+        const auto some = points.subspan(done, kLanes);
+        alignas(64) Row lens_x{}, lens_y{};
+        alignas(64) std::array<double, kLanes> x, y;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            lens_x[i] = some[i].lens.x;
+            lens_y[i] = some[i].lens.y;
+            x[i] = some[i].pixel.x;
+            y[i] = some[i].pixel.y;
+        }
+        if (has_lens())
+            for (std::size_t i = 0; i < kLanes; i += kSimdLanes) {
+                const Vec2T<Floats> disk = concentric_disk(
+                    Vec2T<Floats>(Floats::load_aligned(&lens_x[i]), Floats::load_aligned(&lens_y[i])));
+                disk.x.store_aligned(&lens_x[i]);
+                disk.y.store_aligned(&lens_y[i]);
+            }
+        alignas(64) std::array<Row, 7> numbers;
+        for (std::size_t i = 0; i < kLanes; i += kDoubleLanes) {
+            const auto exact = exact_ray<DoubleBatch>({DoubleBatch::load_aligned(&x[i]), DoubleBatch::load_aligned(&y[i])},
+                                                      {load_doubles(&lens_x[i]), load_doubles(&lens_y[i])});
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                store_floats(exact.origin[axis], &numbers[axis][i]);
+                store_floats(exact.direction[axis], &numbers[3 + axis][i]);
+            }
+            store_floats(exact.t_min, &numbers[6][i]);
+        }
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            Ray& ray = rays[done + i];
+            ray.origin = {numbers[0][i], numbers[1][i], numbers[2][i]};
+            ray.direction = {numbers[3][i], numbers[4][i], numbers[5][i]};
+            ray.t_min = numbers[6][i];
+            ray.t_max = kInfinity;
+            ray.time = static_cast<float>(time(static_cast<double>(some[i].time)));
+        }
+    }
+    for (; done < points.size(); ++done)
+        rays[done] = ray(points[done].pixel, Vec2d(points[done].lens), static_cast<double>(points[done].time));
 }
 
 double CameraModel::time(double time_sample) const { return lerp(shutter_open_, shutter_close_, time_sample); }

@@ -4,6 +4,8 @@
 #include "common/vec/matrix.h"
 #include "common/vec/ray.h"
 
+#include <span>
+
 namespace duet {
 
 /// As a scene describes it. The camera looks from eye to look_at; its +x is right, +y up, and it looks along −z.
@@ -53,12 +55,21 @@ public:
     Pinhole through(Vec2d lens_sample = {0.5, 0.5}) const;
     /// A camera ray: pixel position, lens sample and time sample in [0, 1). Computed in double, then rounded.
     Ray ray(Vec2d pixel, Vec2d lens_sample = {0.5, 0.5}, double time_sample = 0) const;
+    /// The same of many: points.size() rays, to the same bits.
+    struct Point {
+        Vec2d pixel;
+        Vec2 lens{0.5f, 0.5f};
+        float time = 0;
+    };
+    void rays(std::span<const Point> points, std::span<Ray> rays) const;
     /// The moment in the shutter interval of a sample in [0, 1].
     double time(double time_sample) const;
     bool has_lens() const { return aperture_radius_ > 0; }
 
 private:
-    Vec3d lens_offset(Vec2d lens_sample) const;
+    template <typename T> struct Exact;
+    template <typename T> Exact<T> exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const;
+    template <typename T> Vec3T<T> lens_offset(Vec2T<T> on_disk) const;
 
     Pinhole center_;
     Vec3d right_, up_;

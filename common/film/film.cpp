@@ -8,8 +8,7 @@ Film::Film(int width, int height) : pixels_(width, height) {}
 
 bool Film::add(int x, int y, std::size_t replicate, Rgb sample) {
     Pixel& pixel = pixels_(x, y);
-    const bool invalid = !is_finite(sample) || sample.r < 0 || sample.g < 0 || sample.b < 0;
-    if (invalid && !sabotaged(Guard::kFilmFilter)) {
+    if (!valid(sample) && !sabotaged(Guard::kFilmFilter)) {
         ++pixel.invalid;
         return false;
     }

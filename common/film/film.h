@@ -13,6 +13,9 @@ namespace duet {
 /// sampler. 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
 class Film {
 public:
+    /// Whether a sample counts: neither NaN, nor infinite, nor negative.
+    static bool valid(Rgb sample) { return is_finite(sample) && sample.r >= 0 && sample.g >= 0 && sample.b >= 0; }
+
     static constexpr std::size_t kReplicates = 2;
 
     Film(int width, int height);

@@ -5,6 +5,7 @@
 #include "common/image/image.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +58,19 @@ struct HierarchyStatistics {
     std::int64_t references = 0; ///< primitives and instances in leaves; one that is cut counts in each
 };
 
+/// A sample whose radiance is NaN, infinite or negative: `raytrace --pixel x,y,sample` tells its path.
+struct InvalidSample {
+    std::uint32_t sample = 0;
+    int y = 0, x = 0;
+
+    /// The first is that of the lowest number, in the uppermost row, farthest to the left.
+    friend auto operator<=>(const InvalidSample&, const InvalidSample&) = default;
+};
+/// The earlier of two; either may be none.
+inline std::optional<InvalidSample> first_of(std::optional<InvalidSample> a, std::optional<InvalidSample> b) {
+    return !a || (b && *b < *a) ? b : a;
+}
+
 /// What a rendering cost and what it did.
 struct RenderStatistics {
     std::vector<std::pair<std::string, double>> seconds; ///< by stage, in order ("transform", "cover", "shade" …)
@@ -66,6 +80,7 @@ struct RenderStatistics {
     std::int64_t triangles = 0;       ///< triangles, quads and spheres of the flattened scene
     std::int64_t memory_bytes = 0;    ///< of what `prepare` built and the render kept
     std::int64_t invalid_samples = 0; ///< NaN, infinite or negative: dropped from the film, and reported
+    std::optional<InvalidSample> first_invalid; ///< of those that this render took (path tracer)
     double estimated_relmse = -1;     ///< mean over pixels of variance / (mean² + 0.01); −1: not estimated
     HierarchyStatistics bvh;
     std::vector<Skipped> skipped;

@@ -6,6 +6,8 @@
 #include "common/vec/ray.h"
 #include "common/vec/robust.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -41,13 +43,11 @@ struct ShearedRay {
     explicit ShearedRay(const Ray& ray)
         : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
         // Without a branch: the axes of incoherent rays cannot be predicted.
-        constexpr std::uint8_t kNext[] = {1, 2, 0};
-        const float d[] = {direction.x, direction.y, direction.z}, o[] = {origin.x, origin.y, origin.z};
-        const std::size_t kz = longest_axis(abs(direction)), next = kNext[kz], after = kNext[next];
-        const bool swap = d[kz] < 0;
-        const std::size_t kx = swap ? after : next, ky = swap ? next : after;
-        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz],
-                 std::abs(d[kz])};
+        constexpr std::array<std::array<std::uint8_t, 2>, 6> kAcross{{{1, 2}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {1, 0}}};
+        const std::array<float, 3> d{direction.x, direction.y, direction.z}, o{origin.x, origin.y, origin.z};
+        const std::size_t kz = longest_axis(abs(direction)), backwards = std::bit_cast<std::uint32_t>(d[kz]) >> 31;
+        const auto [kx, ky] = kAcross[kz + 3 * backwards];
+        shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], std::abs(d[kz])};
     }
 };
 
@@ -92,21 +92,16 @@ template <typename T> struct TriangleTest {
         return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z;
     }
 
-    /// The bound on the error of that distance t = Σ bᵢ zᵢ, after Pharr, Jakob and Humphreys 2023, §6.8.7; products
-    /// ordered so that they stay in range wherever the edge functions do. `speed` is the shear's: x and y, of the world's
-    /// measure, were sheared by depths of that measure, while z counts in the ray's own t.
+    /// The bound on the error of that distance t = Σ bᵢ zᵢ where the triangle is met, after Pharr, Jakob and Humphreys
+    /// 2023, §6.8.7. There no |bᵢ| is above 1, and with |x| at most X, |y| at most Y, W = X + Y and D the depth, the
+    /// sheared coordinates are off by γ₅(X + D) and γ₅(Y + D), an edge function by no more than
+    /// 2(γ₂XY + γ₅(2XY + DW)) ≤ 2γ₅W(W + D). Products are ordered so that they stay in range wherever the edge functions
+    /// do. `speed` is the shear's: x and y, of the world's measure, were sheared by depths of that measure, while z
+    /// counts in the ray's own t.
     template <typename S> [[gnu::always_inline]] T distance_error(T inv_det, const S& speed) const {
-        const T gamma2(gamma_bound(2)), gamma3(gamma_bound(3)), gamma5(gamma_bound(5));
-        const T max_z = max(max(abs(at.z), abs(bt.z)), abs(ct.z));
-        const T delta_z = gamma3 * max_z;
-        const T max_x = max(max(abs(at.x), abs(bt.x)), abs(ct.x));
-        const T max_y = max(max(abs(at.y), abs(bt.y)), abs(ct.y));
-        const T depth = max_z * T(speed);
-        const T delta_x = gamma5 * (max_x + depth);
-        const T delta_y = gamma5 * (max_y + depth);
-        const T delta_e = T(2) * (gamma2 * max_x * max_y + delta_y * max_x + delta_x * max_y) * abs(inv_det);
-        const T max_e = max(max(abs(e0), abs(e1)), abs(e2)) * abs(inv_det);
-        return T(3) * (gamma3 * max_e * max_z + delta_e * max_z + delta_z * max_e);
+        const T z = max(farthest(), -nearest()), width = this->width();
+        const T weights = width * abs(inv_det) * (width + z * T(speed)); // their error, over 2γ₅
+        return z * (T(6 * gamma_bound(3)) + T(6 * gamma_bound(5)) * weights);
     }
 
     /// Whether the triangle is a needle as the ray sees it, so that the distance may be off by more than that. The
@@ -114,13 +109,18 @@ template <typename T> struct TriangleTest {
     /// along the triangle by as much over det, across depths of `spread` (in the world: the shear's `speed` makes them
     /// so). That is no more than z's own rounding, but where the triangle is much thinner than it is deep.
     template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& speed) const {
-        const T width = max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
-        const T spread = max(max(at.z, bt.z), ct.z) - min(min(at.z, bt.z), ct.z);
+        const T spread = farthest() - nearest();
         const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
-        return width * abs(inv_det) * (spread * T(speed)) > T(limit);
+        return width() * abs(inv_det) * (spread * T(speed)) > T(limit);
     }
 
 private:
+    [[gnu::always_inline]] T farthest() const { return max(max(at.z, bt.z), ct.z); }
+    [[gnu::always_inline]] T nearest() const { return min(min(at.z, bt.z), ct.z); }
+    /// Of the largest |x| and the largest |y| the sum.
+    [[gnu::always_inline]] T width() const {
+        return max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
+    }
     template <typename S> [[gnu::always_inline]] static Vec3T<T> shear(const Shear<S>& ray, const Vec3T<T>& d) {
         return Vec3T<T>(d.x - T(ray.sx) * d.z, d.y - T(ray.sy) * d.z, T(ray.sz) * d.z);
     }
@@ -128,10 +128,15 @@ private:
 
 /// The distance along the ray to the plane of a, b and c in double, from the unrounded differences: its sign is right
 /// even for an origin that is one float away from the plane of a triangle a million times as wide.
+template <typename T>
+[[gnu::always_inline]] inline T plane_distance(const Vec3T<T>& origin, const Vec3T<T>& direction, const Vec3T<T>& a,
+                                               const Vec3T<T>& b, const Vec3T<T>& c) {
+    const Vec3T<T> n = cross(b - a, c - a);
+    return dot(n, a - origin) / dot(n, direction);
+}
 inline float plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
-    const Vec3d pa(a);
-    const Vec3d n = cross(Vec3d(b) - pa, Vec3d(c) - pa);
-    return static_cast<float>(dot(n, pa - Vec3d(ray.origin)) / dot(n, Vec3d(ray.direction)));
+    return static_cast<float>(
+        plane_distance(Vec3d(ray.origin), Vec3d(ray.direction), Vec3d(a), Vec3d(b), Vec3d(c)));
 }
 
 /// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides

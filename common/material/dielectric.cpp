@@ -28,4 +28,12 @@ DielectricBsdf Dielectric::at(const TextureSet& textures, const SurfacePoint& po
     return {ior, evaluate_reflectance(textures, tint, point)};
 }
 
+ThinDielectricBsdf Dielectric::thin_at(const TextureSet& textures, const SurfacePoint& point) const {
+    return {ior, evaluate_reflectance(textures, tint, point)};
+}
+
+RoughDielectricBsdf Dielectric::rough_at(const TextureSet& textures, const SurfacePoint& point) const {
+    return {ior, evaluate_reflectance(textures, tint, point), sqr(clamp(evaluate(textures, roughness, point), 0.0f, 1.0f))};
+}
+
 } // namespace duet

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "common/material/bsdf.h"
+#include "common/material/rough_dielectric.h"
+#include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
 
 namespace duet {
@@ -20,8 +22,18 @@ struct DielectricBsdf {
 struct Dielectric {
     float ior = 1.5f; ///< inside over outside, in [1, 4]
     RgbSlot tint{Rgb(1.0f)};
+    ScalarSlot roughness{0};     ///< perceptual; GGX alpha = roughness²; below kSmoothAlpha smooth
+    bool thin = false;           ///< a sheet of its own: ThinDielectricBsdf, always smooth
+    Rgb absorption{0.0f};        ///< inside, of the part of the light that is left: a metre (Beer and Lambert)
+    int priority = 0;            ///< where insides overlap the one of the highest fills the place; 0: only by itself
 
+    static constexpr float kSmoothAlpha = 1e-4f;
+
+    bool smooth() const { return roughness.constant() && sqr(roughness.value) < kSmoothAlpha; }
+    bool has_inside() const { return !thin && (!is_black(absorption) || priority > 0); }
     DielectricBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    ThinDielectricBsdf thin_at(const TextureSet& textures, const SurfacePoint& point) const;
+    RoughDielectricBsdf rough_at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/material/bsdf.h"
+#include "common/material/rough_diffuse.h"
 #include "common/sampling/warp.h"
 #include "common/texture/texture.h"
 
@@ -28,8 +29,12 @@ struct DiffuseBsdf {
 
 struct Diffuse {
     RgbSlot albedo{Rgb(0.8f)}; ///< each channel in [0, 1]
+    ScalarSlot roughness{0};   ///< in [0, 1]; above 0: RoughDiffuseBsdf's
+
+    bool rough() const { return !roughness.constant() || roughness.value > 0; }
 
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    RoughDiffuseBsdf rough_at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 
 } // namespace duet

@@ -26,6 +26,20 @@ template <typename T> T fresnel_dielectric(T cos_i, T eta) {
     return select(cos2_t <= T(0), select(eta == T(1), T(0), T(1)), min(reflectance, T(1)));
 }
 
+/// Reflectance of unpolarised light at a conductor with the complex index n + ik (relative to the medium before it), in
+/// [0, 1]; cos_i in [0, 1] (Born and Wolf 1999, §14.2; |cos θₜ|² and its real part as in Wolff and Kurlander 1990).
+template <typename T> T fresnel_conductor(T cos_i, T n, T k) {
+    const T cos2 = cos_i * cos_i, sin2 = T(1) - cos2;
+    const T real = (n - k) * (n + k) - sin2, twice = T(2) * n * k; // of (n + ik)² − sin²θ = (a + ib)²
+    const T size = sqrt(real * real + twice * twice);              // a² + b²
+    const T a = safe_sqrt(T(0.5f) * (size + real));
+    const T sum = size + cos2, cross = T(2) * a * cos_i;
+    const T perpendicular = (sum - cross) / (sum + cross);
+    const T sum_p = cos2 * size + sin2 * sin2, cross_p = cross * sin2;
+    const T parallel = perpendicular * ((sum_p - cross_p) / (sum_p + cross_p));
+    return min(T(0.5f) * (perpendicular + parallel), T(1));
+}
+
 /// Schlick's approximation for metals, from the reflectance at normal incidence (Schlick 1994, eq. 24). 1 at grazing
 /// incidence; never below `normal`.
 template <typename T> RgbT<T> fresnel_schlick(RgbT<T> normal, T cos_i) {

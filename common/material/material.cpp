@@ -1,5 +1,7 @@
 #include "common/material/material.h"
 
+#include "common/material/reflectance.h"
+
 #include <utility>
 
 #include <type_traits>
@@ -7,12 +9,37 @@
 namespace duet {
 
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point) {
-    return std::visit([&](const auto& m) -> Bsdf { return m.at(textures, point); }, material);
+    struct {
+        const TextureSet& textures;
+        const SurfacePoint& point;
+        Bsdf operator()(const Diffuse& m) const {
+            if (m.rough()) return m.rough_at(textures, point);
+            return m.at(textures, point);
+        }
+        Bsdf operator()(const Dielectric& m) const {
+            if (m.thin) return m.thin_at(textures, point);
+            if (m.smooth() || m.ior == 1) return m.at(textures, point);
+            const RoughDielectricBsdf rough = m.rough_at(textures, point);
+            if (rough.alpha < Dielectric::kSmoothAlpha) return DielectricBsdf{rough.eta, rough.tint};
+            return rough;
+        }
+        Bsdf operator()(const Metal& m) const { return m.at(textures, point); }
+        Bsdf operator()(const Emissive& m) const { return m.at(textures, point); }
+        Bsdf operator()(const Principled& m) const { return m.at(textures, point); }
+        Bsdf operator()(const Coated& m) const { return m.at(textures, point); }
+    } const make{textures, point};
+    return std::visit(make, material);
 }
 
 bool is_specular(const Bsdf& bsdf) {
     if (const auto* metal = std::get_if<MetalBsdf>(&bsdf)) return metal->smooth();
-    return std::holds_alternative<DielectricBsdf>(bsdf);
+    return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<ThinDielectricBsdf>(bsdf);
+}
+
+float refraction_index(const Bsdf& bsdf) {
+    if (const auto* glass = std::get_if<DielectricBsdf>(&bsdf)) return glass->eta;
+    if (const auto* frosted = std::get_if<RoughDielectricBsdf>(&bsdf)) return frosted->eta;
+    return 1;
 }
 
 Rgb emitted(const Material& material, const TextureSet& textures, const SurfacePoint& point, Vec3 w) {
@@ -31,6 +58,8 @@ const RgbSlot& texture_slot(const Material& material) {
         const RgbSlot& operator()(const Metal& m) const { return m.reflectance; }
         const RgbSlot& operator()(const Dielectric& m) const { return m.tint; }
         const RgbSlot& operator()(const Emissive& m) const { return m.albedo; }
+        const RgbSlot& operator()(const Principled& m) const { return m.base_color; }
+        const RgbSlot& operator()(const Coated& m) const { return m.albedo; }
     } const slot;
     return std::visit(slot, material);
 }
@@ -45,6 +74,8 @@ Rgb base_color(const Material& material, const TextureSet& textures, const Surfa
         Rgb operator()(const Metal& m) const { return m.at(textures, point).reflectance; }
         Rgb operator()(const Dielectric& m) const { return m.at(textures, point).tint; }
         Rgb operator()(const Emissive& m) const { return m.at(textures, point).albedo; }
+        Rgb operator()(const Principled& m) const { return evaluate_reflectance(textures, m.base_color, point); }
+        Rgb operator()(const Coated& m) const { return evaluate_reflectance(textures, m.albedo, point); }
     } const color{textures, point};
     return std::visit(color, material);
 }

@@ -71,13 +71,21 @@ void check_output(const Options& options) {
     }
 }
 
+// How to ask for the first of them.
+std::string first_invalid(const RenderStatistics& s) {
+    if (!s.first_invalid) return {};
+    return message("; the same command with --pixel ", s.first_invalid->x, ',', s.first_invalid->y, ',',
+                   s.first_invalid->sample, " tells of the first");
+}
+
 void print_summary(const RenderContext& context, const Rendering& rendering, const std::string& output) {
     const RenderStatistics& s = rendering.statistics;
     std::cerr << output << ": " << context.width << " x " << context.height << ", " << s.samples_per_pixel
               << (s.samples_per_pixel == 1 ? " sample" : " samples") << " a pixel in "
               << readable_seconds(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
     if (s.invalid_samples > 0)
-        std::cerr << "warning: " << s.invalid_samples << " samples were NaN, infinite or negative, and left out\n";
+        std::cerr << "warning: " << s.invalid_samples << " samples were NaN, infinite or negative, and left out"
+                  << first_invalid(s) << '\n';
 }
 
 int render_all(const RenderProgram& program, const Options& options) {

@@ -22,6 +22,9 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
         context.load_seconds + context.prepare_seconds + context.render_seconds + context.write_seconds;
     nlohmann::json relmse; // null where unknown
     if (statistics.estimated_relmse >= 0) relmse = statistics.estimated_relmse;
+    nlohmann::json first_invalid; // null where there is none
+    if (const auto& first = statistics.first_invalid)
+        first_invalid = {{"x", first->x}, {"y", first->y}, {"sample", first->sample}};
     nlohmann::json bvh; // null where there is none
     if (const HierarchyStatistics& h = statistics.bvh; !h.quality.empty())
         bvh = {{"quality", h.quality}, {"nodes", h.nodes}, {"references", h.references}};
@@ -51,6 +54,7 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
         {"bvh", bvh},
         {"estimated_relmse", relmse},
         {"invalid_samples", statistics.invalid_samples},
+        {"first_invalid", first_invalid},
         {"approximations", statistics.approximations},
         {"skipped", skipped},
         {"interrupted", statistics.interrupted},

@@ -20,7 +20,7 @@ struct RenderContext {
 
 /// Keys as in the README: program, version, scene, width, height, threads, samples_per_pixel, passes, seed, seconds
 /// (load, prepare, render, write, total), stages, rays, triangles, memory_bytes, estimated_relmse (null where unknown),
-/// invalid_samples, approximations, skipped, interrupted.
+/// invalid_samples, first_invalid (x, y, sample, or null), approximations, skipped, interrupted.
 nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics);
 
 /// Throws Error where write_json could not write, for want of a folder: called before a long run. "" and "-" can be.

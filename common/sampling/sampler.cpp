@@ -55,7 +55,7 @@ Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
 }
 
 /// Pairs of dimensions from `first` on, a number a lane.
-std::array<float, Sampler::kBlock> sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
+Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
     using Batch = xsimd::make_sized_batch_t<std::uint32_t, kSimdLanes>;
     alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6};
     alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
@@ -70,6 +70,33 @@ std::array<float, Sampler::kBlock> sobol_block(std::uint32_t reversed_index, std
     std::array<float, Sampler::kBlock> numbers;
     for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
     return numbers;
+}
+
+/// The same of two samples of two pixels.
+std::pair<Sampler::Block, Sampler::Block> sobol_blocks(std::array<std::uint32_t, 2> reversed_index,
+                                                       std::array<std::uint64_t, 2> pixel, std::uint32_t first) {
+#if XSIMD_WITH_AVX512F
+    constexpr std::size_t kLanes = 2 * Sampler::kBlock;
+    using Batch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
+    const auto both = [](std::uint32_t a, std::uint32_t b) { return whole_halves<kLanes>(a, b); };
+    alignas(Batch) constexpr std::array<std::uint32_t, kLanes> kPairs{0, 0, 2, 2, 4, 4, 6, 6, 0, 0, 2, 2, 4, 4, 6, 6};
+    alignas(Batch) constexpr std::array<std::uint32_t, kLanes> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1,
+                                                                            0, 1, 0, 1, 0, 1, 0, 1};
+    const Batch dimension = Batch::load_aligned(kPairs.data()) + Batch(first);
+    const Batch coordinate = Batch::load_aligned(kCoordinates.data());
+    const Batch low = both(low_bits(pixel[0]), low_bits(pixel[1])), high = both(high_bits(pixel[0]), high_bits(pixel[1]));
+    const Batch seed = mix_bits_32(mix_bits_32(dimension * Batch(kGoldenStep32) + low) ^ high);
+    const Batch point = sobol_point(both(reversed_index[0], reversed_index[1]), seed);
+    const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
+    alignas(Batch) std::array<std::uint32_t, kLanes> bits;
+    reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(bits.data());
+    std::pair<Sampler::Block, Sampler::Block> numbers;
+    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers.first[i] = unit_float(bits[i]);
+    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers.second[i] = unit_float(bits[Sampler::kBlock + i]);
+    return numbers;
+#else
+    return {sobol_block(reversed_index[0], pixel[0], first), sobol_block(reversed_index[1], pixel[1], first)};
+#endif
 }
 
 /// The lower 16 bits at even places.
@@ -174,7 +201,7 @@ Vec2 Sampler::get_2d() {
     return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
 }
 
-std::array<float, Sampler::kBlock> Sampler::get_block() {
+Sampler::Block Sampler::get_block() {
     std::array<float, kBlock> numbers;
     if (is_sobol()) {
         numbers = sobol_block(reversed_index_, pixel_hash_, dimension_);
@@ -189,6 +216,17 @@ std::array<float, Sampler::kBlock> Sampler::get_block() {
     return numbers;
 }
 
+std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sampler& b) {
+    if (!a.is_sobol()) {
+        const Block first = a.get_block();
+        return {first, b.get_block()};
+    }
+    const auto numbers = sobol_blocks({a.reversed_index_, b.reversed_index_}, {a.pixel_hash_, b.pixel_hash_}, a.dimension_);
+    a.dimension_ += kBlock;
+    b.dimension_ += kBlock;
+    return numbers;
+}
+
 Vec2 Sampler::pixel_numbers() {
     dimension_ = 0;
     return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
@@ -196,7 +234,10 @@ Vec2 Sampler::pixel_numbers() {
 
 CameraNumbers Sampler::camera_numbers() {
     dimension_ = 0;
-    const std::array<float, kBlock> u = get_block();
+    return camera_numbers(get_block());
+}
+
+CameraNumbers Sampler::camera_numbers(const Block& u) const {
     if (kind_ == SamplerKind::kCenter) return {{0.5f, 0.5f}, {0.5f, 0.5f}, 0};
     return {{u[0], u[1]}, {u[2], u[3]}, u[4]};
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 namespace duet {
 
@@ -48,9 +49,14 @@ public:
     Vec2 get_2d();
     /// The next eight dimensions as four pairs: what get_2d would give four times, for little more than one costs.
     static constexpr std::size_t kBlock = 8;
-    std::array<float, kBlock> get_block();
+    using Block = std::array<float, kBlock>;
+    Block get_block();
+    /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
+    /// machine has room for both at once.
+    static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
     /// The first block, or only its first pair, for the camera; of kCenter (½, ½), (½, ½) and 0.
     CameraNumbers camera_numbers();
+    CameraNumbers camera_numbers(const Block& first) const; ///< that block given
     Vec2 pixel_numbers();
 
 private:

@@ -9,17 +9,19 @@
 namespace duet {
 
 /// 1 − x²/(n(n+1))·(1 − x²/((n+2)(n+3))·(…)), for |x| ≤ π/4 as far as T can tell: the Taylor series of cos x for n = 1,
-/// of sin x / x for n = 2.
-template <int n, Arithmetic T> constexpr T trigonometric_series(T x_squared) {
-    if constexpr (n > (std::is_same_v<T, float> ? 8 : 18))
-        return T(1);
+/// of sin x / x for n = 2. T is float, double, or a batch of floats.
+template <int n, typename T> constexpr T trigonometric_series(T x_squared) {
+    using Number = std::conditional_t<std::is_same_v<T, double>, double, float>;
+    if constexpr (n > (std::is_same_v<T, double> ? 18 : 8))
+        return T(Number(1));
     else
-        return T(1) - x_squared * static_cast<T>(1.0 / (n * (n + 1))) * trigonometric_series<n + 2>(x_squared);
+        return T(Number(1)) -
+               x_squared * T(static_cast<Number>(1.0 / (n * (n + 1)))) * trigonometric_series<n + 2>(x_squared);
 }
 
 /// Cosine and sine of an angle within ±π/4, to a few roundings: a fraction of what the library's functions cost, which
 /// serve any angle.
-template <Arithmetic T> constexpr Vec2T<T> unit_circle_near(T angle) {
+template <typename T> constexpr Vec2T<T> unit_circle_near(T angle) {
     const T squared = angle * angle;
     return {trigonometric_series<1>(squared), angle * trigonometric_series<2>(squared)};
 }
@@ -33,14 +35,16 @@ template <Arithmetic T> Vec2T<T> unit_circle(T u) {
 }
 
 /// The unit disk, uniformly (density 1/π): squares around (½, ½) become circles, so strata stay compact. The centre
-/// maps to the centre (Shirley and Chiu 1997, «A Low Distortion Map Between Disk and Square»).
-template <Arithmetic T> Vec2T<T> concentric_disk(Vec2T<T> u) {
-    const T a = T(2) * u.x - T(1), b = T(2) * u.y - T(1);
-    if (a == T(0) && b == T(0)) return {};
-    const bool wide = std::abs(a) > std::abs(b);
-    const T r = wide ? a : b, other = wide ? b : a;
-    const Vec2T<T> p = unit_circle_near(static_cast<T>(kPiDouble / 4) * (other / r)); // about the nearer axis
-    return wide ? Vec2T<T>(r * p.x, r * p.y) : Vec2T<T>(r * p.y, r * p.x);
+/// maps to the centre (Shirley and Chiu 1997, «A Low Distortion Map Between Disk and Square»). T is float or a batch of
+/// floats.
+template <typename T> Vec2T<T> concentric_disk(Vec2T<T> u) {
+    const T zero(0.0f), a = T(2.0f) * u.x - T(1.0f), b = T(2.0f) * u.y - T(1.0f);
+    const auto wide = abs(a) > abs(b);
+    const T r = select(wide, a, b), other = select(wide, b, a);
+    const T slope = select(r == zero, zero, other / r);
+    const Vec2T<T> p = unit_circle_near(T(kPi / 4) * slope); // about the nearer axis
+    const T along = r * p.x, across = r * p.y;
+    return {select(wide, along, across), select(wide, across, along)};
 }
 
 /// Unit directions about +z with density cos θ / π (Malley's method). z > 0 always: the rim of the disk is moved

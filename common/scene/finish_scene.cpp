@@ -129,7 +129,12 @@ void note_material(const Scene& scene, const Material& material, SceneNeeds& nee
     }
     if (const Emissive* lamp = emitter(material); lamp != nullptr && lamp->radiance_texture >= 0)
         needs.lamp_textures = true;
-    if (std::holds_alternative<Dielectric>(material)) needs.specular = needs.transmission = true;
+    if (const auto* glass = std::get_if<Dielectric>(&material)) {
+        needs.transmission = true;
+        needs.specular = needs.specular || glass->thin || glass->smooth() || !glass->roughness.constant();
+        needs.insides = needs.insides || glass->has_inside();
+    }
+    if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material)) needs.layers = needs.glossy = true;
     for_each_texture(material, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
 }
 

@@ -17,13 +17,13 @@ namespace {
 SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
-    SurfacePoint point;
-    if (object.moving) {
+    // Made where it is to be: a copy right after it was put together would wait for its parts.
+    SurfacePoint point = [&] {
+        if (!object.moving)
+            return surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity, detail);
         const ObjectTransform moved = object_transform(object, ray.time);
-        point = surface_point(shape, hit, ray, moved.to_world, moved.to_object, false, detail);
-    } else {
-        point = surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity, detail);
-    }
+        return surface_point(shape, hit, ray, moved.to_world, moved.to_object, false, detail);
+    }();
     point.object = hit.object;
     point.material = material_index(scene, hit.object, hit.primitive);
     return point;

@@ -41,7 +41,9 @@ struct SceneNeeds {
     bool motion = false, lens = false;
     bool environment = false; ///< it is not black
     bool delta_lights = false, surface_lights = false;
-    bool glossy = false;       ///< rough metal
+    bool glossy = false;       ///< rough metal, and layers
+    bool layers = false;       ///< layered materials: principled and coated ones
+    bool insides = false;      ///< glass that absorbs, or has a priority
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;

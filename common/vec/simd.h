@@ -71,6 +71,14 @@ xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float,
     return xsimd::fma(a, b, c);
 }
 
+inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_fmadd_pd(a, b, c);
+#else
+    return xsimd::fma(a, b, c);
+#endif
+}
+
 /// A bit for each lane that holds true, lane 0 the lowest.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
@@ -100,6 +108,16 @@ template <std::size_t N> FloatBatch<N> halves(float low, float high) {
     alignas(sizeof(FloatBatch<N>)) std::array<float, N> lanes;
     for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
     return FloatBatch<N>::load_aligned(lanes.data());
+}
+/// The same of whole numbers.
+template <std::size_t N> xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (N == 16)
+        return _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(low)), 0xFF00, static_cast<int>(high));
+#endif
+    alignas(64) std::array<std::uint32_t, N> lanes;
+    for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
+    return xsimd::make_sized_batch_t<std::uint32_t, N>::load_aligned(lanes.data());
 }
 /// As many floats as fill the lanes once, or half as many twice.
 template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<float, M>& lanes) {

@@ -76,14 +76,14 @@ public:
 private:
     std::string label(const char* what) const { return message(scene_.path.stem().string(), ": ", what); }
 
-    ReferenceSettings reference_settings() const {
-        return {options_.references, options_.reference_spp, options_.choice.depth, options_.choice.threads};
+    ReferenceSettings reference_settings(int spp) const {
+        return {options_.references, spp, options_.choice.depth, options_.choice.threads};
     }
 
-    KeptReference reference(const std::string& estimator) const {
+    KeptReference reference(const std::string& estimator, int spp) const {
         ProgressBar bar(label("reference by ") + estimator, options_.quiet);
         Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
-        return reference_by(estimator, scene_, view_, reference_settings(), control);
+        return reference_by(estimator, scene_, view_, reference_settings(spp), control);
     }
 
     void check_against(KeptReference other, std::vector<std::string> approximations) {
@@ -93,9 +93,9 @@ private:
     }
 
     void find_references() {
-        result_.reference = reference("path");
+        result_.reference = reference("path", options_.reference_spp);
         result_.no_naive = unfit_for_naive(scene_);
-        if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive"), {});
+        if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive", options_.check_spp), {});
         if (!interrupt_.raised() && peer_) check_against(peer_reference(), peer_->notes());
     }
 
@@ -105,7 +105,7 @@ private:
         Control silent{&interrupt_.flag(), {}};
         const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_picture(spp, seed, silent); };
         return reference_by_seeds({"cycles", kCyclesExportVersion, peer_->program(silent)}, scene_, view_,
-                                  reference_settings(), render, control);
+                                  reference_settings(options_.check_spp), render, control);
     }
 
     void measure_all() {
@@ -142,6 +142,7 @@ BenchOptions with_defaults(BenchOptions options) {
     if (options.references.empty()) options.references = default_reference_folder();
     const auto& spps = options.choice.spps;
     if (options.reference_spp == 0) options.reference_spp = 16 * *std::max_element(spps.begin(), spps.end());
+    if (options.check_spp == 0) options.check_spp = options.reference_spp;
     return options;
 }
 

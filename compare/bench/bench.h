@@ -23,6 +23,7 @@ struct BenchOptions {
     std::vector<double> moments; ///< seconds at which errors are compared; empty: none
     MeasureSettings measure;
     int reference_spp = 0; ///< 0: 16 × the largest of choice.spps
+    int check_spp = 0;     ///< of the independent estimators' references, which check it; 0: as many
     std::vector<ExcludedRectangle> excluded;
     double drift = 0.15; ///< what a machine's speed may change by between runs: slower by no more is no finding
     std::string stats;   ///< a file for report.json's figures too, "-": standard output, empty: none

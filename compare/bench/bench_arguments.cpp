@@ -56,6 +56,10 @@ Subcommand add_bench(CLI::App& app) {
         ->add_option("--reference-spp", options.reference_spp,
                      "The references' samples a pixel (default: 16 times the most of --spp)")
         ->check(CLI::Range(2, 1 << 24));
+    bench
+        ->add_option("--check-spp", options.check_spp,
+                     "Samples a pixel of naive's and the peer's references, which check ours (default: as many as it has)")
+        ->check(CLI::Range(2, 1 << 24));
     bench->add_option("--baseline", options.baseline,
                       "report.json of an earlier run: exit with 1 where a row is now slower or less accurate");
     bench

@@ -2,6 +2,7 @@
 
 #include "common/sampling/hash.h"
 #include "common/scene/scene_hash.h"
+#include "compare/report/output.h"
 #include "raytrace/render.h"
 
 #include <algorithm>
@@ -52,7 +53,8 @@ private:
 };
 
 KeptReference found_or_rendered(const EstimatorId& estimator, const Scene& scene, const View& view,
-                                const ReferenceSettings& settings, const std::function<Reference()>& render,
+                                const ReferenceSettings& settings,
+                                const std::function<Reference(const std::filesystem::path& unfinished)>& render,
                                 const Control& control) {
     const ReferenceKey key{hash_scene_files(scene), estimator.name, estimator.version, view.width, view.height,
                            settings.depth,          settings.spp,   estimator.program};
@@ -62,11 +64,16 @@ KeptReference found_or_rendered(const EstimatorId& estimator, const Scene& scene
     if (std::optional<Reference> found = cache.find(name, key)) {
         kept.reference = std::move(*found);
     } else {
-        Reference rendered = render();
+        std::filesystem::path unfinished = kept.file;
+        unfinished.replace_extension(".film.exr");
+        make_folder(settings.folder);
+        Reference rendered = render(unfinished);
         if (control.stopped()) return kept;
         kept.reference = std::move(rendered);
         kept.rendered = true;
         cache.store(name, key, kept.reference);
+        std::error_code none_is_well;
+        std::filesystem::remove(unfinished, none_is_well);
     }
     return kept;
 }
@@ -79,8 +86,9 @@ std::string unfit_for_naive(const Scene& scene) {
 
 KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
                            const ReferenceSettings& settings, Control& control) {
-    const auto render = [&] {
+    const auto render = [&](const std::filesystem::path& unfinished) {
         raytrace::Settings s;
+        s.film = unfinished;
         s.integrator = raytrace::integrator(estimator);
         s.samples_per_pixel = settings.spp;
         s.max_depth = settings.depth;
@@ -96,7 +104,7 @@ KeptReference reference_by(const std::string& estimator, const Scene& scene, con
 KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
                                  const ReferenceSettings& settings,
                                  const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control) {
-    const auto render_all = [&] {
+    const auto render_all = [&](const std::filesystem::path&) {
         MeanOfPictures mean(view.width, view.height);
         const int spp = std::max(2, settings.spp / kReferenceSeeds);
         for (int i = 0; i < kReferenceSeeds && !control.stopped(); ++i) {

@@ -31,7 +31,8 @@ struct KeptReference {
 };
 
 /// By the path tracer's integrator of that name ("path", "naive"), Sobol samples, and a seed of its own. Rendered and
-/// stored where the cache has none. Empty where it was stopped: then nothing is stored.
+/// stored where the cache has none. Empty where it was stopped: then the film is kept beside where the reference will be,
+/// and the next time goes on from there.
 KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
                            const ReferenceSettings& settings, Control& control);
 

@@ -121,16 +121,38 @@ def metal(nodes, m):
     grazing = nodes.math("POWER", nodes.math("SUBTRACT", 1.0, cosine), 5.0)
     color = nodes.mix(grazing, slot(nodes, m["slot"]), WHITE)
     smooth = m["roughness"] ** 2 < 1e-4
-    # Blender squares the roughness, too: alpha is its square.
-    return nodes.add(GLOSSY, 0, {"distribution": SHARP if smooth else "GGX"}, Color=color,
+    # Blender squares the roughness, too: alpha is its square. What a microfacet sends to others comes back with us.
+    return nodes.add(GLOSSY, 0, {"distribution": SHARP if smooth else "MULTI_GGX"}, Color=color,
                      Roughness=0.0 if smooth else m["roughness"])
 
 
 def dielectric(nodes, m):
     # Blender's own glass tints reflections, too.
-    through = nodes.add("ShaderNodeBsdfRefraction", 0, {"distribution": SHARP}, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=0.0)
-    back = nodes.add(GLOSSY, 0, {"distribution": SHARP}, Color=WHITE, Roughness=0.0)
+    rough = m["roughness"]
+    lobe = {"distribution": "GGX" if rough > 0 else SHARP}
+    through = nodes.add("ShaderNodeBsdfRefraction", 0, lobe, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=rough)
+    back = nodes.add(GLOSSY, 0, lobe, Color=WHITE, Roughness=rough)
     return nodes.add("ShaderNodeMixShader", 0, {}, Fac=nodes.add("ShaderNodeFresnel", 0, {}, IOR=m["ior"]), _1=through, _2=back)
+
+
+def absorption(nodes, m):
+    # Blender's coefficient is (1 - color)*density.
+    sigma = m.get("absorption", (0.0, 0.0, 0.0))
+    density = max(sigma)
+    if density == 0.0:
+        return None
+    return nodes.add("ShaderNodeVolumeAbsorption", 0, {}, Color=rgba([1.0 - s / density for s in sigma]), Density=density)
+
+
+def principled(nodes, m):
+    # Blender's specular 0.5 is a reflectance of 0.04 at normal incidence.
+    normal = ((m["ior"] - 1.0) / (m["ior"] + 1.0)) ** 2
+    inputs = {"Base_Color": slot(nodes, m["slot"]), "Metallic": m["metallic"], "Roughness": m["roughness"]}
+    if bpy.app.version < (4, 0, 0):
+        inputs |= {"Specular": normal / 0.08, "Clearcoat": m["clearcoat"], "Clearcoat_Roughness": m["clearcoat_roughness"]}
+    else:
+        inputs |= {"IOR": m["ior"], "Coat_Weight": m["clearcoat"], "Coat_Roughness": m["clearcoat_roughness"]}
+    return nodes.add("ShaderNodeBsdfPrincipled", 0, {"distribution": "MULTI_GGX"}, **inputs)
 
 
 def emissive(nodes, m):
@@ -151,9 +173,13 @@ def diffuse(nodes, m):
 def make_material(m):
     material = bpy.data.materials.new(m["name"])
     nodes = Nodes(material)
-    surface = {"diffuse": diffuse, "metal": metal, "dielectric": dielectric, "emissive": emissive}[m["type"]](nodes, m)
+    surface = {"diffuse": diffuse, "metal": metal, "dielectric": dielectric, "principled": principled,
+               "emissive": emissive}[m["type"]](nodes, m)
     output = nodes.tree.nodes.new("ShaderNodeOutputMaterial")
     nodes.tree.links.new(surface, output.inputs["Surface"])
+    inside = absorption(nodes, m)
+    if inside is not None:
+        nodes.tree.links.new(inside, output.inputs["Volume"])
     return material
 
 

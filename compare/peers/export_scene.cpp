@@ -74,6 +74,22 @@ private:
             {"type", "image"}, {"file", name}, {"scale", {image.scale.x, image.scale.y}}, {"bilinear", image.filter != TextureFilter::kNearest}};
     }
 
+    float constant(const ScalarSlot& slot, const char* what) {
+        if (!slot.constant()) refuse(message("textures of ", what, " are not exported"));
+        return slot.value;
+    }
+
+    void export_glass(const Dielectric& glass, json& result) {
+        if (glass.thin) refuse("thin glass has no counterpart");
+        if (glass.priority > 0) refuse("priorities of dielectrics have no counterpart");
+        result["type"] = "dielectric";
+        result["ior"] = glass.ior;
+        const float roughness = constant(glass.roughness, "roughness");
+        result["roughness"] = glass.smooth() ? 0 : roughness;
+        result["absorption"] = rgb_json(glass.absorption);
+        if (!glass.smooth()) notes_.insert("frosted glass takes Fresnel's term at the shading normal, not at the microfacet's");
+    }
+
     json material(const Material& m) {
         const RgbSlot& slot = texture_slot(m);
         json result = {
@@ -81,13 +97,28 @@ private:
              {{"value", rgb_json(slot.value)}, {"texture", slot.texture < 0 ? json(nullptr) : texture(slot.texture)}}}};
         if (const auto* metal = std::get_if<Metal>(&m)) {
             result["type"] = "metal";
-            if (!metal->roughness.constant()) refuse("textures of roughness are not exported");
-            result["roughness"] = metal->roughness.value;
+            result["roughness"] = constant(metal->roughness, "roughness");
+            if (metal->conductor.exists()) notes_.insert("named conductors have Schlick's Fresnel term");
             if (!metal->at(scene_.textures, SurfacePoint{}).smooth())
                 notes_.insert("rough metal's Fresnel term is taken at the shading normal, not at the microfacet's");
         } else if (const auto* glass = std::get_if<Dielectric>(&m)) {
-            result["type"] = "dielectric";
-            result["ior"] = glass->ior;
+            export_glass(*glass, result);
+        } else if (const auto* principled = std::get_if<Principled>(&m)) {
+            result["type"] = "principled";
+            result["metallic"] = constant(principled->metallic, "metalness");
+            result["roughness"] = constant(principled->roughness, "roughness");
+            result["ior"] = principled->ior;
+            result["clearcoat"] = constant(principled->clearcoat, "clear coats");
+            result["clearcoat_roughness"] = constant(principled->clearcoat_roughness, "roughness");
+            notes_.insert("principled materials are Blender's, whose layers are not quite ours");
+        } else if (const auto* coated = std::get_if<Coated>(&m)) {
+            if (coated->albedo.texture >= 0) refuse("textures under a coat are not exported");
+            result["type"] = "principled";
+            result["slot"]["value"] = rgb_json(coated->at(scene_.textures, SurfacePoint{}).diffuse); // with what the coat throws back
+            result["metallic"] = result["clearcoat"] = result["clearcoat_roughness"] = 0;
+            result["roughness"] = constant(coated->roughness, "roughness");
+            result["ior"] = coated->ior;
+            notes_.insert("coated materials are Blender's principled ones, whose layers are not quite ours");
         } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
             result["type"] = "emissive";
             if (emissive->radiance_texture >= 0) refuse("textures of radiance are not exported");
@@ -95,6 +126,8 @@ private:
             result["two_sided"] = emissive->two_sided;
         } else {
             result["type"] = "diffuse";
+            const auto* diffuse = std::get_if<Diffuse>(&m);
+            if (diffuse != nullptr && diffuse->rough()) refuse("rough diffuse surfaces have no counterpart");
         }
         return result;
     }

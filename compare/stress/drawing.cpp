@@ -84,6 +84,7 @@ void CoverageProbe::draw(GridTriangle t) {
     raster::Batch batch;
     assembler_.assemble(plan_, triangles_, triangles_.runs[0], false, batch);
     for (const raster::DrawTriangle& outline : batch.triangles) tile_.draw(outline, triangles_);
+    for (const raster::Patch& patch : batch.patches) tile_.draw(patch);
     tile_.draw(batch.fragments);
 }
 

@@ -19,7 +19,7 @@ public:
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
         test({ray, p[0], p[1], p[2]}, ray.speed, ends, 0);
-        first_ = ~0u;
+        first_half_ = Lanes(true);
     }
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 4>& p, Batch ends) {
@@ -37,7 +37,7 @@ public:
         test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ray.speed, ends,
              lane_bits(first & second));
         if (candidates_ == 0) return;
-        first_ = lane_bits(first);
+        first_half_ = first;
         const Batch sum = xsimd::min(u_ + v_, Batch(1.0f));
         u_ = half(sum, u_);
         v_ = half(v_, sum);
@@ -50,14 +50,22 @@ public:
     /// Those that are hit where u and v say, but so near to the ray's origin that plane_distance has to say how far:
     /// most rays leave such a polygon. Of the rest intersect_triangle or intersect_quad has to say all.
     unsigned touched() const { return touched_ & candidates_; }
-    /// Whether the lane's quad is hit in the first of its halves.
-    bool first_half(std::size_t lane) const { return (first_ >> lane & 1) != 0; }
+    /// The distances of all touched lanes are known now: these.
+    [[gnu::always_inline]] void decide_touched(Batch distances) {
+        t_ = xsimd::select(touched_lanes_, distances, t_);
+        certain_ |= touched_;
+        touched_ = 0;
+    }
     Batch t() const { return t_; }
     Batch u() const { return u_; }
     Batch v() const { return v_; }
 
-private:
+protected:
     using Lanes = typename Batch::batch_bool_type;
+    /// The lanes whose quads are hit in the first of their halves.
+    Lanes first_half() const { return first_half_; }
+
+private:
 
     static Lanes same_sign(Batch a, Batch b, Batch c) {
         return (xsimd::min(xsimd::min(a, b), c) >= Batch(0.0f)) | (xsimd::max(xsimd::max(a, b), c) <= Batch(0.0f));
@@ -77,16 +85,17 @@ private:
         const auto outside = (t < -error) | (t - error > ends); // and not NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;
-        const unsigned inside = lane_bits((low > zero) | (high < zero)) & ~unsure;
-        const unsigned apart = lane_bits(xsimd::abs(t) > error);
-        certain_ = inside & apart;
-        touched_ = sabotaged(Guard::kPlaneDistance) ? 0 : inside & ~apart;
+        const auto inside = (low > zero) | (high < zero);
+        certain_ = lane_bits(inside & (xsimd::abs(t) > error)) & ~unsure;
+        touched_lanes_ = inside & (xsimd::abs(t) <= error);
+        touched_ = sabotaged(Guard::kPlaneDistance) ? 0 : lane_bits(touched_lanes_) & ~unsure;
         t_ = t;
         u_ = test.e1 * inv_det;
         v_ = test.e2 * inv_det;
     }
 
-    unsigned candidates_, certain_ = 0, touched_ = 0, first_ = 0;
+    unsigned candidates_, certain_ = 0, touched_ = 0;
+    Lanes touched_lanes_, first_half_; // not even begun where there are no candidates
     Batch t_, u_, v_;
 };
 
@@ -96,15 +105,45 @@ public:
     [[gnu::always_inline]] BlockTest(const Shear<float>& ray, const PolygonBlock<kCorners>& block, float end)
         : CandidateTest(ray, vertices(block, std::make_index_sequence<kCorners>()), Batch(end)) {}
 
+    /// Finds how far the touched polygons are, of the same ray and block.
+    [[gnu::always_inline]] void measure_touched(const ShearedRay& ray, const PolygonBlock<kCorners>& block) {
+        Batch distances = plane_distances(ray, block.corner[0], block.corner[1], block.corner[2]);
+        if constexpr (kCorners == 4)
+            distances = xsimd::select(this->first_half(), distances,
+                                      plane_distances(ray, block.corner[0], block.corner[2], block.corner[3]));
+        this->decide_touched(distances);
+    }
+
 private:
     using Batch = FloatBatch<kBlockSize>;
+    using Corner = std::array<BlockLanes<float>, 3>; // of all polygons, x, y, z
+
     struct Vertex {
-        const std::array<BlockLanes<float>, 3>* axes;
+        const Corner* axes;
         Batch operator[](std::size_t axis) const { return Batch::load_aligned((*axes)[axis].data()); }
     };
     template <std::size_t... i>
     static std::array<Vertex, kCorners> vertices(const PolygonBlock<kCorners>& block, std::index_sequence<i...>) {
         return {Vertex{&block.corner[i]}...};
+    }
+
+    [[gnu::always_inline]] static Batch plane_distances(const ShearedRay& ray, const Corner& a, const Corner& b,
+                                                        const Corner& c) {
+        using Double = DoubleBatch;
+        const auto same = [](Vec3 v) {
+            const Vec3d d(v);
+            return Vec3T<Double>(Double(d.x), Double(d.y), Double(d.z));
+        };
+        const Vec3T<Double> origin = same(ray.origin), direction = same(ray.direction);
+        alignas(sizeof(Batch)) BlockLanes<float> distances;
+        for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
+            const auto at = [i](const Corner& p) {
+                return Vec3T<Double>(load_doubles(p[0].data() + i), load_doubles(p[1].data() + i),
+                                     load_doubles(p[2].data() + i));
+            };
+            store_floats(plane_distance(origin, direction, at(a), at(b), at(c)), distances.data() + i);
+        }
+        return Batch::load_aligned(distances.data());
     }
 };
 
@@ -116,16 +155,6 @@ inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const Triangl
 inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
     return intersect_quad(ray, block.corners(lane));
 }
-/// The distance to a touched one.
-inline float plane_distance(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane, bool) {
-    const auto [a, b, c] = block.corners(lane);
-    return plane_distance(ray, a, b, c);
-}
-inline float plane_distance(const ShearedRay& ray, const QuadBlock& block, std::size_t lane, bool first_half) {
-    const auto [a, b, c, d] = block.corners(lane);
-    return first_half ? plane_distance(ray, a, b, c) : plane_distance(ray, a, c, d);
-}
-
 /// The spheres of a block against one ray, all at once: in double, as one by one. (A filter in float before that gains
 /// nothing, with 8 doubles at once or with 4.)
 class SphereBlockTest {

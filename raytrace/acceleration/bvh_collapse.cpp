@@ -136,9 +136,10 @@ private:
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
         const std::size_t count = forests_.children(index, children);
+        // The largest last: find_any visits them backwards.
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
                          [&](std::uint32_t a, std::uint32_t b) {
-                             return tree_.nodes[a].box.half_area() > tree_.nodes[b].box.half_area();
+                             return tree_.nodes[a].box.half_area() < tree_.nodes[b].box.half_area();
                          });
         check_index(bvh_.nodes.size() * (sizeof(BvhNode) / BvhRef::kNodeUnit));
         const auto packed = static_cast<std::uint32_t>(bvh_.nodes.size());

@@ -40,36 +40,23 @@ private:
 
     template <std::size_t kCorners>
     [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
-        const BlockTest<kCorners> test(sheared_.shear, block, best.t);
+        BlockTest<kCorners> test(sheared_.shear, block, best.t);
         if (test.candidates() == 0) return false;
-        if constexpr (kAny) {
-            using Batch = FloatBatch<kBlockSize>;
-            const unsigned within = lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() < Batch(best.t)));
-            for (unsigned lanes = test.certain() & within; lanes != 0; lanes &= lanes - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-                if (name(block.object[lane]) != best.object || block.primitive[lane] != best.primitive) return true;
-            }
-        }
-        const Lanes t(test.t()), u(test.u()), v(test.v());
-        for (unsigned lanes = test.candidates(); lanes != 0; lanes &= lanes - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (test.certain() >> lane & 1) {
-                if (!(t[lane] > sheared_.t_min && t[lane] <= best.t)) continue;
+        if (test.touched() != 0) test.measure_touched(sheared_, block);
+        using Batch = FloatBatch<kBlockSize>;
+        unsigned hits = test.certain() & lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() <= Batch(best.t)));
+        if (hits != 0) {
+            const Lanes t(test.t()), u(test.u()), v(test.v());
+            for (; hits != 0; hits &= hits - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(hits));
                 if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
-            } else if (test.touched() >> lane & 1) {
-                if (touched(block, lane, test.first_half(lane), u[lane], v[lane], best)) return true;
-            } else if (exactly(block, lane, best)) {
-                return true;
             }
         }
+        for (unsigned lanes = test.candidates() & ~test.certain(); lanes != 0; lanes &= lanes - 1)
+            if (exactly(block, static_cast<std::size_t>(std::countr_zero(lanes)), best)) return true;
         return false;
     }
 
-    template <typename Block>
-    [[gnu::noinline]] bool touched(const Block& block, std::size_t lane, bool first_half, float u, float v, Hit& best) {
-        const float t = plane_distance(sheared_, block, lane, first_half);
-        return t > sheared_.t_min && t <= best.t && consider(block, lane, {t, u, v}, best);
-    }
     template <typename Block> [[gnu::noinline]] bool exactly(const Block& block, std::size_t lane, Hit& best) {
         sheared_.t_max = best.t;
         const auto hit = exact_hit(sheared_, block, lane);
@@ -98,7 +85,7 @@ private:
     std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
-    Ray ray_;
+    const Ray& ray_;
     ShearedRay sheared_;
     std::uint32_t object_;
     const Instance& instance_;

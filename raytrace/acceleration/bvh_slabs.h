@@ -35,13 +35,10 @@ public:
         const float relative = relative_error();
         const Four origin = four(ray.origin), direction = four(ray.direction);
         const Four extent = xsimd::max(xsimd::abs(four(bounds.low) - origin), xsimd::abs(four(bounds.high) - origin));
-        const Vec3 size = abs(ray.direction);
-        const Four sign = xsimd::bitwise_and(direction, Four(-0.0f));
-        const Vec3 extents = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin));
-        const Four largest(max_component(extents));
-        const Four error =
-            (extent + extent + largest + xsimd::abs(origin)) * Four(relative) + Four(std::numeric_limits<float>::min());
-        const Four divisor = xsimd::max(xsimd::max(xsimd::abs(direction), Four(kSmallest * max_component(size))),
+        const Four sign = xsimd::bitwise_and(direction, Four(-0.0f)), size = xsimd::abs(direction);
+        const Four error = (extent + extent + greatest(extent) + xsimd::abs(origin)) * Four(relative) +
+                           Four(std::numeric_limits<float>::min());
+        const Four divisor = xsimd::max(xsimd::max(size, greatest(size) * Four(kSmallest)),
                                         least_divisor(extent + xsimd::abs(origin)));
         const Four reciprocal = xsimd::bitwise_or(Four(1.0f) / divisor, sign);
         const Four away = xsimd::bitwise_or(error, sign);
@@ -84,6 +81,12 @@ public:
     }
 
 private:
+    /// The greatest lane, in all of them.
+    static FloatBatch<4> greatest(FloatBatch<4> v) {
+        const FloatBatch<4> twos = xsimd::max(v, FloatBatch<4>(_mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2))));
+        return xsimd::max(twos, FloatBatch<4>(_mm_shuffle_ps(twos, twos, _MM_SHUFFLE(2, 3, 0, 1))));
+    }
+
     static constexpr std::size_t kPlane = sizeof(BvhNode::Lanes);
     std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
     std::array<Batch, 3> scale_, near_offset_, far_offset_;

@@ -142,8 +142,10 @@ bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& e
             const BvhNode& node = node_at(bvh, next);
             unsigned children = slabs.enter(node, t_min, t_max).children;
             if (children == 0) break;
-            next = node.children[static_cast<std::size_t>(std::countr_zero(children))];
-            while ((children &= children - 1) != 0)
+            // The largest child, which is the last, first (Ogaki and Derouet-Jourdan 2016, «An N-ary BVH child node
+            // sorting technique for occlusion test», sort by area likewise).
+            next = node.children[static_cast<std::size_t>(31 - std::countl_zero(children))];
+            for (; (children & (children - 1)) != 0; children &= children - 1)
                 stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];
         }
         if (next.is_leaf() && test_leaf(next, best)) return true;

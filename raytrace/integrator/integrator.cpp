@@ -58,4 +58,11 @@ RadianceFunction radiance_function(Integrator integrator) {
     return path_radiance;
 }
 
+void radiances(Integrator integrator, const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits,
+               std::span<Sampler> samplers, std::span<Rgb> radiances, RayCounts& counts) {
+    const RadianceFunction function = radiance_function(integrator);
+    if (function == path_radiance) return path_radiances(plan, rays, hits, samplers, radiances, counts);
+    for (std::size_t i = 0; i < rays.size(); ++i) radiances[i] = function(plan, rays[i], hits[i], samplers[i], counts);
+}
+
 } // namespace duet::raytrace

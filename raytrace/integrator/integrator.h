@@ -6,6 +6,8 @@
 #include "raytrace/integrator/light_parts.h"
 #include "raytrace/plan.h"
 
+#include <span>
+
 namespace duet::raytrace {
 
 /// Rays sent, for the statistics.
@@ -29,10 +31,13 @@ struct VertexNumbers {
     float light_choice, lobe, roulette;
 };
 /// Those of the vertex after `depth` scatterings.
-inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+inline void go_to_vertex(Sampler& sampler, int depth) {
     sampler.set_dimension(static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1));
-    const std::array<float, Sampler::kBlock> u = sampler.get_block();
-    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
+}
+inline VertexNumbers vertex_numbers(const Sampler::Block& u) { return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]}; }
+inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+    go_to_vertex(sampler, depth);
+    return vertex_numbers(sampler.get_block());
 }
 
 /// An unbiased estimate of the radiance along a camera ray (its direction unit), whose first hit (or none) is given.
@@ -47,10 +52,19 @@ Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, Ray
 Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 
+/// path_radiance of many camera rays, to the same bits: the paths advance side by side, vertex by vertex, so that the
+/// machine works on several at once where each alone would wait for its own numbers. All spans are of one length; rays,
+/// hits and samplers are used up.
+void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+                    std::span<Rgb> radiances, RayCounts&); ///< path.cpp
+
 /// path_radiance of the same numbers, split: the parts add up to it but for rounding.
 LightParts path_parts(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp
 
 /// The function of an integrator. Path, naive and direct are one: they differ in their plans.
 RadianceFunction radiance_function(Integrator integrator);
+/// It, of many rays: as path_radiances has it.
+void radiances(Integrator integrator, const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits,
+               std::span<Sampler> samplers, std::span<Rgb> radiances, RayCounts& counts);
 
 } // namespace duet::raytrace

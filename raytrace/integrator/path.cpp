@@ -1,12 +1,15 @@
 // Unidirectional path tracing with next event estimation: at each vertex a light sample and a BSDF sample, combined by
 // multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples (plan.lights is null)
 // it is the naive path tracer, in which only chance finds the lights.
+#include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace duet::raytrace {
 
@@ -37,7 +40,7 @@ class Split {
 public:
     static constexpr bool kTold = false;
     void start(const Bsdf& first) {
-        diffuse_ = std::holds_alternative<DiffuseBsdf>(first);
+        diffuse_ = is_diffuse(first);
         specular_ = is_specular(first);
     }
     void add(Rgb light, LightSource source, int bounces) { part(source, bounces) += light; }
@@ -69,41 +72,54 @@ private:
     PathLog& log_;
 };
 
-template <typename Sink> class Path {
+// What a path keeps where no dielectric knows of others: nothing.
+struct NoInsides {
+    explicit NoInsides(const RenderPlan&) {}
+    static constexpr float relative_index() { return 0; }
+};
+
+// The numbers of the vertex that a ray has found, if it is one that uses any.
+VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
+    return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
+}
+
+template <typename Sink, bool kInsides> class Path {
 public:
-    Path(const RenderPlan& plan, Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), sampler_(sampler), counts_(counts), sink_(sink), footprint_(plan) {}
+    Path(const RenderPlan& plan, RayCounts& counts, Sink sink = {})
+        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
 
     /// The light along a camera ray, as the sink keeps it.
-    auto trace(Ray ray, Hit hit) {
-        for (int depth = 0;; ++depth) {
-            if (!hit.valid()) {
-                if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
-                add_environment(ray.direction, depth);
-                break;
-            }
-            const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t));
-            if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
-            if (depth == 0) sink_.start(vertex.bsdf);
-            add_emission(vertex, ray.direction, depth);
-            if (depth == plan_.max_depth) {
-                tell_end("it is as long as it may be (--depth)");
-                break;
-            }
-            const VertexNumbers u = vertex_numbers(sampler_, depth);
-            const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
-            if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-            if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) {
-                tell_end("nothing is left to find");
-                break;
-            }
-            if (!scatter(vertex, u, ray)) break;
-            if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) break;
+    auto trace(Sampler& sampler, Ray ray, Hit hit) {
+        for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
-            ++counts_.indirect;
-        }
-        return sink_.result();
+        return result();
     }
+
+    /// What the ray has found after `depth` scatterings: adds the light, and turns the ray into the one that goes on from
+    /// there. False where the path ends.
+    bool advance(Ray& ray, const Hit& found, int depth, const VertexNumbers& u) {
+        Hit reached;
+        if constexpr (kInsides) reached = arrive(ray, found);
+        const Hit& hit = kInsides ? std::as_const(reached) : found;
+        if (!hit.valid()) {
+            if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
+            add_environment(ray.direction, depth);
+            return false;
+        }
+        const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
+        if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
+        if (depth == 0) sink_.start(vertex.bsdf);
+        add_emission(vertex, ray.direction, depth);
+        if (depth == plan_.max_depth) return tell_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
+        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
+        if (!scatter(vertex, u, ray)) return false;
+        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
+        ++counts_.indirect;
+        return true;
+    }
+    auto result() const { return sink_.result(); }
 
 private:
     void add_environment(Vec3 w, int bounces) {
@@ -132,7 +148,8 @@ private:
     void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
         const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
         if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
-        const Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        if constexpr (kInsides) scattered *= left_on_the_way(vertex, *arrival);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return tell_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
@@ -182,9 +199,33 @@ private:
 
     // Entering glass scales the throughput by 1/η², leaving it by η²: no reason to end or to favour a path.
     void note_refraction(const Vertex& vertex) {
-        const auto* glass = std::get_if<DielectricBsdf>(&vertex.bsdf);
-        if (glass == nullptr) return;
-        refraction_ *= vertex.wo.z > 0 ? 1 / sqr(glass->eta) : sqr(glass->eta);
+        const float eta = refraction_index(vertex.bsdf);
+        refraction_ *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
+        if constexpr (kInsides)
+            if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+    }
+
+    // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
+    Hit arrive(Ray& ray, const Hit& found) {
+        int passed = 0;
+        const Hit hit = insides_.arrive(ray, found, throughput_, passed);
+        counts_.indirect += passed;
+        if (passed > 0) departure_.certain = true; // shadow rays end at any boundary
+        return hit;
+    }
+
+    static bool crosses(const Vertex& vertex) {
+        const auto* glass = std::get_if<Dielectric>(&vertex.material);
+        return glass != nullptr && !glass->thin;
+    }
+
+    // Of a light sample's light, what is not absorbed by what the vertex, or its other side, is inside of.
+    Rgb left_on_the_way(const Vertex& vertex, const Arrival& arrival) const {
+        if (same_hemisphere(vertex.wo, vertex.frame.to_local(arrival.wi)) || !crosses(vertex))
+            return insides_.transmittance(arrival.distance);
+        Insides beyond = insides_;
+        beyond.cross(vertex.point.material, vertex.wo.z > 0);
+        return beyond.transmittance(arrival.distance);
     }
 
     // Russian roulette: ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier,
@@ -209,28 +250,80 @@ private:
     }
 
     const RenderPlan& plan_;
-    Sampler& sampler_;
     RayCounts& counts_;
     Sink sink_;
     Rgb throughput_{1.0f};
     float refraction_ = 1; // what the path's refractions have scaled its throughput by
     Departure departure_;
+    std::conditional_t<kInsides, Insides, NoInsides> insides_;
     PathFootprint footprint_;
 };
 
+// numbers_at of each of the paths that are going on, below the greatest depth; two at a time.
+void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const std::vector<std::uint32_t>& going,
+                  int depth, std::vector<VertexNumbers>& numbers) {
+    constexpr std::uint32_t kNone = ~0u;
+    std::uint32_t waiting = kNone;
+    for (const std::uint32_t i : going) {
+        if (!hits[i].valid()) continue;
+        go_to_vertex(samplers[i], depth);
+        if (waiting == kNone) {
+            waiting = i;
+            continue;
+        }
+        const auto [first, second] = Sampler::get_blocks(samplers[waiting], samplers[i]);
+        numbers[waiting] = vertex_numbers(first);
+        numbers[i] = vertex_numbers(second);
+        waiting = kNone;
+    }
+    if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
+}
+
+template <bool kInsides>
+void trace_all(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+               std::span<Rgb> radiances, RayCounts& counts) {
+    std::vector<Path<Sum, kInsides>> paths;
+    std::vector<std::uint32_t> going;
+    std::vector<VertexNumbers> numbers(rays.size());
+    paths.reserve(rays.size());
+    going.reserve(rays.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+        paths.emplace_back(plan, counts);
+        going.push_back(i);
+    }
+    for (int depth = 0; !going.empty(); ++depth) {
+        if (depth < plan.max_depth) draw_numbers(samplers, hits, going, depth, numbers);
+        std::erase_if(going, [&](std::uint32_t i) { return !paths[i].advance(rays[i], hits[i], depth, numbers[i]); });
+        for (const std::uint32_t i : going) hits[i] = plan.prepared.accelerator.closest(rays[i]);
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].result();
+}
+
+template <typename Sink>
+auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
+    if (plan.insides) return Path<Sink, true>(plan, counts, sink).trace(sampler, ray, hit);
+    return Path<Sink, false>(plan, counts, sink).trace(sampler, ray, hit);
+}
+
 } // namespace
 
+void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+                    std::span<Rgb> radiances, RayCounts& counts) {
+    if (plan.insides) return trace_all<true>(plan, rays, hits, samplers, radiances, counts);
+    trace_all<false>(plan, rays, hits, samplers, radiances, counts);
+}
+
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Sum>(plan, sampler, counts).trace(ray, hit);
+    return traced<Sum>(plan, ray, hit, sampler, counts);
 }
 
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
-    return Path<Told>(plan, sampler, counts, Told(log)).trace(ray, hit);
+    return traced(plan, ray, hit, sampler, counts, Told(log));
 }
 
 LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return Path<Split>(plan, sampler, counts).trace(ray, hit);
+    return traced<Split>(plan, ray, hit, sampler, counts);
 }
 
 } // namespace duet::raytrace

@@ -7,7 +7,7 @@ namespace duet::raytrace {
 namespace {
 
 bool is_diffuse(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
-    return std::holds_alternative<DiffuseBsdf>(Vertex(plan, ray, hit).bsdf);
+    return duet::is_diffuse(Vertex(plan, ray, hit).bsdf);
 }
 
 } // namespace

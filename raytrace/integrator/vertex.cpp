@@ -11,8 +11,17 @@ Vec3 towards_viewer(const Frame& frame, Vec3 ng, Vec3 direction) {
     return lifted_above_horizon(frame.to_local(wo), dot(wo, ng) < 0 ? -1.0f : 1.0f);
 }
 
+/// A dielectric in another one: none where the two refract alike.
+Bsdf with_index(const Bsdf& bsdf, float eta) {
+    const auto* rough = std::get_if<RoughDielectricBsdf>(&bsdf);
+    if (rough != nullptr && std::abs(eta - 1) > 1e-3f) return RoughDielectricBsdf{eta, rough->tint, rough->alpha};
+    return DielectricBsdf{eta, rough != nullptr ? rough->tint : std::get<DielectricBsdf>(bsdf).tint};
+}
+
 const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, const SurfacePoint& point,
-                             std::optional<Bsdf>& made) {
+                             float relative_index, std::optional<Bsdf>& made) {
+    if (relative_index != 0)
+        return made.emplace(with_index(bsdf_at(plan.scene.materials[material], plan.scene.textures, point), relative_index));
     if (const std::optional<Bsdf>& constant = (*plan.bsdfs)[material]) return *constant;
     return made.emplace(bsdf_at(plan.scene.materials[material], plan.scene.textures, point));
 }
@@ -30,14 +39,14 @@ SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit)
     : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit))) {}
 
-Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint)
-    : Vertex(plan, ray, hit, footprint, material_index(plan.scene, hit.object, hit.primitive)) {}
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index)
+    : Vertex(plan, ray, hit, footprint, relative_index, material_index(plan.scene, hit.object, hit.primitive)) {}
 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
-               std::uint32_t material_index)
+               float relative_index, std::uint32_t material_index)
     : point(surface_point(plan.scene, ray, hit, footprint, plan.details[material_index])),
       material(plan.scene.materials[material_index]), frame(frame_from_normal(point.ns)),
       wo(towards_viewer(frame, point.ng, ray.direction)),
-      bsdf(made_or_constant(plan, material_index, point, made_)) {}
+      bsdf(made_or_constant(plan, material_index, point, relative_index, made_)) {}
 
 } // namespace duet::raytrace

@@ -10,7 +10,8 @@ class Vertex {
 public:
     /// The vertex at a valid hit of a ray, with the ray's footprint there, or null where the plan needs none. Refers to
     /// the plan.
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint);
+    /// `relative_index`: of a dielectric that stands in another one, Insides'.
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index = 0);
     /// Of a camera ray.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
     Vertex(const Vertex&) = delete; // bsdf may point into it
@@ -35,7 +36,7 @@ public:
     }
     /// Where it gathers light: on the side from which it is seen, if it only reflects.
     LightReceiver receiver() const {
-        if (std::holds_alternative<DielectricBsdf>(bsdf)) return {point.p, Vec3()};
+        if (is_transmissive(bsdf)) return {point.p, Vec3()};
         return {point.p, wo.z < 0 ? -point.ng : point.ng};
     }
     /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
@@ -45,7 +46,7 @@ public:
     }
 
 private:
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index,
            std::uint32_t material_index);
 };
 

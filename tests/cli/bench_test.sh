@@ -37,5 +37,5 @@ one_line_error depth
 
 terminated 2 "$bin/compare" bench models/cornell.json -o "$scratch/interrupted" --size 64x64 --reference-spp 1000000 --quiet
 nothing_in "$scratch/interrupted"
-[ "$(ls "$scratch/cache/duet/references" | wc -l)" -eq 4 ] || fail "SIGTERM left a reference that is not whole"
+[ "$(ls "$scratch/cache/duet/references" | grep -cv '\.film\.exr$')" -eq 4 ] || fail "SIGTERM left a reference that is not whole"
 finish

@@ -1,9 +1,14 @@
 // The scenes of models/: they load, and hold what they promise.
 #include "common/scene/scene.h"
+#include "models/test_ball.h"
+#include "common/system/error.h"
+#include "models/test_ball.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 using namespace duet;
 
@@ -152,6 +157,53 @@ TEST_SUITE("unit") {
         CHECK(strongest > 20 * weakest);
     }
 
+    TEST_CASE("veach.json: lamps of one power and different size, and each plate mirrors all of them to the camera") {
+        const Scene scene = load("veach.json");
+        std::vector<Vec3d> lamps;
+        std::vector<float> powers;
+        for (const Object& object : scene.objects) {
+            if (!object.name.starts_with("lamp")) continue;
+            const Sphere& sphere = std::get<Sphere>(scene.shapes[object.shape]);
+            lamps.push_back(Vec3d(sphere.center));
+            powers.push_back(max_component(std::get<Emissive>(material_of(scene, object)).radiance) *
+                             sqr(sphere.radius));
+        }
+        REQUIRE(lamps.size() == 4);
+        for (const float power : powers) CHECK(power == doctest::Approx(powers[0]).epsilon(0.01));
+        float roughness = 0;
+        for (int i = 1; i <= 4; ++i) {
+            const Object& plate = object_named(scene, message("plate ", i));
+            const auto& metal = std::get<Metal>(material_of(scene, plate));
+            CHECK(metal.roughness.value > roughness); // each rougher than the one before
+            roughness = metal.roughness.value;
+            const Quad& quad = std::get<QuadList>(scene.shapes[plate.shape]).quads.at(0);
+            const Vec3d normal = normalize(cross(Vec3d(quad.u), Vec3d(quad.v)));
+            for (const Vec3d& lamp : lamps) {
+                // The lamp's image behind the plate is seen from the camera through the plate's rectangle.
+                const Vec3d image = lamp - normal * (2 * dot(lamp - Vec3d(quad.corner), normal));
+                const Vec3d way = image - scene.camera.eye;
+                const double t = dot(Vec3d(quad.corner) - scene.camera.eye, normal) / dot(way, normal);
+                const Vec3d at = scene.camera.eye + way * t - Vec3d(quad.corner);
+                const double u = dot(at, Vec3d(quad.u)) / length_squared(Vec3d(quad.u));
+                const double v = dot(at, Vec3d(quad.v)) / length_squared(Vec3d(quad.v));
+                CAPTURE(i);
+                CHECK(t > 0);
+                CHECK(t < 1);
+                CHECK(std::min(u, v) > 0);
+                CHECK(std::max(u, v) < 1);
+            }
+        }
+    }
+
+    TEST_CASE("cornell-35.json is cornell.json but for its field of view") {
+        const Scene box = load("cornell.json"), wide = load("cornell-35.json");
+        CHECK(wide.camera.fov_degrees == 35);
+        CHECK(wide.camera.eye == box.camera.eye);
+        CHECK(wide.objects.size() == box.objects.size());
+        CHECK(wide.bounds.low == box.bounds.low);
+        CHECK(wide.bounds.high == box.bounds.high);
+    }
+
     TEST_CASE("hall.json is seen from within a large mesh, open to the outside") {
         const Scene scene = load("hall.json");
         const Mesh& mesh = std::get<Mesh>(scene.shapes.front());
@@ -217,6 +269,18 @@ TEST_SUITE("unit") {
         CHECK(std::ranges::any_of(scene.objects, [](const Object& o) { return o.materials.size() >= 3; })); // MTL
     }
 
+    TEST_CASE("every test ball's scene loads, and shows a material of its own") {
+        std::size_t count = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(DUET_SOURCE_DIR) / "models/balls")) {
+            CAPTURE(entry.path());
+            const Scene scene = load("balls/" + entry.path().filename().string());
+            CHECK(scene.objects.size() >= 4);
+            CHECK(scene.material_names[scene.objects.front().materials.front()] == "ball");
+            ++count;
+        }
+        CHECK(count == models::ball_scenes().size());
+    }
+
     TEST_CASE("every scene loads, and something is seen in it") {
         std::size_t count = 0;
         for (const auto& entry :
@@ -228,6 +292,6 @@ TEST_SUITE("unit") {
             CHECK(scene.objects.size() >= 2);
             ++count;
         }
-        CHECK(count >= 6);
+        CHECK(count >= 13);
     }
 }

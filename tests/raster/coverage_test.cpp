@@ -208,37 +208,44 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a batch's outlines and fragments are sorted by tile, in their order within each") {
+    TEST_CASE("a batch's outlines, patches and fragments are sorted by tile, in their order within each") {
         Random random(7);
         TileSorter sorter;
         for (int trial = 0; trial < 20; ++trial) {
             constexpr std::size_t kTiles = 50;
             Batch batch;
-            std::vector<TileSorter::Touch> touches;
-            std::array<std::vector<std::uint32_t>, kTiles> wanted, wanted_fragments;
+            std::vector<TileSorter::Touch> touches, patch_touches;
+            std::array<std::vector<std::uint32_t>, kTiles> wanted, wanted_patches, wanted_fragments;
             for (std::uint32_t i = 0; i < 500; ++i) {
                 const auto tile = static_cast<std::uint32_t>(random.integer(0, kTiles - 1) * random.integer(0, 1));
                 touches.push_back({tile, i});
                 wanted[tile].push_back(i);
+                const auto other = static_cast<std::uint32_t>((tile + 7) % kTiles);
+                patch_touches.push_back({other, i});
+                wanted_patches[other].push_back(i);
                 Fragment fragment;
                 fragment.id = i;
                 fragment.tile = static_cast<std::uint16_t>(kTiles - 1 - tile);
                 batch.fragments.push_back(fragment);
                 wanted_fragments[kTiles - 1 - tile].push_back(i);
             }
-            sorter.sort(batch, touches, kTiles);
+            sorter.sort(batch, touches, patch_touches, kTiles);
             const std::vector<Batch> batches{batch};
-            TileLists outlines, fragments;
+            TileLists outlines, patches, fragments;
             outlines.gather(batches, &Batch::triangle_segments, kTiles);
+            patches.gather(batches, &Batch::patch_segments, kTiles);
             fragments.gather(batches, &Batch::fragment_segments, kTiles);
             for (std::size_t tile = 0; tile < kTiles; ++tile) {
-                std::vector<std::uint32_t> found, found_fragments;
+                std::vector<std::uint32_t> found, found_patches, found_fragments;
                 for (const TileLists::Item& item : outlines.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k) found.push_back(batch.order[item.first + k]);
+                for (const TileLists::Item& item : patches.tile(tile))
+                    for (std::uint32_t k = 0; k < item.count; ++k) found_patches.push_back(batch.patch_order[item.first + k]);
                 for (const TileLists::Item& item : fragments.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k)
                         found_fragments.push_back(batch.fragments[item.first + k].id);
                 REQUIRE(found == wanted[tile]);
+                REQUIRE(found_patches == wanted_patches[tile]);
                 REQUIRE(found_fragments == wanted_fragments[tile]);
             }
         }

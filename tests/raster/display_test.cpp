@@ -47,13 +47,15 @@ int largest_difference(Rgba8 a, Rgba8 b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b), std::abs(a.a - b.a)});
 }
 
-std::array<Rgba8, raster::kStrip> encode_all(float value) {
+constexpr std::uint32_t kAll = (1u << raster::kStrip) - 1;
+
+raster::StripCodes encode_all(float value) {
     raster::StripColors colors;
     colors.r.fill(value);
     colors.g.fill(value);
     colors.b.fill(value);
-    std::array<Rgba8, raster::kStrip> codes;
-    raster::encode_strip(colors, codes);
+    raster::StripCodes codes;
+    raster::encode_strip(colors, kAll, {}, codes);
     return codes;
 }
 
@@ -80,11 +82,14 @@ TEST_SUITE("unit") {
                 colors.g[k] = values[values.size() - 1 - i - k];
                 colors.b[k] = values[i + k] * 0.5f;
             }
-            std::array<Rgba8, raster::kStrip> codes;
-            raster::encode_strip(colors, codes);
+            raster::StripCodes codes;
+            const Rgba8 background{1, 2, 3, 4};
+            const auto seen = static_cast<std::uint32_t>(engine()) | static_cast<std::uint32_t>(engine());
+            raster::encode_strip(colors, seen & kAll, background, codes);
             for (std::size_t k = 0; k < raster::kStrip; ++k)
-                wrong += codes[k] != Rgba8{srgb_encode_8bit(colors.r[k]), srgb_encode_8bit(colors.g[k]),
-                                           srgb_encode_8bit(colors.b[k]), 255};
+                wrong += codes[k] != (seen >> k & 1 ? Rgba8{srgb_encode_8bit(colors.r[k]), srgb_encode_8bit(colors.g[k]),
+                                                            srgb_encode_8bit(colors.b[k]), 255}
+                                                    : background);
         }
         CHECK(wrong == 0);
         CHECK(encode_all(0.5f)[7] == Rgba8{188, 188, 188, 255});

@@ -141,6 +141,29 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("white clay, rough metal, plastic and panes in a constant environment vanish, but for what their tables leave") {
+        Diffuse clay{{Rgb(1.0f)}};
+        clay.roughness = 0.8f;
+        Dielectric pane, frosted;
+        pane.thin = true;
+        frosted.roughness = 0.5f;
+        Principled lacquer{{Rgb(1.0f)}, 1, 0.3f};
+        lacquer.clearcoat = 1;
+        for (const Material& white : {Material(clay), Material(Metal{{Rgb(1.0f)}, 0.8f}), Material(Coated{{Rgb(1.0f)}, 0.4f}),
+                                      Material(pane), Material(frosted), Material(lacquer)}) {
+            CAPTURE(white.index());
+            Scene scene;
+            add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), white);
+            scene.environment = ConstantEnvironment{Rgb(0.7f)};
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+            settings.screen_reflections = false;
+            const Rendering rendering = render(scene, {look({1, 2, 3}, {0, 0, 0}), 48, 32}, settings);
+            for (const Rgb c : rendering.radiance) check_rgb(c, Rgb(0.7f), 0.02);
+        }
+    }
+
     TEST_CASE("a mirror shows the sky in the mirror direction, the background shows it along the ray") {
         Scene scene = floor_scene(Metal{{Rgb(1.0f)}, 0});
         scene.environment = SkyEnvironment{{1, 0, 0}, {0, 0, 1}};

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <sstream>
 
 using namespace duet;
@@ -37,6 +38,40 @@ Rgb told_radiance(const std::string& text) {
 } // namespace
 
 TEST_SUITE("unit") {
+
+    TEST_CASE("the first invalid sample is reported, and explained") {
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f)}});
+        const std::uint32_t broken = builder.material(Emissive{Rgb(1.0f)});
+        builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
+        builder.add(Sphere{{0.5f, 0.2f, 0}, 0.2f}, broken); // some samples of its outline's pixels hit it, some do not
+        Scene scene = builder.finish();
+        scene.materials[broken] = Emissive{Rgb(std::numeric_limits<float>::infinity())}; // which finish() would refuse
+        const View view{scene.camera, 24, 40};
+        Settings settings;
+        settings.samples_per_pixel = 5;
+        settings.first_sample = 2;
+        settings.integrator = Integrator::kNaive;
+        const Prepared prepared = prepare(scene, settings);
+        for (const int threads : {1, 2}) {
+            settings.threads = threads;
+            Control control;
+            const RenderStatistics statistics = render(prepared, view, settings, control).statistics;
+            CHECK(statistics.invalid_samples > 0);
+            REQUIRE(statistics.first_invalid);
+            const auto [sample, y, x] = *statistics.first_invalid;
+            CHECK(sample == 2);
+            const auto invalid = [&](int i, int j) {
+                return explain(prepared, view, settings, {i, j, sample}).find("invalid: ") != std::string::npos;
+            };
+            CHECK(invalid(x, y));
+            for (int j = 0; j <= y; ++j)
+                for (int i = 0; i < (j == y ? x : view.width); ++i) CHECK_FALSE(invalid(i, j));
+        }
+        Control control;
+        const Scene sound = lit_room();
+        CHECK_FALSE(render(prepare(sound, settings), view, settings, control).statistics.first_invalid);
+    }
 
     TEST_CASE("the sample that is told is the one that the picture has, to the bit") {
         const Scene scene = lit_room();

@@ -4,6 +4,7 @@
 #include "common/system/error.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace duet {
 
@@ -138,26 +139,87 @@ SurfaceMaps read_maps(const JsonValue& value, const NameIndex& textures) {
     return maps;
 }
 
+constexpr JsonRange kIor{1, 4, false};
+
+float read_ior(const JsonValue& owner, float otherwise) {
+    return static_cast<float>(owner.number_or("ior", otherwise, kIor));
+}
+
+Conductor read_conductor(const JsonValue& owner) {
+    const JsonValue name = owner.at("conductor");
+    if (owner.has("reflectance")) name.fail("expected no reflectance beside it: a conductor has its own");
+    if (const auto found = find_conductor(name.string())) return *found;
+    const std::vector<std::string_view> known(conductor_names().begin(), conductor_names().end());
+    std::string hint = suggestion(name.string(), known);
+    if (hint.empty())
+        for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
+    name.fail(message("unknown conductor ", in_quotes(name.string()), hint));
+}
+
+/// {"color": what is left of white light, "distance": after so many metres}: the coefficients of Beer and Lambert's law.
+Rgb read_absorption(const JsonValue& value) {
+    value.check_keys(scene_keys("absorption"));
+    const Rgb color = value.at("color").rgb();
+    const Rgb left(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f)); // black after any finite distance is none
+    const auto distance = static_cast<float>(value.at("distance").number(kPositive));
+    return Rgb(-std::log(left.r), -std::log(left.g), -std::log(left.b)) / distance;
+}
+
+Dielectric read_dielectric(const JsonValue& value, const NameIndex& textures) {
+    value.check_keys(scene_keys("dielectric"));
+    Dielectric material;
+    material.ior = read_ior(value, material.ior);
+    material.tint = read_slot(value, "tint", material.tint, textures);
+    material.roughness = read_scalar(value, "roughness", material.roughness, textures);
+    material.thin = value.boolean_or("thin", material.thin);
+    if (value.has("absorption")) material.absorption = read_absorption(value.at("absorption"));
+    if (value.has("priority")) material.priority = value.at("priority").integer(0, 100);
+    for (const char* key : {"roughness", "absorption", "priority"})
+        if (material.thin && value.has(key)) value.at(key).fail("a thin dielectric has none: it is smooth, and has no inside");
+    return material;
+}
+
+Principled read_principled(const JsonValue& value, const NameIndex& textures) {
+    value.check_keys(scene_keys("principled"));
+    Principled material;
+    material.base_color = read_slot(value, "base_color", material.base_color, textures);
+    material.metallic = read_scalar(value, "metallic", material.metallic, textures);
+    material.roughness = read_scalar(value, "roughness", material.roughness, textures);
+    material.ior = read_ior(value, material.ior);
+    material.clearcoat = read_scalar(value, "clearcoat", material.clearcoat, textures);
+    material.clearcoat_roughness = read_scalar(value, "clearcoat_roughness", material.clearcoat_roughness, textures);
+    return material;
+}
+
 Material read_material(const JsonValue& value, const NameIndex& textures) {
-    switch (value.at("type").one_of({"diffuse", "metal", "dielectric", "emissive"})) {
+    switch (value.at("type").one_of({"diffuse", "metal", "dielectric", "principled", "coated", "emissive"})) {
     case 0: {
         value.check_keys(scene_keys("diffuse"));
         Diffuse material;
         material.albedo = read_slot(value, "albedo", material.albedo, textures);
+        material.roughness = read_scalar(value, "roughness", material.roughness, textures);
         return material;
     }
     case 1: {
         value.check_keys(scene_keys("metal"));
         Metal material;
-        material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
+        if (value.has("conductor"))
+            material.conductor = read_conductor(value), material.reflectance = {material.conductor.normal};
+        else
+            material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
         material.roughness = read_scalar(value, "roughness", material.roughness, textures);
         return material;
     }
-    case 2: {
-        value.check_keys(scene_keys("dielectric"));
-        Dielectric material;
-        material.ior = static_cast<float>(value.number_or("ior", material.ior, {1, 4, false}));
-        material.tint = read_slot(value, "tint", material.tint, textures);
+    case 2:
+        return read_dielectric(value, textures);
+    case 3:
+        return read_principled(value, textures);
+    case 4: {
+        value.check_keys(scene_keys("coated"));
+        Coated material;
+        material.albedo = read_slot(value, "albedo", material.albedo, textures);
+        material.roughness = read_scalar(value, "roughness", material.roughness, textures);
+        material.ior = read_ior(value, material.ior);
         return material;
     }
     default: {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <random>
+#include <vector>
 
 using namespace duet;
 
@@ -46,6 +47,40 @@ TEST_SUITE("unit") {
             const Ray rounded = model.ray(pixel, lens);
             CHECK(length(Vec3d(rounded.direction) - ray.direction) < 1e-6);
             CHECK(length(Vec3d(rounded.origin) - ray.origin) < 1e-5);
+        }
+    }
+
+    TEST_CASE("many rays at once are those one by one, to the bit, and start where through() stands") {
+        std::mt19937 engine(9);
+        std::uniform_real_distribution<float> u(0, 1);
+        for (int trial = 0; trial < 40; ++trial) {
+            View view =
+                random_view(engine, trial % 4 ? Camera::Projection::kPerspective : Camera::Projection::kOrthographic);
+            if (trial % 3 == 0) view.camera.aperture_radius = 0;
+            const CameraModel model(view);
+            std::vector<CameraModel::Point> points(static_cast<std::size_t>(1 + trial)); // with and without a rest
+            for (CameraModel::Point& point : points) {
+                point.pixel = Vec2d(static_cast<double>(200 * u(engine)), static_cast<double>(100 * u(engine)));
+                point.lens = trial % 5 == 0 ? Vec2(0.5f, 0.5f) : Vec2(u(engine), u(engine));
+                point.time = u(engine);
+            }
+            std::vector<Ray> rays(points.size());
+            model.rays(points, rays);
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const Vec2d lens(points[i].lens);
+                const Ray one = model.ray(points[i].pixel, lens, static_cast<double>(points[i].time));
+                CHECK(rays[i].origin == one.origin);
+                CHECK(rays[i].direction == one.direction);
+                CHECK(rays[i].t_min == one.t_min);
+                CHECK(rays[i].t_max == one.t_max);
+                CHECK(rays[i].time == one.time);
+                const Pinhole pinhole = model.through(lens);
+                // Its direction meets the very point it starts at: an origin that was not rounded first would be
+                // farther off than the rounding of the direction.
+                CHECK(length(Vec3d(one.direction) - pinhole.ray(points[i].pixel).direction) < 1.5 * 0x1p-25);
+                if (view.camera.projection == Camera::Projection::kPerspective)
+                    CHECK(Vec3d(Vec3(pinhole.origin)) == pinhole.origin);
+            }
         }
     }
 

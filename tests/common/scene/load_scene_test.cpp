@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace duet;
 using duet::test::error_of;
 using duet::test::says;
@@ -124,6 +126,42 @@ TEST_SUITE("unit") {
         CHECK_FALSE(scene.needs.meshes);
     }
 
+    TEST_CASE("Materials of every kind arrive") {
+        Parts parts;
+        parts.materials = R"({
+            "a": {"type": "diffuse", "roughness": 0.7},
+            "b": {"type": "metal", "conductor": "copper", "roughness": 0.3},
+            "c": {"type": "dielectric", "roughness": 0.4, "priority": 3, "absorption": {"color": [0.5, 1, 0], "distance": 2}},
+            "d": {"type": "dielectric", "thin": true},
+            "e": {"type": "principled", "base_color": [0.1, 0.2, 0.3], "metallic": 0.25, "roughness": {"texture": "t", "scale": 0.5},
+                  "ior": 1.4, "clearcoat": 0.8, "clearcoat_roughness": 0.1},
+            "m": {"type": "coated", "albedo": 0.3, "roughness": 0.2, "ior": 1.6}})";
+        parts.more = R"(, "textures": {"t": {"type": "checker"}})";
+        const Scene scene = load(parts.text());
+        CHECK(std::get<Diffuse>(scene.materials[0]).roughness.value == 0.7f);
+        const auto& copper = std::get<Metal>(scene.materials[1]);
+        CHECK(copper.conductor.exists());
+        CHECK(copper.reflectance.value == find_conductor("copper")->normal);
+        const auto& liquid = std::get<Dielectric>(scene.materials[2]);
+        CHECK(liquid.roughness.value == 0.4f);
+        CHECK(liquid.priority == 3);
+        CHECK(std::exp(-2 * liquid.absorption.r) == doctest::Approx(0.5));
+        CHECK(liquid.absorption.g == 0);
+        CHECK(std::exp(-2 * liquid.absorption.b) == doctest::Approx(1e-6).epsilon(1e-3));
+        CHECK(std::get<Dielectric>(scene.materials[3]).thin);
+        const auto& paint = std::get<Principled>(scene.materials[4]);
+        CHECK(paint.base_color.value == Rgb(0.1f, 0.2f, 0.3f));
+        CHECK(paint.metallic.value == 0.25f);
+        CHECK(paint.roughness.texture == 0);
+        CHECK(paint.ior == 1.4f);
+        CHECK(paint.clearcoat.value == 0.8f);
+        CHECK(paint.clearcoat_roughness.value == 0.1f);
+        const auto& plastic = std::get<Coated>(scene.materials[5]);
+        CHECK(plastic.albedo.value == Rgb(0.3f));
+        CHECK(plastic.roughness.value == 0.2f);
+        CHECK(plastic.ior == 1.6f);
+    }
+
     TEST_CASE("An orthographic camera") {
         const Scene scene =
             load(with_camera(R"({"projection": "orthographic", "eye": [0, 0, 5], "look_at": [0, 0, 0], "height": 3})")
@@ -186,6 +224,17 @@ TEST_SUITE("unit") {
             {with_materials(R"({"m": {"type": "emissive", "radiance": -1}})"), "$.materials.m.radiance: found -1"},
             {with_materials(R"({"m": {"type": "emissive", "radiance": 1, "two_sided": 1}})"),
              "$.materials.m.two_sided: found 1, expected true or false"},
+            {with_materials(R"({"m": {"type": "metal", "conductor": "golt"}})"),
+             "$.materials.m.conductor: unknown conductor \"golt\"; did you mean \"gold\"?"},
+            {with_materials(R"({"m": {"type": "metal", "conductor": "gold", "reflectance": 1}})"),
+             "$.materials.m.conductor: expected no reflectance beside it"},
+            {with_materials(R"({"m": {"type": "dielectric", "thin": true, "roughness": 0.2}})"),
+             "$.materials.m.roughness: a thin dielectric has none"},
+            {with_materials(R"({"m": {"type": "dielectric", "absorption": {"color": 0.5}}})"),
+             "$.materials.m.absorption: the key \"distance\" is missing"},
+            {with_materials(R"({"m": {"type": "dielectric", "priority": 1.5}})"), "$.materials.m.priority: found 1.5"},
+            {with_materials(R"({"m": {"type": "principled", "metallic": 2}})"), "$.materials.m.metallic: found 2"},
+            {with_materials(R"({"m": {"type": "coated", "ior": 5}})"), "$.materials.m.ior: found 5"},
             {with_materials("[]"), "$.materials: found an empty array, expected an object"},
             {with(R"("textures": {"t": {"type": "image", "file": "gone.png"}})"), "$.textures.t.file: "},
             {with(R"("textures": {"t": {"type": "image", "file": "gone.png"}})"), "gone.png: no such file"},

@@ -123,21 +123,30 @@ TEST_SUITE("unit") {
         CHECK(default_reference_folder() == fs::path("/home/x/.cache/duet/references"));
     }
 
-    TEST_CASE("a stopped render leaves no reference behind") {
+    TEST_CASE("a stopped render leaves no reference behind, and the next goes on from there, to the same bits") {
         const ScratchFolder scratch;
         const Scene scene = load_scene(write_scene(scratch / "scene"));
-        const std::atomic<bool> stop{true};
-        Control control{&stop, {}};
-        const ReferenceSettings settings{scratch / "cache", 4, 2, 1};
-        CHECK_FALSE(reference_by("path", scene, {scene.camera, 8, 8}, settings, control));
-        CHECK_FALSE(fs::exists(scratch / "cache"));
+        const View view{scene.camera, 24, 24};
+        const auto files = [&](const fs::path& folder) {
+            return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+        };
+        std::atomic<bool> stop{false};
+        Control stopped{&stop, [&](double fraction) { stop = stop || fraction > 0.4; }};
+        const ReferenceSettings settings{scratch / "cache", 64, 2, 1}, other{scratch / "other", 64, 2, 1};
+        const KeptReference none = reference_by("path", scene, view, settings, stopped);
+        CHECK_FALSE(none);
+        CHECK_FALSE(fs::exists(none.file));
+        CHECK(files(scratch / "cache") == 1); // the film
         Control free;
-        const KeptReference first = reference_by("path", scene, {scene.camera, 8, 8}, settings, free);
-        const KeptReference second = reference_by("path", scene, {scene.camera, 8, 8}, settings, free);
+        const KeptReference first = reference_by("path", scene, view, settings, free);
+        const KeptReference second = reference_by("path", scene, view, settings, free);
+        const KeptReference at_once = reference_by("path", scene, view, other, free);
         REQUIRE(first);
         CHECK(first.rendered);
         CHECK_FALSE(second.rendered);
+        CHECK(files(scratch / "cache") == 1); // the reference
         CHECK(std::equal(first.reference.mean.begin(), first.reference.mean.end(), second.reference.mean.begin()));
+        CHECK(std::equal(first.reference.mean.begin(), first.reference.mean.end(), at_once.reference.mean.begin()));
     }
 }
 

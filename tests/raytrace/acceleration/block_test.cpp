@@ -104,21 +104,15 @@ struct Counts {
 
 // What the block's test says of a lane, with the help of the exact ones where it asks for that.
 template <std::size_t kCorners>
-std::optional<TriangleHit> said(const BlockTest<kCorners>& test, const PolygonBlock<kCorners>& block,
+std::optional<TriangleHit> said(BlockTest<kCorners> test, const PolygonBlock<kCorners>& block,
                                 const ShearedRay& ray, std::size_t lane, Counts& counts) {
     const auto has = [lane](unsigned lanes) { return (lanes >> lane & 1) != 0; };
     if (!has(test.candidates())) return std::nullopt;
+    ++(has(test.certain()) ? counts.certain : has(test.touched()) ? counts.touched : counts.rest);
+    if (test.touched() != 0) test.measure_touched(ray, block);
+    if (!has(test.certain())) return exact_hit(ray, block, lane);
     const Lanes t(test.t()), u(test.u()), v(test.v());
-    TriangleHit hit{t[lane], u[lane], v[lane]};
-    if (has(test.certain())) {
-        ++counts.certain;
-    } else if (has(test.touched())) {
-        ++counts.touched;
-        hit.t = plane_distance(ray, block, lane, test.first_half(lane));
-    } else {
-        ++counts.rest;
-        return exact_hit(ray, block, lane);
-    }
+    const TriangleHit hit{t[lane], u[lane], v[lane]};
     if (!(hit.t > ray.t_min && hit.t <= ray.t_max)) return std::nullopt;
     return hit;
 }

@@ -1,0 +1,23 @@
+// What reflections by microfacets have in common.
+#pragma once
+
+#include "common/vec/vec.h"
+
+namespace duet {
+
+/// Both sides of an opaque surface are alike: the formulas see them from above.
+inline Vec3 upwards(Vec3 w) { return {w.x, w.y, abs(w.z)}; }
+
+/// The microfacet that reflects wo into wi. Both lie strictly above the surface, so their sum has z > 0.
+struct Microfacet {
+    Vec3 normal;
+    /// wo·h = wi·h = |wo + wi|/2: the dot products differ where rounding left wo and wi of unequal length.
+    float cosine;
+};
+inline Microfacet microfacet(Vec3 wo, Vec3 wi) {
+    const Vec3 sum = wo + wi;
+    const float size = length(sum);
+    return {sum / size, 0.5f * size};
+}
+
+} // namespace duet

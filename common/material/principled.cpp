@@ -1,0 +1,34 @@
+#include "common/material/principled.h"
+
+#include "common/material/ggx_albedo.h"
+#include "common/material/reflectance.h"
+
+namespace duet {
+
+namespace {
+
+float normal_reflectance(float ior) { return sqr((ior - 1) / (ior + 1)); }
+
+float unit(const TextureSet& textures, const ScalarSlot& slot, const SurfacePoint& point) {
+    return clamp(evaluate(textures, slot, point), 0.0f, 1.0f);
+}
+
+} // namespace
+
+LayeredBsdf Principled::at(const TextureSet& textures, const SurfacePoint& point) const {
+    return LayeredBsdf({evaluate_reflectance(textures, base_color, point), unit(textures, metallic, point),
+                        normal_reflectance(ior), unit(textures, roughness, point), unit(textures, clearcoat, point),
+                        unit(textures, clearcoat_roughness, point)});
+}
+
+LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) const {
+    const Rgb bare = evaluate_reflectance(textures, albedo, point);
+    const float normal = normal_reflectance(ior);
+    // Of diffuse light from below the boundary reflects 1 − (1 − F̅)/η²: what leaves from below is 1/η² of directions
+    // (Kubelka's relation; Egan and Hilgeman 1973). The sum over all such reflections; white stays white.
+    const float back = 1 - (1 - schlick_average(Rgb(normal)).r) / sqr(ior);
+    const auto deep = [back](float x) { return x * (1 - back) / (1 - x * back); };
+    return LayeredBsdf({{deep(bare.r), deep(bare.g), deep(bare.b)}, 0, normal, unit(textures, roughness, point), 0, 0});
+}
+
+} // namespace duet

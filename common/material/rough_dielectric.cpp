@@ -1,0 +1,96 @@
+#include "common/material/rough_dielectric.h"
+
+#include "common/material/fresnel.h"
+#include "common/material/ggx.h"
+#include "common/material/microfacet.h"
+
+namespace duet {
+
+namespace {
+
+/// Both directions and the boundary as wo sees them: wo above, `relative` the index beyond over that on wo's side.
+struct Seen {
+    Vec3 wo, wi;
+    float relative;
+
+    Seen(Vec3 wo_, Vec3 wi_, float eta) : wo(wo_), wi(wi_), relative(eta) {
+        if (wo.z > 0) return;
+        wo.z = -wo.z;
+        wi.z = -wi.z;
+        relative = 1 / eta;
+    }
+};
+
+/// The microfacet that refracts wo into wi (Walter et al., eq. 16), or nothing where none that faces both ways does.
+struct Refraction {
+    Vec3 normal;
+    float cos_o, cos_i; ///< to wo, positive; to wi, negative
+    float sum;          ///< wo·h + relative·wi·h: not 0
+};
+std::optional<Refraction> refraction(const Seen& s) {
+    Vec3 h = s.wo + s.wi * s.relative;
+    const float size = length(h);
+    if (!(size > 0)) return std::nullopt;
+    h = h / (h.z < 0 ? -size : size);
+    const Refraction r{h, dot(s.wo, h), dot(s.wi, h), dot(s.wo, h) + s.relative * dot(s.wi, h)};
+    if (!(r.cos_o > 0 && r.cos_i < 0)) return std::nullopt;
+    return r;
+}
+
+/// D·G₁-like factors of refraction without Fresnel's: |cos_i| relative²/(sum)² is dω_h/dω_i (eq. 17).
+float jacobian(const Refraction& r, float relative) { return sqr(relative / r.sum) * -r.cos_i; }
+
+} // namespace
+
+Rgb RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, TransportMode mode) const {
+    if (wo.z == 0 || wi.z == 0) return Rgb();
+    const Seen s(wo, wi, eta);
+    if (s.wi.z > 0) {
+        const Microfacet h = microfacet(s.wo, s.wi);
+        return Rgb(fresnel_dielectric(h.cosine, s.relative) * ggx_d(h.normal, alpha) * ggx_visibility(s.wo, s.wi, alpha));
+    }
+    const auto r = refraction(s);
+    if (!r) return Rgb();
+    // (eq. 21); the visibility is G₂/(4 cos cos).
+    const float through = (1 - fresnel_dielectric(r->cos_o, s.relative)) * ggx_d(r->normal, alpha) *
+                          ggx_visibility(s.wo, Vec3(s.wi.x, s.wi.y, -s.wi.z), alpha) * 4 * r->cos_o * jacobian(*r, s.relative);
+    return tint * (mode == TransportMode::kRadiance ? through / sqr(s.relative) : through);
+}
+
+std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const {
+    if (wo.z == 0) return std::nullopt;
+    const Seen s(wo, wo, eta);
+    const Vec3 h = ggx_sample_visible_normal(s.wo, alpha, u);
+    const float cos_o = dot(s.wo, h);
+    if (!(cos_o > 0)) return std::nullopt;
+    const bool through = !(lobe < fresnel_dielectric(cos_o, s.relative));
+    Vec3 wi;
+    if (through)
+        wi = (h * cos_o - s.wo) / s.relative - h * safe_sqrt(cos2_refracted(cos_o, s.relative));
+    else
+        wi = reflect(s.wo, h);
+    wi = normalize(wi);
+    if (!(through ? wi.z < 0 : wi.z > 0)) return std::nullopt; // it would meet a second microfacet
+    if (wo.z < 0) wi.z = -wi.z;
+    // Density and weight are those of the rounded direction returned.
+    const float density = pdf(wo, wi, mode);
+    if (!(density > 0)) return std::nullopt;
+    const Rgb weight = eval(wo, wi, mode) * (abs_cos_theta(wi) / density);
+    return BsdfSample{wi, weight, density, false, through};
+}
+
+float RoughDielectricBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
+    if (wo.z == 0 || wi.z == 0) return 0;
+    const Seen s(wo, wi, eta);
+    if (s.wi.z > 0) {
+        const Microfacet h = microfacet(s.wo, s.wi);
+        return fresnel_dielectric(h.cosine, s.relative) * ggx_reflection_pdf(s.wo, h.normal, alpha);
+    }
+    const auto r = refraction(s);
+    if (!r) return 0;
+    // D_visible(h) = G₁ D cos_o / cos θₒ, four times the reflection's density times cos_o.
+    return (1 - fresnel_dielectric(r->cos_o, s.relative)) * 4 * r->cos_o * ggx_reflection_pdf(s.wo, r->normal, alpha) *
+           jacobian(*r, s.relative);
+}
+
+} // namespace duet

@@ -1,0 +1,156 @@
+#include "compare/stop/measure_stop.h"
+
+#include "common/system/stopwatch.h"
+#include "compare/bench/measure.h"
+#include "raytrace/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::compare {
+
+namespace {
+
+// The seeds of trials: far from those of references.
+constexpr std::uint64_t kFirstSeed = 1;
+
+double own_relmse(const Reference& reference) {
+    double sum = 0;
+    for (std::size_t i = 0; i < reference.mean.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += static_cast<double>(reference.variance[i][c]) /
+                   (sqr(static_cast<double>(reference.mean[i][c])) + 0.01);
+    return sum / (3.0 * static_cast<double>(reference.mean.size()));
+}
+
+/// Renders of one scene, and their errors.
+class Trials {
+public:
+    Trials(const Scene& scene, const View& view, const Reference& reference, const StopSettings& settings)
+        : view_(view), reference_(reference), own_mse_(reference.mse()), own_relmse_(own_relmse(reference)),
+          all_(view.width, view.height, 1) {
+        base_.threads = settings.threads;
+        base_.samples_per_pixel = 1 << 24;
+        prepared_.emplace(raytrace::prepare(scene, base_));
+    }
+
+    StopTrial to_error(double error, std::uint64_t seed, Control& control) {
+        StopTrial trial;
+        trial.seed = seed;
+        raytrace::Settings adaptive = base_;
+        adaptive.seed = seed;
+        adaptive.error_limit = error;
+        adaptive.adaptive = true;
+        adaptive.aovs.samples = true;
+        const auto [rendering, seconds] = rendered(adaptive, control);
+        trial.seconds = seconds;
+        trial.stated = rendering.statistics.estimated_relmse;
+        for (const std::uint32_t n : rendering.samples) trial.samples += n;
+        trial.samples /= static_cast<double>(rendering.samples.size());
+        set_errors(rendering.radiance, trial.relmse, trial.mse);
+        if (control.stopped()) return trial;
+
+        raytrace::Settings even = base_;
+        even.seed = seed;
+        even.samples_per_pixel = std::max(1, static_cast<int>(std::lround(trial.samples)));
+        const auto [plain, plain_seconds] = rendered(even, control);
+        trial.even_seconds = plain_seconds;
+        set_errors(plain.radiance, trial.even_relmse, trial.even_mse);
+        return trial;
+    }
+
+    TimeTrial to_time(double time, std::uint64_t seed, Control& control) {
+        raytrace::Settings limited = base_;
+        limited.seed = seed;
+        limited.time_limit = time;
+        limited.adaptive = true;
+        const auto [rendering, seconds] = rendered(limited, control);
+        return {seconds, seconds / std::max(1, rendering.statistics.passes)};
+    }
+
+private:
+    std::pair<Rendering, double> rendered(const raytrace::Settings& settings, Control& control) {
+        const Stopwatch watch;
+        Control silent{control.stop, {}};
+        Rendering rendering = raytrace::render(*prepared_, view_, settings, silent);
+        return {std::move(rendering), watch.seconds()};
+    }
+    void set_errors(const ImageRgb& picture, double& relmse, double& mse) const {
+        const PictureError error = picture_error(picture, reference_.mean, all_);
+        relmse = error.relmse - own_relmse_;
+        mse = error.mse - own_mse_;
+    }
+
+    const View& view_;
+    const Reference& reference_;
+    double own_mse_, own_relmse_;
+    Image<std::uint8_t> all_;
+    raytrace::Settings base_;
+    std::optional<raytrace::Prepared> prepared_;
+};
+
+template <typename Figure> double mean(const std::vector<StopTrial>& trials, Figure figure) {
+    double sum = 0;
+    for (const StopTrial& trial : trials) sum += figure(trial);
+    return trials.empty() ? 0 : sum / static_cast<double>(trials.size());
+}
+
+} // namespace
+
+double StopResult::median_error() const {
+    std::vector<double> errors;
+    for (const StopTrial& trial : trials) errors.push_back(trial.relmse);
+    std::sort(errors.begin(), errors.end());
+    const std::size_t n = errors.size();
+    return n == 0 ? 0 : (errors[(n - 1) / 2] + errors[n / 2]) / 2;
+}
+
+double StopResult::mean_samples() const {
+    return mean(trials, [](const StopTrial& t) { return t.samples; });
+}
+
+bool StopResult::at_once() const {
+    const auto least = std::count_if(trials.begin(), trials.end(),
+                                     [](const StopTrial& t) { return t.samples <= raytrace::kMinForError; });
+    return 2 * static_cast<std::size_t>(least) >= trials.size();
+}
+
+double StopResult::to_even_relmse() const {
+    return mean(trials, [](const StopTrial& t) { return t.relmse; }) *
+           mean(trials, [](const StopTrial& t) { return t.seconds; }) /
+           (mean(trials, [](const StopTrial& t) { return t.even_relmse; }) *
+            mean(trials, [](const StopTrial& t) { return t.even_seconds; }));
+}
+
+double StopResult::to_even_mse() const {
+    return mean(trials, [](const StopTrial& t) { return t.mse; }) *
+           mean(trials, [](const StopTrial& t) { return t.seconds; }) /
+           (mean(trials, [](const StopTrial& t) { return t.even_mse; }) *
+            mean(trials, [](const StopTrial& t) { return t.even_seconds; }));
+}
+
+bool has_caustics(const Scene& scene) { return scene.needs.specular && !scene.lights.empty(); }
+
+std::optional<StopResult> measure_stop(const Scene& scene, const View& view, const Reference& reference,
+                                       const StopSettings& settings, Control& control) {
+    StopResult result;
+    result.caustics = has_caustics(scene);
+    Trials trials(scene, view, reference, settings);
+    const int all = settings.seeds * (settings.time > 0 ? 2 : 1);
+    int done = 0;
+    const auto next = [&] {
+        control.report(static_cast<double>(++done) / all);
+        return !control.stopped();
+    };
+    for (int i = 0; i < settings.seeds; ++i) {
+        const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(i);
+        result.trials.push_back(trials.to_error(settings.error, seed, control));
+        if (!next()) return std::nullopt;
+        if (settings.time <= 0) continue;
+        result.times.push_back(trials.to_time(settings.time, seed, control));
+        if (!next()) return std::nullopt;
+    }
+    return result;
+}
+
+} // namespace duet::compare

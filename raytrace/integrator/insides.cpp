@@ -1,0 +1,68 @@
+#include "raytrace/integrator/insides.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raytrace {
+
+const Dielectric& Insides::glass(std::uint32_t material) const {
+    return std::get<Dielectric>(plan_->scene.materials[material]);
+}
+
+const Dielectric* Insides::filling(std::int64_t without) const {
+    const Dielectric* found = nullptr;
+    for (std::size_t i = count_; i-- > 0;) { // of equal ones the last entered
+        if (static_cast<std::int64_t>(materials_[i]) == without) {
+            without = -1;
+            continue;
+        }
+        const Dielectric& candidate = glass(materials_[i]);
+        if (found == nullptr || candidate.priority > found->priority) found = &candidate;
+    }
+    return found;
+}
+
+void Insides::cross(std::uint32_t material, bool inwards) {
+    if (inwards) {
+        if (count_ < materials_.size()) materials_[count_++] = material;
+        return;
+    }
+    const auto end = materials_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto last = std::find(std::make_reverse_iterator(end), materials_.rend(), material);
+    if (last == materials_.rend()) return; // it started inside
+    std::copy(last.base(), end, last.base() - 1);
+    --count_;
+}
+
+Rgb Insides::transmittance(float distance) const {
+    const Dielectric* medium = filling();
+    if (medium == nullptr || is_black(medium->absorption)) return Rgb(1.0f);
+    const auto left = [distance](float absorption) { return absorption > 0 ? std::exp(-absorption * distance) : 1.0f; };
+    return {left(medium->absorption.r), left(medium->absorption.g), left(medium->absorption.b)};
+}
+
+Hit Insides::arrive(Ray& ray, Hit hit, Rgb& throughput, int& passed) {
+    const Scene& scene = plan_->scene;
+    for (passed = 0;; ++passed) {
+        relative_ = 0;
+        if (count_ > 0) throughput *= transmittance(hit.valid() ? hit.t : std::numeric_limits<float>::infinity());
+        if (!hit.valid()) return hit;
+        const std::uint32_t material = material_index(scene, hit.object, hit.primitive);
+        const auto* boundary = std::get_if<Dielectric>(&scene.materials[material]);
+        if (boundary == nullptr || boundary->thin || boundary->priority == 0) return hit;
+        const SurfacePoint point = surface_point(scene, ray, hit, nullptr, plan_->details[material]);
+        const bool inwards = dot(point.ng, ray.direction) < 0;
+        const Dielectric* around = filling(inwards ? -1 : static_cast<std::int64_t>(material));
+        if (around == nullptr || around->priority == 0) return hit;
+        if (around->priority <= boundary->priority) {
+            relative_ = boundary->ior / around->ior;
+            return hit;
+        }
+        cross(material, inwards);
+        ray.origin = offset_origin(point, ray.direction);
+        ray.t_min = 0;
+        hit = plan_->prepared.accelerator.closest(ray);
+    }
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,145 @@
+// Dielectrics that absorb, and that stand in each other.
+#include "raytrace/integrator/insides.h"
+
+#include "tests/raytrace/estimates.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+Dielectric glass(float ior, int priority, Rgb absorption = Rgb(0.0f)) {
+    Dielectric material{ior, {Rgb(1.0f)}};
+    material.priority = priority;
+    material.absorption = absorption;
+    return material;
+}
+
+/// Two balls about one point, of radius 1 and ½.
+struct Balls {
+    Scene scene;
+    std::uint32_t outer, inner; // materials
+
+    Balls(const Dielectric& outside, const Dielectric& inside) {
+        SceneBuilder builder;
+        outer = builder.material(outside);
+        inner = builder.material(inside);
+        builder.add(Sphere{{0, 0, 0}, 1}, outer);
+        builder.add(Sphere{{0, 0, 0}, 0.5f}, inner);
+        builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        builder.scene.camera.eye = {0, 0, 4};
+        scene = builder.finish();
+    }
+};
+
+/// What a ray straight through the middle arrives at after it has gone through some boundaries.
+class Walk {
+public:
+    explicit Walk(const Scene& scene)
+        : prepared_(prepare(scene, settings_)), plan_(prepared_.data(), {scene.camera, 8, 8}, settings_), insides_(plan_),
+          ray_{{0, 0, 4}, {0, 0, -1}} {
+        hit_ = trace(prepared_, ray_);
+    }
+    /// The z of the next boundary that is there; `relative`: its index.
+    float arrive() {
+        hit_ = insides_.arrive(ray_, hit_, throughput, passed);
+        relative = insides_.relative_index();
+        return hit_.valid() ? ray_.at(hit_.t).z : -1e9f;
+    }
+    void cross(std::uint32_t material, bool inwards) {
+        insides_.cross(material, inwards);
+        ray_ = Ray{ray_.at(hit_.t + 1e-4f), ray_.direction};
+        hit_ = trace(prepared_, ray_);
+    }
+
+    Rgb throughput{1.0f};
+    float relative = 0;
+    int passed = 0;
+
+private:
+    Settings settings_;
+    Prepared prepared_;
+    RenderPlan plan_;
+    Insides insides_;
+    Ray ray_;
+    Hit hit_;
+};
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("nested dielectrics: the higher priority fills the place, boundaries in it are none, indices are relative") {
+        {
+            const Balls balls(glass(1.5f, 1), glass(1.33f, 2)); // a drop in glass
+            Walk walk(balls.scene);
+            CHECK(walk.arrive() == doctest::Approx(1));
+            CHECK(walk.relative == 0); // by itself
+            walk.cross(balls.outer, true);
+            CHECK(walk.arrive() == doctest::Approx(0.5));
+            CHECK(walk.relative == doctest::Approx(1.33 / 1.5));
+            walk.cross(balls.inner, true);
+            CHECK(walk.arrive() == doctest::Approx(-0.5));
+            CHECK(walk.relative == doctest::Approx(1.33 / 1.5));
+            walk.cross(balls.inner, false);
+            CHECK(walk.arrive() == doctest::Approx(-1));
+            CHECK(walk.relative == 0);
+            CHECK(walk.passed == 0);
+        }
+        const Balls balls(glass(1.5f, 2), glass(1.33f, 1)); // the drop is displaced
+        Walk walk(balls.scene);
+        CHECK(walk.arrive() == doctest::Approx(1));
+        walk.cross(balls.outer, true);
+        CHECK(walk.arrive() == doctest::Approx(-1));
+        CHECK(walk.passed == 2);
+        CHECK(walk.relative == 0);
+    }
+
+    TEST_CASE("absorption: by the length of the way through what fills the place, exp(−σ d)") {
+        const Balls balls(glass(1.5f, 1, Rgb(1, 2, 0)), glass(1.33f, 2, Rgb(0, 0.5f, 3)));
+        Walk walk(balls.scene);
+        walk.arrive();
+        walk.cross(balls.outer, true);
+        walk.arrive();
+        CHECK(walk.throughput.g == doctest::Approx(std::exp(-2 * 0.5)).epsilon(1e-3));
+        walk.cross(balls.inner, true);
+        walk.arrive();
+        CHECK(walk.throughput.r == doctest::Approx(std::exp(-0.5)).epsilon(1e-3));
+        CHECK(walk.throughput.g == doctest::Approx(std::exp(-2 * 0.5 - 0.5)).epsilon(1e-3));
+        CHECK(walk.throughput.b == doctest::Approx(std::exp(-3.0)).epsilon(1e-3));
+    }
+
+    TEST_CASE("a ball of the index of air that absorbs: exp(−σ·chord) in every pixel, without variance") {
+        SceneBuilder builder;
+        builder.add(Sphere{{0, 0, 0}, 1}, builder.material(glass(1, 0, Rgb(0.3f, 0.8f, 1.7f))));
+        builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        builder.scene.camera.eye = {0, 0, 4};
+        builder.scene.camera.fov_degrees = 40;
+        const Scene scene = builder.finish();
+        Settings settings;
+        settings.sampler = SamplerKind::kCenter;
+        settings.samples_per_pixel = 1;
+        const Rendering picture = render_scene(scene, 32, settings);
+        const CameraModel camera(View{scene.camera, 32, 32});
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 32; ++x) {
+                const Ray ray = camera.ray({x + 0.5, y + 0.5});
+                const double b = dot(Vec3d(ray.origin), Vec3d(ray.direction)), c = length_squared(Vec3d(ray.origin)) - 1;
+                const double chord = b * b > c ? 2 * std::sqrt(b * b - c) : 0;
+                CHECK(static_cast<double>(picture.radiance(x, y).g) == doctest::Approx(std::exp(-0.8 * chord)).epsilon(1e-3));
+            }
+    }
+
+    TEST_CASE("clear dielectrics that stand in each other, frosted or not, in a constant environment: nothing is lost") {
+        const Balls balls(glass(1.5f, 1), glass(1.33f, 2));
+        Settings settings;
+        settings.samples_per_pixel = 4;
+        settings.max_depth = 100000;
+        settings.russian_roulette = false;
+        for (const Rgb& pixel : render_scene(balls.scene, 32, settings).radiance)
+            CHECK(pixel.g == doctest::Approx(1).epsilon(1e-4));
+    }
+}
