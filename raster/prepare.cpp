@@ -4,7 +4,6 @@
 #include "raster/prefiltered.h"
 #include "raster/shadows.h"
 
-#include "common/material/ggx_albedo.h"
 #include "common/system/error.h"
 
 #include <algorithm>
@@ -56,7 +55,6 @@ void prepare_rough_metal(const Settings& settings, PreparedData& data) {
         data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
         data.memory_bytes += data.prefiltered->memory_bytes();
     }
-    if (needs.glossy) ggx_means(1); // tables, made now rather than in the first picture
 }
 
 } // namespace

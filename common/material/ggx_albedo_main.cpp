@@ -1,0 +1,99 @@
+// Writes the tables of common/material/ggx_albedo.h as a source file, when the project is built: nothing but
+// common/material/ggx.h says what they hold.
+#include "common/material/ggx.h"
+#include "common/material/ggx_albedo_table.h"
+#include "common/sampling/sobol.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+using namespace duet;
+
+namespace {
+
+constexpr int kSamples = 1024;
+
+struct Entry {
+    double lost = 0, share = 0;
+};
+/// By samples of visible normals, whose weight is G₂/G₁.
+Entry integrate(float alpha, float cosine) {
+    const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
+    double energy = 0, offset = 0, lost = 0;
+    for (int i = 0; i < kSamples; ++i) {
+        const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
+                     static_cast<float>(reverse_bits(static_cast<std::uint32_t>(i)) >> 8) * 0x1p-24f + 0x1p-25f);
+        const Vec3 h = ggx_sample_visible_normal(wo, alpha, u), wi = reflect(wo, h);
+        const double weight = wi.z > 0 ? static_cast<double>(ggx_g2_over_g1(wo, wi, alpha)) : 0;
+        const double x = 1 - static_cast<double>(dot(wo, h));
+        energy += weight;
+        lost += 1 - weight;
+        offset += weight * x * x * x * x * x;
+    }
+    return {lost / kSamples, energy > 0 ? offset / energy : 0};
+}
+
+/// 2∫ … μ dμ of the tables themselves, so that what is lost and what is added again are the same.
+void add_means(GgxAlbedoTables& tables, std::size_t row, float alpha) {
+    constexpr int kSteps = 2048;
+    double lost = 0, share = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // closer near the horizon
+        const double step = 4.0 * static_cast<double>(x * cosine) / kSteps;
+        const float gone = tables.lost_at(alpha, cosine);
+        lost += step * static_cast<double>(gone);
+        share += step * static_cast<double>((1 - gone) * tables.share_at(alpha, cosine));
+    }
+    tables.mean_lost[row] = static_cast<float>(lost);
+    tables.mean_share[row] = static_cast<float>(share);
+}
+
+void write(std::ostream& out, const std::array<float, GgxAlbedoTables::kSide>& row) {
+    out << "{";
+    for (const float number : row) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.9ef, ", static_cast<double>(number)); // nine digits bring back every float
+        out << text;
+    }
+    out << "},\n";
+}
+
+void write(std::ostream& out, const GgxAlbedoTables::Table& table) {
+    out << "{{\n";
+    for (const auto& row : table) write(out, row);
+    out << "}},\n";
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    if (count != 2) {
+        std::cerr << "usage: make_ggx_albedo OUT.cpp\n";
+        return 2;
+    }
+    const auto tables = std::make_unique<GgxAlbedoTables>();
+    constexpr std::size_t kSide = GgxAlbedoTables::kSide;
+    for (std::size_t row = 0; row < kSide; ++row) {
+        const float alpha = sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row)));
+        for (std::size_t column = 0; column < kSide; ++column) {
+            const float x = static_cast<float>(column) / (kSide - 1);
+            tables->lost[row][column] = static_cast<float>(integrate(alpha, GgxAlbedoTables::cosine_of_steepness(alpha, x)).lost);
+            tables->share[row][column] = static_cast<float>(integrate(alpha, std::max(x * x, 1e-7f)).share);
+        }
+    }
+    for (std::size_t row = 0; row < kSide; ++row)
+        add_means(*tables, row, sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row))));
+
+    std::ofstream out(arguments[1]);
+    out << "#include \"common/material/ggx_albedo_table.h\"\n\nnamespace duet {\n\nextern const GgxAlbedoTables "
+           "kGgxAlbedoTables;\nconst GgxAlbedoTables kGgxAlbedoTables{\n";
+    write(out, tables->lost);
+    write(out, tables->share);
+    write(out, tables->mean_lost);
+    write(out, tables->mean_share);
+    out << "};\n\n} // namespace duet\n";
+    out.close();
+    return out ? 0 : 1;
+}
