@@ -90,7 +90,8 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light from the environment is unoccluded.");
     if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone)
         result.push_back(message("What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
-                                 occlusion_radius(data, settings), " m away, as if all of it were equally bright."));
+                                 occlusion_radius(data, settings),
+                                 settings.ambient_occlusion == AmbientOcclusion::kSsao ? " m away, as if all of it were equally bright." : " m away."));
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
     const bool rest = needs.transmission || needs.glossy || !needs_screen_radiance(data, settings);
@@ -99,7 +100,8 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
              ? "Metal and glass mirror the environment alone, no surfaces and no lights that have one."
              : "Glass and rougher metal mirror the environment alone, no surfaces and no lights that have one.");
     name(needs_screen_radiance(data, settings),
-         "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections.");
+         "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
+         "things what is seen there is taken to go on.");
     const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
     name(parts.reflection && needs.glossy && environment && !prefiltered,
          "Rough metal mirrors the environment as smooth metal does.");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kSlack = 1e-3f;    ///< of the distance between two points: lower is no step over a plane, but rounding
 constexpr float kClosest = 3e-4f;  ///< of the distance to the eye: closer points' directions are rounding
-constexpr float kFadeFrom = 0.5f;  ///< of the radius: where horizons begin to count less
+constexpr float kFadeFrom = 0.75f; ///< of the radius: where horizons begin to count less
 constexpr float kLeastCosine = 0.02f; ///< between normal and viewer: shading normals may even turn away
 constexpr int kPoints = 16;        ///< of a pattern in the hemisphere
 

@@ -75,8 +75,7 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
     settings.parts = {};
     settings.aovs = {};
     pass.screen = &screen;
-    ImageRgb radiance(view.width, view.height);
-    Image<std::uint8_t> lamps(view.width, view.height, 0);
+    FirstLookPicture picture(view.width, view.height);
     parallel_for(frame.grid.size(), settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
         const PixelRect rect = frame.grid.tile(i);
@@ -84,12 +83,10 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
         cover(geometry, pass, pass.samples.front(), rect, i, depths);
         const HitTile tile(depths, geometry, pass);
         for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x) {
-                radiance(x, y) = shade(frame.data, settings, tile, x, y).radiance;
-                lamps(x, y) = is_lamp(frame.data.scene, tile.hit(x, y));
-            }
+            for (int x = rect.x0; x < rect.x1; ++x)
+                picture.set(frame.data.scene, x, y, tile.hit(x, y), shade(frame.data, settings, tile, x, y).radiance);
     });
-    screen.set_radiance(std::move(radiance), std::move(lamps));
+    screen.set_first_look(std::move(picture).finish());
 }
 
 /// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
@@ -100,18 +97,15 @@ std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, con
     GeometryLoan geometry(*frame.data.geometries);
     process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
     ImageFloat nearness(view.width, view.height);
-    const bool occluded = needs_occlusion(frame.data, frame.settings);
-    ImageRgb normals(occluded ? view.width : 0, occluded ? view.height : 0);
+    ImageRgb normals(view.width, view.height);
     const std::unique_ptr<Program> normal = program(Shading::kNormal);
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (frame.control.stopped()) return;
-        if (occluded)
+        if (!frame.control.stopped())
             keep_nearness_and_colors(frame.data, *geometry, central, *normal, frame.grid.tile(i), i, nearness, normals);
-        else
-            keep_nearness(*geometry, central, frame.grid.tile(i), i, nearness);
     });
     auto screen = std::make_unique<Screen>(central.pinhole, centers.front(), std::move(nearness));
-    if (occluded) add_occlusion(frame.data, frame.settings, normals, *screen);
+    screen->set_normals(normals);
+    add_occlusion(frame.data, frame.settings, *screen);
     if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, *screen);
     return screen;
 }
@@ -171,8 +165,14 @@ void shade_samples(const Frame& frame, const PassView& view, std::size_t index, 
     if (frame.layers != nullptr)
         layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
+    const bool central = view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
+            const Rgb* known = central && !layers ? seen_before(frame.data, frame.settings, tile, x, y) : nullptr;
+            if (known != nullptr) {
+                picture.add(x, y, *known);
+                continue;
+            }
             Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
             if (layers) {
                 if (frame.program != nullptr && tile.hit(x, y).valid())
@@ -194,7 +194,12 @@ void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& ti
     };
     if (frame.program == nullptr || frame.settings.aovs.any()) {
         const HitTile hits(tile, layer, frame.geometry, view);
+        const int samples = static_cast<int>(view.samples.size());
         for_each([&](int x, int y, int count) {
+            if (const Rgb* known = count == samples ? seen_before(frame.data, frame.settings, hits, x, y) : nullptr) {
+                picture.add(x, y, *known, count);
+                return;
+            }
             const Shaded shaded = shade(frame.data, frame.settings, hits, x, y);
             for (int i = 0; i < count && frame.settings.aovs.any(); ++i) picture.add_auxiliary(hits, x, y, shaded);
             if (frame.program == nullptr) picture.add(x, y, shaded.radiance, count);

@@ -39,6 +39,8 @@ AmbientOcclusion ambient_occlusion(std::string_view name);
 /// The parts of Shading::kLit (LightParts in raster/split.h): one that is left out is not computed.
 struct PartSet {
     bool emission = true, direct = true, environment = true, reflection = true;
+
+    bool all() const { return emission && direct && environment && reflection; }
 };
 
 /// What is made of a picture's samples.

@@ -18,6 +18,15 @@ Screen::Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness)
     }
 }
 
+void Screen::set_normals(const ImageRgb& colors) {
+    for (ImageFloat& plane : normals_) plane = ImageFloat(width(), height());
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        const Vec3 n(2 * colors[i].r - 1, 2 * colors[i].g - 1, 2 * colors[i].b - 1);
+        const Vec3 unit = n / max(length(n), 1e-6f);
+        normals_[0][i] = unit.x, normals_[1][i] = unit.y, normals_[2][i] = unit.z;
+    }
+}
+
 std::optional<Vec3> Screen::seen(int x, int y) const {
     if (x < 0 || y < 0 || x >= width() || y >= height()) return std::nullopt;
     const float nearness = nearness_(x, y);

@@ -4,6 +4,7 @@
 #include "common/camera/camera.h"
 #include "common/image/image.h"
 #include "raster/lanes.h"
+#include "raster/radiance_pyramid.h"
 #include "raster/samples.h"
 
 #include <array>
@@ -76,7 +77,8 @@ public:
     const ImageFloat& nearness() const { return nearness_; }
 
     /// Shading normals on the viewer's side, unit, once they are there; any where nothing is seen.
-    void set_normals(std::array<ImageFloat, 3> normals) { normals_ = std::move(normals); }
+    /// Given as colours, as Shading::kNormal shows them.
+    void set_normals(const ImageRgb& colors);
     const std::array<ImageFloat, 3>& normals() const { return normals_; }
     Vec3 normal(int x, int y) const { return {normals_[0](x, y), normals_[1](x, y), normals_[2](x, y)}; }
 
@@ -84,13 +86,15 @@ public:
     void set_occlusion(std::shared_ptr<const OcclusionImage> occlusion) { occlusion_ = std::move(occlusion); }
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
-    /// A picture of what is seen, once it is there; `lamps`: 1 where that is one of Scene::lights.
-    void set_radiance(ImageRgb radiance, Image<std::uint8_t> lamps) {
-        radiance_ = std::move(radiance);
-        lamps_ = std::move(lamps);
-    }
-    bool is_lamp(int x, int y) const { return lamps_(x, y) != 0; }
-    const ImageRgb& radiance() const { return radiance_; }
+    /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
+    /// (first_look_key), or 0 where it would not be the same again; and the same at all sizes, without the scene's lamps
+    /// and with them.
+    struct FirstLook {
+        Image<std::uint32_t> keys;
+        RadiancePyramid radiance, without_lamps;
+    };
+    void set_first_look(FirstLook look) { first_look_ = std::move(look); }
+    const FirstLook& first_look() const { return first_look_; }
 
 private:
     Vec3d eye_;
@@ -101,8 +105,7 @@ private:
     ImageFloat nearness_;
     std::array<ImageFloat, 3> normals_;
     std::shared_ptr<const OcclusionImage> occlusion_;
-    ImageRgb radiance_;
-    Image<std::uint8_t> lamps_;
+    FirstLook first_look_;
 };
 
 } // namespace duet::raster

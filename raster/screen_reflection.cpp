@@ -7,6 +7,9 @@ namespace duet::raster {
 namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
+constexpr float kSameSurface = 0.05f; ///< of the depth: how far neighbouring pixels of one surface may be apart
+constexpr float kFlat = 0.01f;        ///< radians from pixel to pixel: what turns less goes on as its plane does
+constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve
 
 /// The part of a line over which it stays within [0, size), given where it begins and how it goes on.
 float part_within(float at, float way, float size) {
@@ -14,14 +17,24 @@ float part_within(float at, float way, float size) {
     return way < 0 ? at / -way : kInfinity;
 }
 
+/// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
+float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
+    const std::optional<Vec3> seen = screen.seen(x, y);
+    if (!seen) return kInfinity;
+    const Vec3 n = screen.normal(x, y);
+    const float towards = -dot(n, way), height = dot(n, p - *seen);
+    return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
+}
+
 } // namespace
 
-std::optional<ScreenHit> trace_screen(const Screen& screen, Vec3 p, Vec3 n, Vec3 way) {
+std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way) {
     const Vec3 from = screen.project(p);
     if (!(from.z > 0)) return std::nullopt;
+    const auto h = screen.homogeneous_change(way);
+    const float deeper = h[2]; // depth gained a metre
     // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
-    const float closing = from.z - screen.project(p + way * from.z).z; // depth lost over that length
-    const float reach = closing > 0 ? 0.5f * from.z * from.z / closing : 1e3f * from.z;
+    const float reach = deeper < 0 ? 0.5f * from.z / -deeper : 1e3f * from.z;
     const Vec3 to = screen.project(p + way * std::min(reach, 1e3f * from.z));
     const float dx = to.x - from.x, dy = to.y - from.y;
     const float pixels = std::max(std::abs(dx), std::abs(dy));
@@ -34,22 +47,61 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, Vec3 p, Vec3 n, Vec3
     const auto depth_at = [&](float t) {
         return perspective ? 1 / lerp(1 / from.z, 1 / to.z, t) : lerp(from.z, to.z, t);
     };
-    float before = from.z;
+    const float length_of_all = std::min(reach, 1e3f * from.z);
+    const auto distance_at = [&](float t, float depth) { // a ray across the view keeps its depth
+        return std::abs(to.z - from.z) > 1e-3f * from.z ? length_of_all * (depth - from.z) / (to.z - from.z) : length_of_all * t;
+    };
+    float before = from.z, in_front = 0; // the last distance at which it was before what is seen
+    float hidden_from = -1;              // and that at which it went behind it; negative: it is not
+    int last_x = -1, last_y = -1;
     for (int i = 1; i <= steps; ++i) {
         const float t = static_cast<float>(i) / pixels, depth = depth_at(t);
-        const auto x = static_cast<int>(from.x + dx * t), y = static_cast<int>(from.y + dy * t);
-        if (!screen.contains(from.x + dx * t, from.y + dy * t)) break;
+        const float fx = from.x + dx * t, fy = from.y + dy * t;
+        if (!screen.contains(fx, fy)) break;
+        const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
+        last_x = x, last_y = y;
         const float seen_depth = screen.depth(x, y);
         const float far = std::max(before, depth), near = std::min(before, depth);
         const float thickness = std::max(2 * (far - near), kThickness * seen_depth);
         before = depth;
-        if (i < 2 || far < seen_depth || near > seen_depth + thickness) continue;
+        if (i < 2) continue;
+        const float distance = distance_at(t, depth);
+        if (far < seen_depth) {
+            hidden_from = -1, in_front = distance;
+            continue;
+        }
+        if (near > seen_depth + thickness) {
+            if (hidden_from < 0) hidden_from = in_front;
+            const float crossed = meets_plane(screen, p, way, x, y);
+            if (crossed > hidden_from && crossed <= distance && normal_turn(screen, x, y) < kFlat) return ScreenHit{fx, fy, crossed};
+            continue;
+        }
         const std::optional<Vec3> seen = screen.seen(x, y);
         if (!seen) continue;
         const Vec3 step = *seen - p;
-        if (dot(n, step) > kSlack * length(step)) return ScreenHit{x, y};
+        if (dot(n, step) > kSlack * length(step)) return ScreenHit{fx, fy, length(step)};
     }
-    return std::nullopt;
+    if (last_x < 0) last_x = static_cast<int>(from.x), last_y = static_cast<int>(from.y);
+    last_x = std::clamp(last_x, 0, screen.width() - 1), last_y = std::clamp(last_y, 0, screen.height() - 1);
+    if (hidden_from >= 0) return ScreenHit{static_cast<float>(last_x) + 0.5f, static_cast<float>(last_y) + 0.5f, hidden_from};
+    const float beyond = meets_plane(screen, p, way, last_x, last_y);
+    const std::optional<Vec3> edge = screen.seen(last_x, last_y);
+    if (beyond == kInfinity || !scene.contains(p + way * beyond) || !edge || dot(n, *edge - p) <= kSlack * length(*edge - p)) return std::nullopt;
+    return ScreenHit{static_cast<float>(last_x) + 0.5f, static_cast<float>(last_y) + 0.5f, beyond};
+}
+
+float normal_turn(const Screen& screen, int x, int y) {
+    const Vec3 n = screen.normal(x, y);
+    const float depth = screen.depth(x, y);
+    float most = 0;
+    for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
+        const int i = x + dx, k = y + dy;
+        if (i < 0 || k < 0 || i >= screen.width() || k >= screen.height()) continue;
+        if (std::abs(screen.depth(i, k) - depth) > kSameSurface * depth) continue;
+        const float turn = length(screen.normal(i, k) - n);
+        if (turn < kSmallTurn) most = std::max(most, turn);
+    }
+    return most;
 }
 
 } // namespace duet::raster

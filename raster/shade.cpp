@@ -3,12 +3,14 @@
 #include "raster/direct.h"
 #include "raster/ggx_table.h"
 #include "raster/occlusion_image.h"
-#include "raster/point_key.h"
 #include "raster/prefiltered.h"
 #include "raster/screen.h"
 #include "raster/screen_reflection.h"
 #include "raster/shadows.h"
 #include "raster/split.h"
+
+#include "common/sampling/hash.h"
+#include "common/sampling/sobol.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +20,7 @@ namespace {
 
 /// GGX alpha up to which metal mirrors what the picture shows (roughness 0.32): rougher metal would need too many rays.
 constexpr float kRoughestMirror = 0.1f;
-constexpr int kMirrorSamples = 4; ///< of rough metal, where a pixel has few samples of its own
+constexpr int kMirrorRays = 8; ///< of a pixel of rough metal
 
 bool shows_environment(const PreparedData& data, const Settings& settings) {
     return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
@@ -122,32 +124,65 @@ struct DirectLight {
     Direct operator()(const LayeredBsdf&) const { return {}; } // its layers are shaded each by itself
 };
 
-/// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions drawn
-/// from its lobe.
-Rgb mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point,
-             const MetalBsdf& bsdf) {
-    const int count = bsdf.smooth() || settings.samples_per_pixel >= 4 ? 1 : kMirrorSamples;
-    const std::uint64_t key = point_key(point.surface.p, 1);
-    const Vec3 p = screen.relative(point.surface.p);
-    Rgb sum;
-    for (int i = 0; i < count; ++i) {
-        const std::uint64_t random = stream_number(key, static_cast<std::uint64_t>(i));
-        const Vec2 u{(static_cast<float>(i) + unit_float(high_bits(random))) / static_cast<float>(count),
-                     unit_float(low_bits(random))};
-        const auto sample = bsdf.sample(point.wo, 0, u, TransportMode::kRadiance);
-        if (!sample) continue;
-        const Vec3 way = normalize(point.frame.to_world(sample->wi));
-        if (!point.receives(way)) continue;
-        if (const auto hit = trace_screen(screen, p, point.ng, way)) {
-            // What lamps do to rough metal is direct light.
-            if (bsdf.smooth() || !screen.is_lamp(hit->x, hit->y))
-                sum += screen.radiance()(hit->x, hit->y) * sample->weight;
-        } else if (shows_environment(data, settings)) {
-            sum += radiance(data.scene.environment, way) * sample->weight;
-        }
-    }
-    return sum / static_cast<float>(count);
+/// Ray number i of kMirrorRays from a rough metal: a (0,2)-net, of which each aligned part is one.
+Vec2 mirror_ray(int i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    const auto digits = [](std::uint32_t x) { return (static_cast<float>(reverse_bits(x) >> 8) + 0.5f) * 0x1p-24f + 0.5f / kMirrorRays; };
+    return {digits(index), digits(sobol_second(index))};
 }
+
+/// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions of its
+/// lobe: the same few for every point, each as wide as the part of the lobe that it stands for.
+class Mirrored {
+public:
+    Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf)
+        : data_(data), settings_(settings), screen_(screen), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)),
+          bounds_{screen.relative(data.scene.bounds.low), screen.relative(data.scene.bounds.high)} {
+        const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
+        bounds_ = {bounds_.low - slack, bounds_.high + slack};
+        const Vec3 place = screen.project(p_);
+        const auto pixel = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
+        if (place.z > 0)
+            spread_ = 2 * normal_turn(screen, pixel(place.x, screen.width()), pixel(place.y, screen.height()));
+        depth_ = max(place.z, screen.near());
+    }
+
+    Rgb operator()(TapRange taps) const {
+        if (bsdf_.smooth()) return along({0.5f, 0.5f}, 1);
+        const int share = TapRange().count / taps.count, count = kMirrorRays / share, first = taps.first * count / taps.count;
+        Rgb sum;
+        for (int i = first; i < first + count; ++i) sum += along(mirror_ray(i), kMirrorRays);
+        return sum / static_cast<float>(count);
+    }
+
+private:
+    Rgb along(Vec2 u, int rays) const {
+        const auto sample = bsdf_.sample(point_.wo, 0, u, TransportMode::kRadiance);
+        if (!sample) return {};
+        const Vec3 way = normalize(point_.frame.to_world(sample->wi));
+        if (!point_.receives(way)) return {};
+        const bool smooth = bsdf_.smooth();
+        // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
+        const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
+        if (const auto hit = trace_screen(screen_, bounds_, p_, point_.ng, way)) {
+            const float there = max(screen_.homogeneous(p_ + way * hit->distance)[2], screen_.near());
+            const float size = screen_.pixel_size(depth_) + hit->distance * (wide + spread_);
+            // What lamps do to rough metal is direct light.
+            const RadiancePyramid& picture = smooth ? screen_.first_look().radiance : screen_.first_look().without_lamps;
+            return picture.at(hit->x, hit->y, size / screen_.pixel_size(there)) * sample->weight;
+        }
+        return shows_environment(data_, settings_) ? radiance(data_.scene.environment, way) * sample->weight : Rgb();
+    }
+
+    const PreparedData& data_;
+    const Settings& settings_;
+    const Screen& screen_;
+    const ShadingPoint& point_;
+    const MetalBsdf& bsdf_;
+    Vec3 p_;
+    Box3 bounds_;
+    float depth_ = 0, spread_ = 0; ///< radians between a pixel's mirrored ray and the next one's
+};
 
 LightParts lit(const PreparedData& data, const Settings& settings, const PartSet& asked, const ShadingPoint& point,
                const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen, TapRange taps);
@@ -190,8 +225,8 @@ LightParts lit(const PreparedData& data, const Settings& settings, const PartSet
         (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point, screen), bsdf);
     const auto* metal = std::get_if<MetalBsdf>(&bsdf);
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
-        !screen->radiance().empty() && metal->alpha <= kRoughestMirror)
-        parts.reflection = mirrored(data, settings, *screen, point, *metal);
+        !screen->first_look().radiance.empty() && metal->alpha <= kRoughestMirror)
+        parts.reflection = Mirrored(data, settings, *screen, point, *metal)(taps);
     return parts;
 }
 
@@ -213,6 +248,15 @@ Bsdf bsdf_of(const PreparedData& data, const SurfacePoint& surface) {
     return bsdf;
 }
 
+/// Whether a material, somewhere, mirrors what the picture shows.
+bool may_mirror(const Material& material) {
+    const auto mirrors = [](const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; };
+    if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
+    if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
+    const auto* layers = std::get_if<Principled>(&material);
+    return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
+}
+
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
     if (const std::optional<Rgb> everywhere = constant_background(data, settings)) return *everywhere;
     return radiance(data.scene.environment, ray.direction);
@@ -231,35 +275,16 @@ bool needs_screen(const PreparedData& data, const Settings& settings) {
            (settings.output != Output::kNearness && needs_screen_radiance(data, settings));
 }
 
-void add_occlusion(const PreparedData& data, const Settings& settings, const ImageRgb& normals, Screen& screen) {
-    std::array<ImageFloat, 3> planes;
-    for (ImageFloat& plane : planes) plane = ImageFloat(screen.width(), screen.height());
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        const Vec3 n(2 * normals[i].r - 1, 2 * normals[i].g - 1, 2 * normals[i].b - 1);
-        const Vec3 unit = n / max(length(n), 1e-6f);
-        planes[0][i] = unit.x, planes[1][i] = unit.y, planes[2][i] = unit.z;
-    }
-    screen.set_normals(std::move(planes));
-    screen.set_occlusion(std::make_shared<const OcclusionImage>(screen, settings.ambient_occlusion,
-                                                                static_cast<float>(occlusion_radius(data, settings)), settings.threads));
-}
-
-bool is_lamp(const Scene& scene, const Hit& hit) {
-    return hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen) {
+    if (needs_occlusion(data, settings))
+        screen.set_occlusion(std::make_shared<const OcclusionImage>(
+            screen, settings.ambient_occlusion, static_cast<float>(occlusion_radius(data, settings)), settings.threads));
 }
 
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {
     const std::vector<Material>& materials = data.scene.materials;
     return settings.shading == Shading::kLit && settings.screen_reflections && settings.parts.reflection &&
-           std::any_of(materials.begin(), materials.end(), [](const Material& material) {
-               const auto mirrors = [](const ScalarSlot& roughness) {
-                   return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror;
-               };
-               if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
-               if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
-               const auto* layers = std::get_if<Principled>(&material);
-               return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
-           });
+           std::any_of(materials.begin(), materials.end(), may_mirror);
 }
 
 double occlusion_radius(const PreparedData& data, const Settings& settings) {
@@ -276,6 +301,32 @@ std::optional<Rgb> constant_background(const PreparedData& data, const Settings&
     return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
 }
 
+std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
+    if (!hit.valid() || may_mirror(scene.materials[material_index(scene, hit.object, hit.primitive)])) return 0;
+    return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
+}
+
+void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance) {
+    radiance_(x, y) = radiance;
+    keys_(x, y) = key(scene, hit);
+    lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+}
+
+Screen::FirstLook FirstLookPicture::finish() && {
+    ImageRgb dark = radiance_;
+    for (std::size_t i = 0; i < dark.size(); ++i)
+        if (lamps_[i] != 0) dark[i] = Rgb();
+    return {std::move(keys_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
+}
+
+const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
+    if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() || !settings.parts.all())
+        return nullptr;
+    const Screen::FirstLook& look = tile.screen()->first_look();
+    const std::uint32_t key = FirstLookPicture::key(data.scene, tile.hit(x, y));
+    return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
+}
+
 std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings) {
     if (!needs_screen(prepared.data(), settings)) return nullptr;
     Settings depths = settings;
@@ -283,12 +334,11 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
     Control control;
     const auto screen = std::make_shared<Screen>(CameraModel(view).through(), SampleOffset{},
                                                  render(prepared, view, depths, control).nearness);
-    if (needs_occlusion(prepared.data(), settings)) {
-        Settings normals;
-        normals.shading = Shading::kNormal;
-        normals.threads = settings.threads;
-        add_occlusion(prepared.data(), settings, render(prepared, view, normals, control).radiance, *screen);
-    }
+    Settings normals;
+    normals.shading = Shading::kNormal;
+    normals.threads = settings.threads;
+    screen->set_normals(render(prepared, view, normals, control).radiance);
+    add_occlusion(prepared.data(), settings, *screen);
     if (needs_screen_radiance(prepared.data(), settings)) {
         Settings first = settings;
         first.screen_reflections = false;
@@ -296,10 +346,11 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
         first.parts = {};
         first.aovs = {};
         first.aovs.hit = true;
-        Rendering look = render(prepared, view, first, control);
-        Image<std::uint8_t> lamps(view.width, view.height, 0);
-        for (std::size_t i = 0; i < lamps.size(); ++i) lamps[i] = is_lamp(prepared.data().scene, look.hit[i]);
-        screen->set_radiance(std::move(look.radiance), std::move(lamps));
+        const Rendering look = render(prepared, view, first, control);
+        FirstLookPicture picture(view.width, view.height);
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) picture.set(prepared.data().scene, x, y, look.hit(x, y), look.radiance(x, y));
+        screen->set_first_look(std::move(picture).finish());
     }
     return screen;
 }

@@ -3,6 +3,7 @@
 
 #include "raster/cover.h"
 #include "raster/prepare.h"
+#include "raster/screen.h"
 
 #include <optional>
 
@@ -26,10 +27,27 @@ bool needs_screen(const PreparedData& data, const Settings& settings);
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
 /// Whether that must have its occlusion.
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
-/// Works it out, given what Shading::kNormal shows at the pixels' centres.
-void add_occlusion(const PreparedData& data, const Settings& settings, const ImageRgb& normals, Screen& screen);
-/// Whether a hit is on one of Scene::lights.
-bool is_lamp(const Scene& scene, const Hit& hit);
+/// Works it out, if so.
+void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen);
+/// What a first look at the picture, without reflections in itself, makes of the centre of each pixel.
+class FirstLookPicture {
+public:
+    FirstLookPicture(int width, int height) : radiance_(width, height), keys_(width, height, 0), lamps_(width, height, 0) {}
+
+    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance);
+    Screen::FirstLook finish() &&;
+
+    /// Of what a pixel sees: 0 of what mirrors the picture, and of nothing.
+    static std::uint32_t key(const Scene& scene, const Hit& hit);
+
+private:
+    ImageRgb radiance_;
+    Image<std::uint32_t> keys_;
+    Image<std::uint8_t> lamps_;
+};
+/// What the first look made of a pixel, where all of the pixel is shaded at its centre and sees what that does: the same
+/// as shading it again. Null where it would be another.
+const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
 /// Settings::occlusion_radius, or what its 0 stands for.
 double occlusion_radius(const PreparedData& data, const Settings& settings);
 

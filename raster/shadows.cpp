@@ -233,9 +233,13 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
 float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
     constexpr double kMargin = ShadowMap::kFilterRadius + 1;
     if (!source.cells.empty()) {
+        // The samples of a pixel share the pieces among them, too, where there is one for each.
+        const std::size_t count = maps.cells.size();
+        const bool share = taps.count == TapRange::kBlock && count % TapRange::kBlocks == 0;
+        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share ? TapRange::kBlocks : 1;
         float sum = 0;
-        for (const SoftLight& cell : maps.cells) sum += cell.visibility(receiver, taps);
-        return sum / static_cast<float>(source.cells.size());
+        for (std::size_t i = first; i < count; i += step) sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
+        return sum * static_cast<float>(step) / static_cast<float>(count);
     }
     for (const CubeMap& cube : maps.cubes) {
         const Vec3 way(cube.frame.to_local(receiver.p - cube.center));

@@ -2,6 +2,7 @@
 
 #include "common/sampling/sobol.h"
 #include "common/sampling/warp.h"
+#include "common/vec/simd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,10 @@ const TapTable& taps_of(Emitter::Kind kind) {
     return tables[static_cast<std::size_t>(kind)];
 }
 
+Quads four(float a, float b, float c, float d) {
+    alignas(16) const std::array<float, 4> numbers{a, b, c, d};
+    return Quads::load_aligned(numbers.data());
+}
 template <typename T> Vec3T<T> lanes(Vec3 v) { return {T(v.x), T(v.y), T(v.z)}; }
 
 } // namespace
@@ -58,6 +63,10 @@ public:
         per_height = -1 / dot(o.axis, p);
         p_u_ = dot(p - o.corner, o.dual_u), p_v_ = dot(p - o.corner, o.dual_v);
         per_metre = std::sqrt(max(dot(o.dual_u, o.dual_u), dot(o.dual_v, o.dual_v)));
+        const bool ball = kind_ == Emitter::Kind::kBall, triangle = kind_ == Emitter::Kind::kTriangle;
+        const Vec3 first = ball ? o.corner - o.u - o.v : o.corner, u = ball ? o.u * 2.0f : o.u, v = ball ? o.v * 2.0f : o.v;
+        const Vec3 a = first + u, b = triangle ? first + v : first + u + v, c = first + v;
+        corners_x = four(first.x, a.x, b.x, c.x), corners_y = four(first.y, a.y, b.y, c.y), corners_z = four(first.z, a.z, b.z, c.z);
     }
 
     /// Whether the line from the receiver through `to` from there, at the fraction f of the way, goes on to the light, or
@@ -70,19 +79,12 @@ public:
         return (min(a, b) > -margin) & (most <= f + margin);
     }
 
-    /// Corners of a parallelogram around the light.
-    std::array<Vec3, 4> corners() const {
-        const Vec3 first = kind_ == Emitter::Kind::kBall ? o.corner - o.u - o.v : o.corner;
-        const float size = kind_ == Emitter::Kind::kBall ? 2 : 1;
-        if (kind_ == Emitter::Kind::kTriangle) return {o.corner, o.corner + o.u, o.corner + o.v, o.corner + o.v};
-        return {first, first + o.u * size, first + o.v * size, first + (o.u + o.v) * size};
-    }
-
     Vec3 p, n;        ///< the receiver
     float slack;      ///< height over its plane that rounding accounts for
     Outline o;
     float per_height; ///< the fraction of the way that a metre along the axis is
     float per_metre;  ///< the part of the light's shorter edge that a metre is
+    Quads corners_x, corners_y, corners_z; ///< of a parallelogram, or a triangle, around the light
 
 private:
     Emitter::Kind kind_;
@@ -99,6 +101,7 @@ struct SoftLight::Faces {
     std::array<std::optional<Part>, 6> parts;
     std::size_t count = 0;
 
+    bool small() const { return count == 1 && parts[0]->window.small(); }
     void add(std::size_t face, const Cone& cone, const Window& window) { parts[count++].emplace(Part{face, cone, window}); }
 };
 
@@ -220,35 +223,51 @@ float SoftLight::first_reach(Vec3 p, std::size_t face, float farthest) const {
     return distance > farthest ? std::min((distance - closest) / (distance - farthest), 1.0f) : 1.0f;
 }
 
-/// The part of a face that the cone, up to a fraction of the way, covers; none if it misses the face. `whole`: set to
-/// false where the cone goes on beyond the face.
-std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach, bool& whole) const {
-    std::array<Vec3, 5> hull{cone.p};
-    const std::array<Vec3, 4> corners = cone.corners();
-    for (std::size_t i = 0; i < 4; ++i) hull[i + 1] = cone.p + (corners[i] - cone.p) * reach;
-    const float clip = 1e-4f * (length(cone.p) + radius_); // before the light's plane all of the map is covered
-    float left = kInfinity, right = -kInfinity, bottom = kInfinity, top = -kInfinity;
+namespace {
+
+/// What is seen, in a face, of the part before it of the hull of a point and a quadrangle.
+void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes<Quads>& z, float clip, float& left, float& right,
+               float& bottom, float& top) {
+    left = bottom = kInfinity, right = top = -kInfinity;
     const auto cover = [&](Vec3 q) {
-        const float per_depth = 1 / q.z, x = q.x * per_depth, y = q.y * per_depth;
-        left = std::min(left, x), right = std::max(right, x);
-        bottom = std::min(bottom, y), top = std::max(top, y);
+        const float per_depth = 1 / q.z;
+        left = std::min(left, q.x * per_depth), right = std::max(right, q.x * per_depth);
+        bottom = std::min(bottom, q.y * per_depth), top = std::max(top, q.y * per_depth);
     };
-    bool before = true;
-    for (const Vec3 q : hull) {
-        if (q.z >= clip)
-            cover(q);
-        else
-            before = false;
-    }
     const auto cover_edge = [&](Vec3 a, Vec3 b) {
         if ((a.z >= clip) != (b.z >= clip)) {
             const Vec3 q = a + (b - a) * ((clip - a.z) / (b.z - a.z));
             cover({q.x, q.y, clip});
         }
     };
-    for (std::size_t i = 1; !before && i < 5; ++i) {
-        cover_edge(hull[0], hull[i]);
-        cover_edge(hull[i], hull[i % 4 + 1]);
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = {x[i], y[i], z[i]};
+    if (p.z >= clip) cover(p);
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (corners[i].z >= clip) cover(corners[i]);
+        cover_edge(p, corners[i]);
+        cover_edge(corners[i], corners[(i + 1) % 4]);
+    }
+}
+
+} // namespace
+
+/// The part of a face that the cone, up to a fraction of the way, covers; none if it misses the face. `whole`: set to
+/// false where the cone goes on beyond the face.
+std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach, bool& whole) const {
+    const float clip = 1e-4f * (length(cone.p) + radius_); // before the light's plane all of the map is covered
+    const Quads t(reach), one(1.0f);
+    const Quads qx = Quads(cone.p.x) + (cone.corners_x - Quads(cone.p.x)) * t, qy = Quads(cone.p.y) + (cone.corners_y - Quads(cone.p.y)) * t,
+                qz = Quads(cone.p.z) + (cone.corners_z - Quads(cone.p.z)) * t;
+    float left, right, bottom, top;
+    const bool before = lowest(qz) >= clip && cone.p.z >= clip;
+    if (before) {
+        const Quads per_depth = one / qz, x = qx * per_depth, y = qy * per_depth;
+        const float px = cone.p.x / cone.p.z, py = cone.p.y / cone.p.z;
+        left = std::min(px, lowest(x)), right = std::max(px, highest(x));
+        bottom = std::min(py, lowest(y)), top = std::max(py, highest(y));
+    } else {
+        clip_hull(cone.p, Lanes<Quads>(qx), Lanes<Quads>(qy), Lanes<Quads>(qz), clip, left, right, bottom, top);
     }
     if (!before || left < -1 || right > 1 || bottom < -1 || top > 1) whole = false;
     if (left > 1 || right < -1 || bottom > 1 || top < -1 || !(left <= right)) return std::nullopt;
@@ -276,7 +295,7 @@ SoftLight::Faces SoftLight::faces(const Cone& cone, std::size_t main_face, const
 /// Adds up at which fraction of the way blockers in a window stand. Each counts by how much of the light it hides: its
 /// size as seen from the receiver.
 void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
-    const int rows = std::min(window.rows(), kSearchedSide);
+    const int rows = std::min(window.rows(), kSearchedRows);
     const float down = static_cast<float>(window.rows()) / static_cast<float>(rows),
                 across = static_cast<float>(window.columns()) / kSearchedSide;
     // As in dark_taps: a texel's point is over the receiver's plane where height + over · nearness > 0.
@@ -379,8 +398,7 @@ float SoftLight::bound(const Faces& faces, float farthest) const {
         if (distance > farthest) bound = std::max(bound, (distance - depth) / (distance - farthest));
         else bound = 1;
         if (faces.count > 1) continue;
-        float deepest = -kInfinity;
-        for (const Vec3 corner : cone.corners()) deepest = std::max(deepest, corner.z);
+        const float deepest = highest(cone.corners_z);
         if (cone.p.z > deepest) bound = std::min(bound, (cone.p.z - depth) / (cone.p.z - deepest));
     }
     return bound;
@@ -398,12 +416,12 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
     const Cone main(kind_, turned(*outline, main_face), to_face(main_face, p), to_face(main_face, n), slack);
 
     Faces searched = faces(main, main_face, *outline, p, n, reach);
-    for (int i = 0; i < kNarrowings; ++i) {
+    for (int i = 0; i < kNarrowings && !searched.small(); ++i) {
         const float bound = this->bound(searched, farthest);
         if (bound <= 0) return 1;
         const bool narrower = bound < kWorthwhile * reach;
         reach = std::min(reach, bound);
-        if (!narrower || (searched.count == 1 && searched.parts[0]->window.small())) break;
+        if (!narrower) break;
         searched = faces(main, main_face, *outline, p, n, reach);
     }
     Blockers blockers;

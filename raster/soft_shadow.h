@@ -36,7 +36,7 @@ public:
 
     std::int64_t memory_bytes() const;
 
-    static constexpr int kSearchedSide = 16;
+    static constexpr int kSearchedSide = 16, kSearchedRows = 8;
 
 private:
     /// The light as a receiver sees it: points corner + a·u + b·v, and what takes them back to a and b.

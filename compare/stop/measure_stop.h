@@ -31,7 +31,7 @@ struct StopTrial {
 /// One render to a time.
 struct TimeTrial {
     double seconds = 0;  ///< of the render
-    double one_pass = 0; ///< the longest pass it may have had: seconds × 1 / (1 + passes) at least; see measure_stop
+    double one_pass = 0; ///< of its passes, in the mean
 };
 
 /// A scene's trials and what they say. Ratios of squared errors are ratios of their means over the seeds.

@@ -1,0 +1,46 @@
+#include "raster/radiance_pyramid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+Rgb bilinear(const ImageRgb& level, float x, float y) {
+    x = clamp(x - 0.5f, 0.0f, static_cast<float>(level.width() - 1));
+    y = clamp(y - 0.5f, 0.0f, static_cast<float>(level.height() - 1));
+    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+    const int x1 = std::min(x0 + 1, level.width() - 1), y1 = std::min(y0 + 1, level.height() - 1);
+    const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
+    return lerp(lerp(level(x0, y0), level(x1, y0), fx), lerp(level(x0, y1), level(x1, y1), fx), fy);
+}
+
+} // namespace
+
+RadiancePyramid::RadiancePyramid(ImageRgb picture) {
+    levels_.push_back(std::move(picture));
+    while (std::min(levels_.back().width(), levels_.back().height()) > 1) {
+        const ImageRgb& fine = levels_.back();
+        ImageRgb coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2);
+        for (int y = 0; y < coarse.height(); ++y)
+            for (int x = 0; x < coarse.width(); ++x) {
+                const int left = 2 * x, right = std::min(left + 1, fine.width() - 1), top = 2 * y,
+                          bottom = std::min(top + 1, fine.height() - 1);
+                coarse(x, y) = (fine(left, top) + fine(right, top) + fine(left, bottom) + fine(right, bottom)) * 0.25f;
+            }
+        levels_.push_back(std::move(coarse));
+    }
+}
+
+Rgb RadiancePyramid::at(float x, float y, float width) const {
+    const float level = clamp(std::log2(max(width, 1.0f)), 0.0f, static_cast<float>(levels_.size() - 1));
+    const auto low = static_cast<std::size_t>(level), high = std::min(low + 1, levels_.size() - 1);
+    const auto of = [&](std::size_t i) {
+        const float scale = 1 / static_cast<float>(1u << i);
+        return bilinear(levels_[i], x * scale, y * scale);
+    };
+    const float part = level - static_cast<float>(low);
+    return part > 0 ? lerp(of(low), of(high), part) : of(low);
+}
+
+} // namespace duet::raster

@@ -1,0 +1,26 @@
+// A picture at half its size again and again: what a wide look at it sees.
+#pragma once
+
+#include "common/image/image.h"
+
+#include <vector>
+
+namespace duet::raster {
+
+/// Means of 2 × 2, 4 × 4 … pixels (Williams 1983, «Pyramidal Parametrics»).
+class RadiancePyramid {
+public:
+    RadiancePyramid() = default;
+    explicit RadiancePyramid(ImageRgb picture);
+
+    /// About (x, y), in pixels, over about `width` of them: between levels and between pixels linearly. At the picture's
+    /// edge what is there goes on.
+    Rgb at(float x, float y, float width) const;
+    const ImageRgb& finest() const { return levels_.front(); }
+    bool empty() const { return levels_.empty(); }
+
+private:
+    std::vector<ImageRgb> levels_;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,108 @@
+// What metal mirrors of the picture, against the mirrored ray itself.
+#include "tests/raster/scenes.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+const View kView{look({0, 1.5, 4}, {0, 0.6, 0}, 50), 160, 120};
+
+/// A metal floor before a wall that shines, red to the left and green to the right.
+Scene before_wall(float roughness, bool ring = false) {
+    Scene scene;
+    add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, roughness});
+    add(scene, QuadList{{{Vec3(-4, 0, -2), Vec3(4, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+    add(scene, QuadList{{{Vec3(0, 0, -2), Vec3(4, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+    if (ring) add(scene, torus(24, 12), translation(Vec3(0, 1.2f, -1)) * scaling(Vec3(0.4f, 0.4f, 0.4f)));
+    scene.environment = ConstantEnvironment{Rgb(1.0f)};
+    finish_scene(scene);
+    return scene;
+}
+
+raster::Settings plain() {
+    raster::Settings settings;
+    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    return settings;
+}
+
+/// Where a floor pixel's mirrored ray meets the wall's plane; false for other pixels.
+bool mirrored(int x, int y, Vec3d& hit) {
+    const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
+    const double t = -ray.origin.y / ray.direction.y;
+    if (!(t > 0)) return false;
+    const Vec3d p = ray.at(t), way(ray.direction.x, -ray.direction.y, ray.direction.z);
+    if (p.z < -1.9 || p.z > 2 || std::abs(p.x) > 3.9) return false;
+    hit = p + way * ((-2 - p.z) / way.z);
+    return std::abs(hit.x) < 3.9;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a mirror shows what its rays meet, up to the wall's edges by three pixels") {
+        const ImageRgb found = render(before_wall(0), kView, plain()).radiance;
+        int red = 0, green = 0, sky = 0, wrong = 0;
+        for (int y = 0; y < kView.height; ++y)
+            for (int x = 0; x < kView.width; ++x) {
+                Vec3d hit;
+                if (!mirrored(x, y, hit) || std::abs(hit.x) < 0.15 || std::abs(hit.y - 2) < 0.15) continue;
+                const Rgb expected = hit.y > 2 ? Rgb(1.0f) : hit.x < 0 ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
+                ++(hit.y > 2 ? sky : hit.x < 0 ? red : green);
+                for (std::size_t c = 0; c < 3; ++c)
+                    if (std::abs(found(x, y)[c] - expected[c]) > 0.02f) {
+                        ++wrong;
+                        break;
+                    }
+            }
+        CHECK(std::min({red, green, sky}) > 300);
+        CHECK(wrong * 50 < red + green + sky); // rays that leave the picture are guessed
+    }
+
+    TEST_CASE("slightly rough metal mirrors without grain: neighbours differ by 4 % at most where the wall is of one colour") {
+        raster::Settings settings = plain();
+        for (const int spp : {1, 4}) {
+            settings.samples_per_pixel = spp;
+            const ImageRgb found = render(before_wall(0.25f), kView, settings).radiance;
+            int pixels = 0;
+            float worst = 0;
+            for (int y = 0; y < kView.height; ++y)
+                for (int x = 0; x + 1 < kView.width; ++x) {
+                    Vec3d hit;
+                    if (!mirrored(x, y, hit) || hit.x > -1 || hit.x < -3 || hit.y > 1.2) continue;
+                    worst = std::max(worst, std::abs(found(x, y).r - found(x + 1, y).r));
+                    ++pixels;
+                }
+            CAPTURE(spp);
+            CHECK(pixels > 200);
+            CHECK(worst < 0.04f);
+        }
+    }
+
+    TEST_CASE("with multisampling what the first look has shaded is not shaded again: the same bits where no metal is seen") {
+        const Scene scene = before_wall(0, true);
+        raster::Settings settings;
+        settings.multisamples = 4;
+        const ImageRgb with = render(scene, kView, settings).radiance;
+        settings.screen_reflections = false;
+        const ImageRgb without = render(scene, kView, settings).radiance;
+        settings.multisamples = 0;
+        settings.aovs.hit = true;
+        const Image<Hit> hits = render(scene, kView, settings).hit;
+        int same = 0, other = 0;
+        for (int y = 1; y + 1 < kView.height; ++y)
+            for (int x = 1; x + 1 < kView.width; ++x) {
+                bool metal = false;
+                for (int i = 0; i < 9; ++i) {
+                    const Hit& hit = hits(x + i % 3 - 1, y + i / 3 - 1);
+                    metal = metal || (hit.valid() && hit.object == 0);
+                }
+                if (!metal) ++(with(x, y) == without(x, y) ? same : other);
+            }
+        CHECK(other == 0);
+        CHECK(same > 3000);
+    }
+}
