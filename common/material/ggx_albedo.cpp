@@ -18,9 +18,12 @@ GgxMeans ggx_means(float alpha) {
 }
 
 Rgb ggx_multiple(Rgb average_fresnel, float mean_lost) {
+    // Narrow lobes (alpha below 0.03) lose light at grazing angles alone: to find it there would be noise, not energy.
+    constexpr float kLeast = 0.004f;
+    if (mean_lost < kLeast) return {};
     const Rgb f = average_fresnel;
     const auto channel = [&](float x) { return x * x * (1 - mean_lost) / (1 - x * mean_lost); };
-    return Rgb(channel(f.r), channel(f.g), channel(f.b)) * (kInvPi / max(mean_lost, 1e-7f));
+    return Rgb(channel(f.r), channel(f.g), channel(f.b)) * (kInvPi / mean_lost);
 }
 
 } // namespace duet

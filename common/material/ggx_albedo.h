@@ -38,7 +38,7 @@ inline Rgb schlick_average(Rgb normal) { return normal + (Rgb(1.0f) - normal) * 
 /// multiple·lost(wo)·lost(wi), which is reciprocal and returns all that is lost where none is absorbed (Kulla and Conty
 /// 2017, «Revisiting Physically Based Shading at Imageworks»; the share that survives all reflections: Turquin 2019,
 /// «Practical Multiple Scattering Compensation for Microfacet Models», §2, after Hill): this is `multiple`, from the mean
-/// reflectance of a microfacet.
+/// reflectance of a microfacet. Black where less than 0.4 % is lost in the mean.
 Rgb ggx_multiple(Rgb average_fresnel, float mean_lost);
 
 } // namespace duet

@@ -88,7 +88,7 @@ Rgb LayeredBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     if (coat > 0)
         f = f * min(o.under_coat, i.under_coat) +
             (fresnel_schlick(Rgb(kCoat), h.cosine) * (ggx_d(h.normal, coat_alpha) * ggx_visibility(wo, wi, coat_alpha)) +
-             Rgb(coat_multiple * o.coat_lost * i.coat_lost)) * coat;
+             Rgb(coat_multiple * (o.coat_lost * i.coat_lost))) * coat;
     return f;
 }
 

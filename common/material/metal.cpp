@@ -44,7 +44,7 @@ std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float lobe, Vec2 u, Transpo
     if (smooth()) return BsdfSample{{-wo.x, -wo.y, wo.z}, fresnel(abs_cos_theta(wo)), 1, true};
 
     const Vec3 above = upwards(wo);
-    const bool several = lobe >= 1 - ggx_lost(alpha, above.z);
+    const bool several = !is_black(multiple) && lobe >= 1 - ggx_lost(alpha, above.z);
     Vec3 wi = several ? cosine_hemisphere(u) : normalize(reflect(above, ggx_sample_visible_normal(above, alpha, u)));
     // A visible normal may reflect below the surface: there the light would hit a second microfacet. The density
     // integrates to less than 1 by as much.
@@ -59,7 +59,7 @@ float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     if (smooth() || !same_hemisphere(wo, wi)) return 0;
     wo = upwards(wo);
     wi = upwards(wi);
-    const float several = ggx_lost(alpha, wo.z);
+    const float several = is_black(multiple) ? 0 : ggx_lost(alpha, wo.z);
     return lerp(ggx_reflection_pdf(wo, microfacet(wo, wi).normal, alpha), cosine_hemisphere_pdf(wi.z), several);
 }
 
