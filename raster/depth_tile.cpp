@@ -1,7 +1,5 @@
 #include "raster/depth_tile.h"
 
-#include "common/vec/simd.h"
-
 #include <bit>
 
 namespace duet::raster {
@@ -94,7 +92,7 @@ void DepthTile::empty_undrawn() {
 std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
     std::uint32_t hidden = 0;
     for (std::size_t i = 0; i < kBlocks; i += Quads::size)
-        hidden |= duet::lane_bits(Quads(nearest) < Quads::load_unaligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+        hidden |= lane_bits(Quads(nearest) < Quads::load_unaligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
     return ~hidden;
 }
 

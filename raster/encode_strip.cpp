@@ -1,7 +1,6 @@
 #include "raster/encode_strip.h"
 
 #include "common/image/srgb.h"
-#include "common/vec/simd.h"
 
 #include <bit>
 #include <cmath>

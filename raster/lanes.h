@@ -1,16 +1,7 @@
-// SIMD batches as wide as the machine has them, by xsimd: the rasterizer works through arrays of 16 samples, of which
-// every width is a part.
+// The rasterizer works through arrays of 16 samples, by batches as wide as the machine has them (common/vec/simd.h).
 #pragma once
 
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wuninitialized" // GCC 12 says so, wrongly, of its own AVX-512 header
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#include <xsimd/xsimd.hpp>
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
+#include "common/vec/simd.h"
 
 #include <array>
 #include <cmath>
@@ -68,19 +59,7 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #endif
 }
 
-/// Floats from memory to doubles.
-inline Doubles widened(const float* from) {
-#if defined(__AVX512F__)
-    return _mm512_cvtps_pd(_mm256_loadu_ps(from));
-#elif defined(__AVX__)
-    return _mm256_cvtps_pd(_mm_loadu_ps(from));
-#else
-    std::array<double, Doubles::size> wide;
-    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = static_cast<double>(from[i]);
-    return Doubles::load_unaligned(wide.data());
-#endif
-}
-
+/// Whole numbers from memory to doubles.
 inline Doubles widened(const std::int32_t* from) {
 #if defined(__AVX512F__)
     return _mm512_cvtepi32_pd(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
@@ -153,17 +132,7 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
 #endif
 }
 
-inline std::uint32_t lane_bits(const xsimd::batch_bool<double>& lanes) {
-#if defined(__AVX512F__)
-    return static_cast<std::uint32_t>(static_cast<__mmask8>(lanes));
-#elif defined(__AVX__)
-    return static_cast<std::uint32_t>(_mm256_movemask_pd(lanes));
-#else
-    return static_cast<std::uint32_t>(_mm_movemask_pd(lanes));
-#endif
-}
-
-inline std::uint32_t lane_bits(const xsimd::batch_bool<float>& lanes) { return lane_bits(xsimd::bool_cast(lanes)); }
+using duet::lane_bits; // of floats and doubles
 
 /// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
 template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {

@@ -152,7 +152,7 @@ template <VertexShader S> std::uint32_t SetUps<S>::set_up_planes(const Corners& 
         std::array<Doubles, 3> x, y, w, d;
         for (std::size_t k = 0; k < 3; ++k) {
             const auto& p = corners[k];
-            const Doubles px = widened(p[0].at(i)), py = widened(p[1].at(i)), pz = widened(p[2].at(i));
+            const Doubles px = load_doubles(p[0].at(i)), py = load_doubles(p[1].at(i)), pz = load_doubles(p[2].at(i));
             const auto row = [&](std::size_t r) {
                 return entry(r, 0) * px + entry(r, 1) * py + entry(r, 2) * pz + entry(r, 3);
             };

@@ -4,8 +4,6 @@
 #include "raster/set_ups.h"
 #include "raster/strip_samples.h"
 
-#include "common/vec/simd.h"
-
 #include <bit>
 #include <span>
 

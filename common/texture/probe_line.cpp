@@ -16,7 +16,9 @@ ProbeLine probe_line(Vec2d dx, Vec2d dy, int max_probes) {
     ProbeLine line;
     // The box's covariance is M/12, M = dx dxᵀ + dy dyᵀ; M's eigenvalues are the squares of the box's length and width.
     const double xx = sqr(dx.x) + sqr(dy.x), yy = sqr(dx.y) + sqr(dy.y), xy = dx.x * dx.y + dy.x * dy.y;
-    const double mean = (xx + yy) / 2, spread = std::hypot((xx - yy) / 2, xy);
+    // (Of squares: what overflows is sent away below, what underflows matters to no texel; std::hypot's care for them costs more
+    // than all the rest.)
+    const double mean = (xx + yy) / 2, spread = std::sqrt(sqr((xx - yy) / 2) + sqr(xy));
     const double length2 = mean + spread;
     if (!(length2 < 0x1p60)) { // infinite and NaN, too
         line.level = kManyLevels;

@@ -251,6 +251,50 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a sample beyond the snapped edges' margins is inside of the triangle before it was snapped") {
+        Random random(11);
+        int beyond = 0, outside = 0, outside_half = 0;
+        for (int trial = 0; trial < 30'000; ++trial) {
+            const int reach = std::array{40, 300, 3000, 16000}[static_cast<std::size_t>(trial) % 4], low = trial % 3 == 0 ? reach / 50 : reach;
+            std::array<FixedPoint, 3> p{random.point(0, reach), random.point(0, reach), {random.integer(0, reach), random.integer(0, low)}};
+            if (doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
+            if (doubled_area(p[0], p[1], p[2]) == 0) continue;
+            DrawTriangle triangle;
+            triangle.corners = p;
+            const std::array<std::int64_t, 3> margins = edge_margins(triangle);
+            for (int i = 0; i < 10; ++i) { // samples, most of them close to an edge
+                const auto near = static_cast<std::size_t>(random.integer(0, 2));
+                const double t = random.integer(0, 1000) / 1000.0, depth = random.integer(0, 100) * random.integer(0, 100) * 1e-6;
+                const FixedPoint &a = p[near], &b = p[(near + 1) % 3], &c = p[(near + 2) % 3];
+                const auto mixed = [&](int u, int v, int w) {
+                    return static_cast<std::int32_t>(std::lround((u * (1 - t) + v * t) * (1 - depth) + w * depth));
+                };
+                const FixedPoint s{mixed(a.x, b.x, c.x), mixed(a.y, b.y, c.y)};
+                bool all = true, half = true; // beyond the margins, and beyond half of them
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int64_t value = doubled_area(p[k], p[(k + 1) % 3], s);
+                    all = all && value >= margins[k];
+                    half = half && 2 * value >= margins[k];
+                }
+                if (!half) continue;
+                bool inside = true; // wherever in their squares the corners were, counted in half grid points
+                for (std::size_t k = 0; k < 3; ++k)
+                    for (int moves = 0; moves < 16; ++moves) {
+                        const auto moved = [&](const FixedPoint& q, int bits) {
+                            return FixedPoint{2 * q.x + (bits & 1) * 2 - 1, 2 * q.y + (bits >> 1 & 1) * 2 - 1};
+                        };
+                        inside = inside && doubled_area(moved(p[k], moves), moved(p[(k + 1) % 3], moves >> 2), {2 * s.x, 2 * s.y}) >= 0;
+                    }
+                beyond += all;
+                outside += all && !inside;
+                outside_half += !inside;
+            }
+        }
+        CHECK(beyond > 100'000);
+        CHECK(outside == 0);
+        CHECK(outside_half > 100); // half of the margins would not do
+    }
+
     TEST_CASE("of coincident surfaces the lower number wins in any order") {
         const auto vertex = [](double x, double y) { return PixelVertex{.xw = x, .yw = y, .w = 1, .depth = 1}; };
         const Viewport viewport{kSize, kSize, 0.5, true};
