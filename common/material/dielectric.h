@@ -6,6 +6,8 @@
 #include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
 
+#include <cmath>
+
 namespace duet {
 
 /// Specular reflection and refraction by Fresnel's equations and Snell's law. +z is the outside.
@@ -18,6 +20,10 @@ struct DielectricBsdf {
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };
+
+/// Whether a boundary of this relative index bends light so little that its microfacets do not matter: they would be
+/// found from the difference of two directions that hardly differ.
+inline bool refracts_alike(float eta) { return std::abs(eta - 1) <= 1e-3f; }
 
 struct Dielectric {
     float ior = 1.5f; ///< inside over outside, in [1, 4]

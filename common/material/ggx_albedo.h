@@ -16,9 +16,9 @@ struct GgxAlbedo {
     float of(float normal) const { return (normal + (1 - normal) * share) * energy; }
 };
 
-// All are looked up in tables that are computed when the project is built (ggx_albedo_main.cpp). alpha in [0, 1], of which those below 1e-4 count as that; cosine: between
-// normal and viewer, in [0, 1]. The
-// energy is off by at most 0.006, energy·share by 0.015 (tested).
+// All are looked up in tables that are computed when the project is built (ggx_albedo_main.cpp). alpha in [0, 1], of
+// which those below 1e-4 count as that; cosine: between normal and viewer, in [0, 1]. The energy is off by at most
+// 0.006, energy·share by 0.015 (tested).
 
 GgxAlbedo ggx_albedo(float alpha, float cosine);
 /// 1 − energy: what hits a second microfacet.

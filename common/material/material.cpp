@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include <type_traits>
-
 namespace duet {
 
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point) {
@@ -18,7 +16,7 @@ Bsdf bsdf_at(const Material& material, const TextureSet& textures, const Surface
         }
         Bsdf operator()(const Dielectric& m) const {
             if (m.thin) return m.thin_at(textures, point);
-            if (m.smooth() || m.ior == 1) return m.at(textures, point);
+            if (m.smooth() || refracts_alike(m.ior)) return m.at(textures, point);
             const RoughDielectricBsdf rough = m.rough_at(textures, point);
             if (rough.alpha < Dielectric::kSmoothAlpha) return DielectricBsdf{rough.eta, rough.tint};
             return rough;

@@ -25,14 +25,14 @@ struct Seen {
 struct Refraction {
     Vec3 normal;
     float cos_o, cos_i; ///< to wo, positive; to wi, negative
-    float sum;          ///< wo·h + relative·wi·h: not 0
+    float sum;          ///< wo·h + relative·wi·h = ±|wo + relative·wi|: not 0
 };
 std::optional<Refraction> refraction(const Seen& s) {
     Vec3 h = s.wo + s.wi * s.relative;
-    const float size = length(h);
-    if (!(size > 0)) return std::nullopt;
-    h = h / (h.z < 0 ? -size : size);
-    const Refraction r{h, dot(s.wo, h), dot(s.wi, h), dot(s.wo, h) + s.relative * dot(s.wi, h)};
+    const float size = h.z < 0 ? -length(h) : length(h);
+    if (size == 0) return std::nullopt;
+    h = h / size;
+    const Refraction r{h, dot(s.wo, h), dot(s.wi, h), size};
     if (!(r.cos_o > 0 && r.cos_i < 0)) return std::nullopt;
     return r;
 }
@@ -74,7 +74,7 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 
     if (wo.z < 0) wi.z = -wi.z;
     // Density and weight are those of the rounded direction returned.
     const float density = pdf(wo, wi, mode);
-    if (!(density > 0)) return std::nullopt;
+    if (!(density > 0 && density < kInfinity)) return std::nullopt;
     const Rgb weight = eval(wo, wi, mode) * (abs_cos_theta(wi) / density);
     return BsdfSample{wi, weight, density, false, through};
 }

@@ -22,6 +22,7 @@ std::optional<BsdfSample> ThinDielectricBsdf::sample(Vec3 wo, float lobe, Vec2, 
     if (wo.z == 0) return std::nullopt;
     const Parts p = parts(abs_cos_theta(wo));
     const float r = average(p.reflected), t = average(p.transmitted);
+    if (!(r + t > 0)) return std::nullopt; // black, and of the index of its surroundings
     const float reflected = r / (r + t);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, p.reflected / reflected, reflected, true};
     const float through = t / (r + t); // not 1 − reflected, which cancels at grazing angles

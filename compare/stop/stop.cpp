@@ -50,7 +50,7 @@ struct Row {
     /// Less than was asked for is right where no render could have ended sooner.
     bool missed_error() const {
         if (result.caustics || (result.at_once() && error_ratio < 1)) return false;
-        return std::abs(error_ratio - 1) > kErrorTolerance;
+        return !(std::abs(error_ratio - 1) <= kErrorTolerance); // NaN has missed, too
     }
 };
 

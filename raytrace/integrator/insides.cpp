@@ -24,7 +24,14 @@ const Dielectric* Insides::filling(std::int64_t without) const {
 
 void Insides::cross(std::uint32_t material, bool inwards) {
     if (inwards) {
-        if (count_ < materials_.size()) materials_[count_++] = material;
+        if (count_ < materials_.size())
+            materials_[count_++] = material;
+        else
+            ++deeper_;
+        return;
+    }
+    if (deeper_ > 0) { // the last entered is left first
+        --deeper_;
         return;
     }
     const auto end = materials_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -53,7 +60,7 @@ Hit Insides::arrive(Ray& ray, Hit hit, Rgb& throughput, int& passed) {
         const SurfacePoint point = surface_point(scene, ray, hit, nullptr, plan_->details[material]);
         const bool inwards = dot(point.ng, ray.direction) < 0;
         const Dielectric* around = filling(inwards ? -1 : static_cast<std::int64_t>(material));
-        if (around == nullptr || around->priority == 0) return hit;
+        if (around == nullptr || around->priority == 0 || passed == kMostPassed) return hit;
         if (around->priority <= boundary->priority) {
             relative_ = boundary->ior / around->ior;
             return hit;

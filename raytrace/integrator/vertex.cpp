@@ -11,17 +11,18 @@ Vec3 towards_viewer(const Frame& frame, Vec3 ng, Vec3 direction) {
     return lifted_above_horizon(frame.to_local(wo), dot(wo, ng) < 0 ? -1.0f : 1.0f);
 }
 
-/// A dielectric in another one: none where the two refract alike.
-Bsdf with_index(const Bsdf& bsdf, float eta) {
-    const auto* rough = std::get_if<RoughDielectricBsdf>(&bsdf);
-    if (rough != nullptr && std::abs(eta - 1) > 1e-3f) return RoughDielectricBsdf{eta, rough->tint, rough->alpha};
-    return DielectricBsdf{eta, rough != nullptr ? rough->tint : std::get<DielectricBsdf>(bsdf).tint};
+/// A dielectric in another one.
+Material with_index(const Material& material, float eta) {
+    Dielectric other = std::get<Dielectric>(material);
+    other.ior = eta;
+    return other;
 }
 
 const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, const SurfacePoint& point,
                              float relative_index, std::optional<Bsdf>& made) {
     if (relative_index != 0)
-        return made.emplace(with_index(bsdf_at(plan.scene.materials[material], plan.scene.textures, point), relative_index));
+        return made.emplace(
+            bsdf_at(with_index(plan.scene.materials[material], relative_index), plan.scene.textures, point));
     if (const std::optional<Bsdf>& constant = (*plan.bsdfs)[material]) return *constant;
     return made.emplace(bsdf_at(plan.scene.materials[material], plan.scene.textures, point));
 }

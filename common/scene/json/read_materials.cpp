@@ -156,12 +156,15 @@ Conductor read_conductor(const JsonValue& owner) {
     name.fail(message("unknown conductor ", in_quotes(name.string()), hint));
 }
 
+/// A nanometre and more: coefficients stay finite.
+constexpr JsonRange kAbsorptionDistance{1e-9, 1e18, false};
+
 /// {"color": what is left of white light, "distance": after so many metres}: the coefficients of Beer and Lambert's law.
 Rgb read_absorption(const JsonValue& value) {
     value.check_keys(scene_keys("absorption"));
     const Rgb color = value.at("color").rgb();
     const Rgb left(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f)); // black after any finite distance is none
-    const auto distance = static_cast<float>(value.at("distance").number(kPositive));
+    const auto distance = static_cast<float>(value.at("distance").number(kAbsorptionDistance));
     return Rgb(-std::log(left.r), -std::log(left.g), -std::log(left.b)) / distance;
 }
 

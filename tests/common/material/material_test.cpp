@@ -80,6 +80,8 @@ std::vector<Named> all_materials() {
     all.push_back({"diamond", DielectricBsdf{2.4f, Rgb(1.0f)}});
     all.push_back({"window", ThinDielectricBsdf{1.5f, Rgb(0.9f, 1.0f, 0.8f)}});
     all.push_back({"clear window", ThinDielectricBsdf{1.5f, Rgb(1.0f)}, 1, true});
+    all.push_back({"black film of no index", ThinDielectricBsdf{1.0f, Rgb(0.0f)}});
+    all.push_back({"frosted, hardly refracting", RoughDielectricBsdf{1.002f, Rgb(1.0f), 0.3f}});
     return all;
 }
 
@@ -447,6 +449,8 @@ TEST_SUITE("unit") {
         CHECK(std::get<MetalBsdf>(bsdf_at(Metal{{Rgb(1.0f)}, 0.5f}, none, point)).alpha == 0.25f);
         CHECK(is_specular(bsdf_at(Metal{}, none, point)));
         CHECK(is_specular(bsdf_at(Dielectric{}, none, point)));
+        CHECK_FALSE(is_specular(bsdf_at(Dielectric{1.01f, {Rgb(1.0f)}, {0.5f}}, none, point)));
+        CHECK(is_specular(bsdf_at(Dielectric{1.000001f, {Rgb(1.0f)}, {0.5f}}, none, point))); // bends no light
         CHECK_FALSE(is_specular(bsdf_at(Diffuse{}, none, point)));
         const Material lamp = Emissive{Rgb(3.0f), false, {Rgb(0.25f)}};
         CHECK(emitted(lamp, none, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));

@@ -232,6 +232,8 @@ TEST_SUITE("unit") {
              "$.materials.m.roughness: a thin dielectric has none"},
             {with_materials(R"({"m": {"type": "dielectric", "absorption": {"color": 0.5}}})"),
              "$.materials.m.absorption: the key \"distance\" is missing"},
+            {with_materials(R"({"m": {"type": "dielectric", "absorption": {"color": 0.5, "distance": 1e-50}}})"),
+             "$.materials.m.absorption.distance: found 1e-50"},
             {with_materials(R"({"m": {"type": "dielectric", "priority": 1.5}})"), "$.materials.m.priority: found 1.5"},
             {with_materials(R"({"m": {"type": "principled", "metallic": 2}})"), "$.materials.m.metallic: found 2"},
             {with_materials(R"({"m": {"type": "coated", "ior": 5}})"), "$.materials.m.ior: found 5"},
