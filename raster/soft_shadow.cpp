@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kTaps = TapRange::kBlocks * TapRange::kBlock;
 constexpr int kNarrowings = 4;
+constexpr double kThinnest = 1e5; ///< length over width: what is thinner has no outline in floats, and counts as a ball
 constexpr float kWorthwhile = 0.8f; ///< a narrower cone is worth another look if it is so much narrower
 
 /// Points of a light of each kind, as parts of its edges: a (0,2)-net, of which each block is a coarser one.
@@ -112,9 +113,14 @@ SoftLight::SoftLight(CubeMap cube, const Emitter& emitter) : cube_(std::move(cub
         const float part = kind_ == Emitter::Kind::kTriangle ? 1.0f / 3 : 0.5f;
         u_ = Vec3(cube_.frame.to_local(emitter.u)), v_ = Vec3(cube_.frame.to_local(emitter.v));
         corner_ = (u_ + v_) * -part;
-        const float uu = dot(u_, u_), uv = dot(u_, v_), vv = dot(v_, v_), over = 1 / (uu * vv - uv * uv);
-        dual_u_ = (u_ * vv - v_ * uv) * over, dual_v_ = (v_ * uu - u_ * uv) * over;
         radius_ = std::max({length(corner_), length(corner_ + u_), length(corner_ + v_), length(corner_ + u_ + v_)});
+        // In doubles: the difference of products is all of a sliver's area.
+        const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
+        const double over = 1 / dot(n, n);
+        const Vec3d dual_u = cross(v, n) * over, dual_v = cross(n, u) * over;
+        dual_u_ = Vec3(cube_.frame.to_local(dual_u)), dual_v_ = Vec3(cube_.frame.to_local(dual_v));
+        const double thinness = static_cast<double>(radius_) * max(length(dual_u), length(dual_v));
+        if (!(thinness < kThinnest)) kind_ = Emitter::Kind::kBall; // also where n = 0
     }
     for (std::size_t face = 0; face < 6; ++face) {
         if (kind_ != Emitter::Kind::kBall) flat_[face] = Outline{{}, corner_, u_, v_, dual_u_, dual_v_}.turned(face);
