@@ -251,7 +251,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a lamp too thin to have an outline, 1 : 10,000,000, still throws a shadow") {
         Scene scene = floor_scene();
-        add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5e-7f), Vec3(1, 0, 0), Vec3(0, 0, 1e-7f)}}}, Mat4(), Emissive{Rgb(1e7f)});
+        add(scene, QuadList{{{Vec3(-1, 3, -0.5e-7f), Vec3(1, 0, 0), Vec3(1, 0, 1e-7f)}}}, Mat4(), Emissive{Rgb(1e7f)});
         add(scene, QuadList{{{Vec3(-1, 1, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}});
         finish_scene(scene);
         const ImageFloat found = visible(scene, over_floor());
