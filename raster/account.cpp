@@ -104,13 +104,13 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "things what is seen there is taken to go on.");
     const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
     name(parts.reflection && needs.glossy && environment && !prefiltered,
-         "Rough metal mirrors the environment as smooth metal does.");
+         "Rough metal and frosted glass show the environment as smooth ones do.");
     name(parts.reflection && needs.glossy && environment && prefiltered,
-         "Rough metal mirrors the environment blurred as by a surface that faces the viewer.");
+         "Rough metal and frosted glass show the environment blurred as by a surface that faces the viewer.");
     name(parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
-         "Light surfaces shine on rough metal by linearly transformed cosines that look like its lobe.");
+         "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
-         "Rough metal sees each light surface as a distant light in its centre's direction.");
+         "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
     name(parts.reflection && needs.transmission,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
     name(parts.reflection && needs.insides, "Glass absorbs as over the mean way through a ball of its size, and overlaps as if it did not.");

@@ -11,18 +11,12 @@ namespace {
 
 constexpr double kFlat = 1e-4; ///< of a group's size: how far it may be off one plane
 
-Emitter ball_around(std::span<const SurfaceLight> lights, std::span<const Vec3d> points) {
+Emitter ball_around(std::span<const Vec3d> points) {
     Box3d box;
     for (const Vec3d p : points) box.extend(p);
-    for (const SurfaceLight& light : lights)
-        if (const auto* sphere = std::get_if<Sphere>(&light.shape)) {
-            const Vec3d center(sphere->center), r(Vec3(sphere->radius, sphere->radius, sphere->radius));
-            box.extend(center - r);
-            box.extend(center + r);
-        }
     Emitter result;
     result.center = box.center();
-    result.radius = length(box.diagonal()) / 2 / (points.empty() ? std::sqrt(3.0) : 1.0);
+    result.radius = length(box.diagonal()) / 2;
     return result;
 }
 
@@ -55,13 +49,13 @@ Emitter Emitter::of(std::span<const SurfaceLight> lights) {
     const Emitter first = of(lights.front());
     for (const SurfaceLight& light : lights) {
         const Emitter one = of(light);
-        flat = flat && one.kind != Kind::kBall && dot(one.normal, first.normal) > 1 - kFlat;
+        flat = flat && dot(one.normal, first.normal) > 1 - kFlat;
         if (const auto* quad = std::get_if<Quad>(&light.shape))
             for (const Vec3 p : corners(*quad)) points.emplace_back(p);
         else if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape))
             points.insert(points.end(), {Vec3d(t->a), Vec3d(t->b), Vec3d(t->c)});
     }
-    Emitter ball = ball_around(lights, points);
+    const Emitter ball = ball_around(points);
     for (const Vec3d p : points)
         flat = flat && std::abs(dot(first.normal, p - points.front())) <= kFlat * ball.radius;
     if (!flat) return ball;

@@ -19,8 +19,8 @@ struct Emitter {
 
     /// Of one surface light.
     static Emitter of(const SurfaceLight& light);
-    /// Of several at once: the smallest rectangle around them along one of the first one's edges where they lie in one
-    /// plane and face the same way; else a ball around them.
+    /// Of one, or of several triangles and quads at once: the smallest rectangle around them along one of the first one's
+    /// edges where they lie in one plane and face the same way; else a ball around them.
     static Emitter of(std::span<const SurfaceLight> lights);
 };
 

@@ -22,6 +22,9 @@ template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, 
 
 Floats load_from(const ImageFloat& image, int x, int y) { return Floats::load_unaligned(&image(x, y)); }
 
+/// What a pixel that sees nothing is given, so that all that follows stays finite.
+Floats any_nearness(const Floats& nearness) { return xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)); }
+
 /// Columns at which batches begin that cover a row; the last ones may overlap.
 template <typename F> void for_batches(int width, const F& use) {
     for (int x = 0; x < width; x += kLanesWide) use(std::min(x, width - kLanesWide));
@@ -51,15 +54,14 @@ void OcclusionImage::look_row(int y) {
         if (xsimd::all(nearness <= Floats(0.0f))) return;
         const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
         OcclusionPoints points;
-        points.p = screen_.at(column, Floats(static_cast<float>(y)), max(nearness, Floats(1e-20f)));
+        points.p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
         points.n = {load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
                     load_from(screen_.normals()[2], x, y)};
         points.to_viewer = screen_.to_viewer(points.p);
         const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
-        seen.visible.store_unaligned(&found_[0](x, y));
-        seen.hidden.x.store_unaligned(&found_[1](x, y));
-        seen.hidden.y.store_unaligned(&found_[2](x, y));
-        seen.hidden.z.store_unaligned(&found_[3](x, y));
+        const std::array<Floats, 4> numbers{seen.visible, seen.hidden.x, seen.hidden.y, seen.hidden.z};
+        for (std::size_t k = 0; k < 4; ++k)
+            xsimd::select(nearness > Floats(0.0f), numbers[k], Floats(0.0f)).store_unaligned(&found_[k](x, y));
     });
 }
 
@@ -70,10 +72,10 @@ void OcclusionImage::smooth_row(int y) {
         const Floats nearness = load_from(screen_.nearness(), x, y);
         if (xsimd::all(nearness <= none)) return;
         const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0), last(static_cast<float>(width - 1));
-        const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), max(nearness, Floats(1e-20f)));
+        const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
         const Vec3T<Floats> n{load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
                               load_from(screen_.normals()[2], x, y)};
-        const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / max(nearness, Floats(1e-20f)));
+        const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / any_nearness(nearness));
         Floats weights(0.0f);
         std::array<Floats, 4> sums{none, none, none, none};
         for (int dy = -2; dy <= 2; ++dy) {
@@ -87,13 +89,13 @@ void OcclusionImage::smooth_row(int y) {
                     return within ? load_from(image, x + dx, row) : gather(&image(0, row), places);
                 };
                 const Floats other = of(screen_.nearness());
-                const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), max(other, Floats(1e-20f)));
+                const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
                 const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
                 const auto counts = (other > none) & (at >= none) & (at <= last);
                 const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance), none) *
                                       Floats(kBox[static_cast<std::size_t>(dx + 2)] * kBox[static_cast<std::size_t>(dy + 2)]);
                 weights += weight;
-                for (std::size_t k = 0; k < 4; ++k) sums[k] += weight * of(found_[k]);
+                for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(found_[k]), none);
             }
         }
         const Floats over = Floats(1.0f) / max(weights, Floats(1e-20f));

@@ -47,8 +47,8 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// What the scene's lights need of rough metal, made now rather than in the first picture.
-void prepare_rough_metal(const Settings& settings, PreparedData& data) {
+/// What rough metal and frosted glass need of the scene's lights, made now rather than in the first picture.
+void prepare_glossy(const Settings& settings, PreparedData& data) {
     const SceneNeeds& needs = data.scene.needs;
     const bool mirrors = settings.prefiltered_environment && settings.parts.reflection && settings.environment && needs.environment;
     if (mirrors) {
@@ -111,7 +111,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();
     }
-    if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_rough_metal(settings, data);
+    if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

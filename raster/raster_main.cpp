@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
                        "Metres that it may be away (default 0: half of the scene's size or the camera's distance, of ssao an eighth)")
             ->check(CLI::NonNegativeNumber);
         app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
-                     "Rough metal mirrors a blurred environment, not as if it were smooth (default: on)");
+                     "Rough metal and frosted glass show a blurred environment, not as if smooth (default: on)");
         app.add_flag("--transformed-cosines,!--no-transformed-cosines", transformed_cosines,
                      "Light surfaces shine on rough metal with their shape, not as from their centres (default: on)");
         app.add_flag("--screen-reflections,!--no-screen-reflections", screen_reflections,

@@ -11,6 +11,7 @@
 #include "raster/screen.h"
 #include "raster/shade.h"
 #include "raster/shadings/shadings.h"
+#include "raster/split.h"
 #include "raster/strip_samples.h"
 
 #include "common/image/srgb.h"
@@ -362,6 +363,18 @@ void render_with(const Prepared& prepared, const View& view, const Settings& set
 }
 
 } // namespace
+
+std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings) {
+    check(view, settings);
+    const PreparedData& data = prepared.data();
+    const TileGrid grid{{0, 0, view.width, view.height}};
+    Account account;
+    Control control;
+    Progress progress(control, grid.size());
+    GeometryLoan geometry(*data.geometries);
+    const Frame frame{data, settings, nullptr, grid, *geometry, nullptr, account, progress, control};
+    return look_at_screen(frame, view, pass_view_of(CameraModel(view), view, Pass{}));
+}
 
 void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
     const std::unique_ptr<Program> built_in = program(settings.shading);

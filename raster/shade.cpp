@@ -11,6 +11,7 @@
 
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
+#include "common/scene/used_materials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -282,9 +283,8 @@ void add_occlusion(const PreparedData& data, const Settings& settings, Screen& s
 }
 
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {
-    const std::vector<Material>& materials = data.scene.materials;
     return settings.shading == Shading::kLit && settings.screen_reflections && settings.parts.reflection &&
-           std::any_of(materials.begin(), materials.end(), may_mirror);
+           any_used_material(data.scene, may_mirror);
 }
 
 double occlusion_radius(const PreparedData& data, const Settings& settings) {
@@ -325,34 +325,6 @@ const Rgb* seen_before(const PreparedData& data, const Settings& settings, const
     const Screen::FirstLook& look = tile.screen()->first_look();
     const std::uint32_t key = FirstLookPicture::key(data.scene, tile.hit(x, y));
     return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
-}
-
-std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings) {
-    if (!needs_screen(prepared.data(), settings)) return nullptr;
-    Settings depths = settings;
-    depths.output = Output::kNearness;
-    Control control;
-    const auto screen = std::make_shared<Screen>(CameraModel(view).through(), SampleOffset{},
-                                                 render(prepared, view, depths, control).nearness);
-    Settings normals;
-    normals.shading = Shading::kNormal;
-    normals.threads = settings.threads;
-    screen->set_normals(render(prepared, view, normals, control).radiance);
-    add_occlusion(prepared.data(), settings, *screen);
-    if (needs_screen_radiance(prepared.data(), settings)) {
-        Settings first = settings;
-        first.screen_reflections = false;
-        first.samples_per_pixel = 1;
-        first.parts = {};
-        first.aovs = {};
-        first.aovs.hit = true;
-        const Rendering look = render(prepared, view, first, control);
-        FirstLookPicture picture(view.width, view.height);
-        for (int y = 0; y < view.height; ++y)
-            for (int x = 0; x < view.width; ++x) picture.set(prepared.data().scene, x, y, look.hit(x, y), look.radiance(x, y));
-        screen->set_first_look(std::move(picture).finish());
-    }
-    return screen;
 }
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,

@@ -1,8 +1,7 @@
 #include "raytrace/prepare.h"
 
+#include "common/scene/used_materials.h"
 #include "raytrace/render.h"
-
-#include <algorithm>
 
 namespace duet::raytrace {
 
@@ -15,13 +14,6 @@ bool textured(const Material& material) {
 }
 
 bool emits(const Material& material) { return emitter(material) != nullptr; }
-
-template <typename Predicate> bool any_used_material(const Scene& scene, Predicate predicate) {
-    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-        return std::any_of(object.materials.begin(), object.materials.end(),
-                           [&](std::uint32_t material) { return predicate(scene.materials[material]); });
-    });
-}
 
 } // namespace
 

@@ -132,6 +132,7 @@ void note_material(const Scene& scene, const Material& material, SceneNeeds& nee
     if (const auto* glass = std::get_if<Dielectric>(&material)) {
         needs.transmission = true;
         needs.specular = needs.specular || glass->thin || glass->smooth() || !glass->roughness.constant();
+        needs.glossy = needs.glossy || (!glass->thin && !glass->smooth());
         needs.insides = needs.insides || glass->has_inside();
     }
     if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material)) needs.layers = needs.glossy = true;

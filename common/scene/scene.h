@@ -41,7 +41,7 @@ struct SceneNeeds {
     bool motion = false, lens = false;
     bool environment = false; ///< it is not black
     bool delta_lights = false, surface_lights = false;
-    bool glossy = false;       ///< rough metal, and layers
+    bool glossy = false;       ///< rough metal, frosted glass, and layers
     bool layers = false;       ///< layered materials: principled and coated ones
     bool insides = false;      ///< glass that absorbs, or has a priority
     bool specular = false;     ///< mirrors and glass

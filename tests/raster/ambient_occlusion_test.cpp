@@ -158,6 +158,33 @@ TEST_SUITE("unit") {
         CHECK(rows >= 4);
     }
 
+    // Those of no depth have a distance of their own, which must not reach their neighbours.
+    TEST_CASE("pixels that see nothing spoil nothing: near a silhouette all is finite, wherever the near plane is") {
+        for (const raster::AmbientOcclusion kind : kBoth)
+            for (const double size : {1.0, 100.0, 1e4}) {
+                const float s = static_cast<float>(size);
+                Scene scene;
+                add(scene, Sphere{Vec3(0, 0, 0), s}, Mat4(), Diffuse{{Rgb(1.0f)}});
+                add(scene, QuadList{box_quads(Vec3(-2 * s, -s, -s), Vec3(-0.5f * s, 0.5f * s, s))}, Mat4(), Diffuse{{Rgb(1.0f)}});
+                scene.environment = SkyEnvironment{{1, 0.5f, 0.2f}, {0.1f, 0.3f, 1}};
+                finish_scene(scene);
+                View view{look(Vec3d(1, 2, 5) * size, {0, 0, 0}), 100, 75};
+                const ImageRgb expected = visible(scene, view, kind);
+                view.camera.near = size;
+                const ImageRgb found = visible(scene, view, kind);
+                CAPTURE(size);
+                int invalid = 0;
+                double sum = 0;
+                for (std::size_t i = 0; i < found.size(); ++i)
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        invalid += !std::isfinite(found[i][c]);
+                        sum += std::abs(static_cast<double>(found[i][c]) - static_cast<double>(expected[i][c]));
+                    }
+                CHECK(invalid == 0);
+                CHECK(sum / static_cast<double>(3 * found.size()) < 1e-3);
+            }
+    }
+
     TEST_CASE("the same bits for any number of threads, with motion and lens, too; unknown names are refused") {
         Scene scene = white_scene();
         add(scene, torus(24, 12), translation(Vec3(0, 0.5f, 0)));

@@ -204,8 +204,8 @@ TEST_SUITE("unit") {
         const Rgb expected = bsdf.eval(wo, Vec3(0, 0, 1), TransportMode::kRadiance) * (1000 * kPi * 1e-4f);
         check_rgb(sun.radiance(16, 12), expected, 1e-4);
         check_rgb(lamp.radiance(16, 12), expected, 0.02);
-        CHECK(names(lamp, "Rough metal sees each light surface"));
-        CHECK_FALSE(names(sun, "Rough metal sees each light surface"));
+        CHECK(names(lamp, "Rough metal and frosted glass see each light surface"));
+        CHECK_FALSE(names(sun, "Rough metal and frosted glass see each light surface"));
         const Rendering cosines = render(with_lamp, kFromAbove, {}); // look like its lobe, but are not
         check_rgb(cosines.radiance(16, 12), expected, 0.15);
         CHECK(names(cosines, "linearly transformed cosines"));

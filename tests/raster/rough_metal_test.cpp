@@ -174,6 +174,28 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("frosted glass alone shows the sky blurred, more the rougher it is; a pane stays clear") {
+        const auto contrast = [](float roughness, bool thin) {
+            Scene scene;
+            Dielectric glass;
+            glass.roughness = {roughness}, glass.thin = thin;
+            add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), glass);
+            scene.environment = SkyEnvironment{{0, 0, 0}, {1, 1, 1}};
+            finish_scene(scene);
+            CHECK(scene.needs.glossy == (roughness > 0 && !thin));
+            const ImageRgb found = render(scene, {look({0, 0, 5}, {0, 0, 0}, 20), 48, 48}, {}).radiance;
+            float least = 1, most = 0; // within the ball
+            for (int y = 12; y < 36; ++y)
+                for (int x = 12; x < 36; ++x) least = std::min(least, found(x, y).g), most = std::max(most, found(x, y).g);
+            return most - least;
+        };
+        const float clear = contrast(0, false), frosted = contrast(0.5f, false), rougher = contrast(0.8f, false);
+        CHECK(clear > 0.03f);
+        CHECK(frosted < 0.95f * clear);
+        CHECK(rougher < 0.95f * frosted);
+        CHECK(contrast(0.8f, true) == contrast(0, true));
+    }
+
     // A mirror floor before a wall that shines: below the wall's foot the floor shows it, upside down.
     TEST_CASE("screen reflections: a mirror shows the wall that the picture shows, elsewhere the sky") {
         Scene scene;

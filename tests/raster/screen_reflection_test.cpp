@@ -1,6 +1,9 @@
 // What metal mirrors of the picture, against the mirrored ray itself.
 #include "tests/raster/scenes.h"
 
+#include "raster/screen.h"
+#include "raster/split.h"
+
 #include <doctest/doctest.h>
 
 using namespace duet;
@@ -79,6 +82,20 @@ TEST_SUITE("unit") {
             CAPTURE(spp);
             CHECK(pixels > 200);
             CHECK(worst < 0.04f);
+        }
+    }
+
+    TEST_CASE("a metal that no object is of asks for no look at the picture") {
+        for (const bool used : {false, true}) {
+            Scene scene;
+            add(scene, Sphere{Vec3(0, 0, 0), 1});
+            add(scene, Sphere{Vec3(2, 0, 0), 1}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+            if (!used) scene.objects.pop_back();
+            finish_scene(scene);
+            const raster::Prepared prepared = raster::prepare(scene, plain());
+            const std::shared_ptr<const raster::Screen> screen = raster::screen_of(prepared, kView, plain());
+            CHECK((screen != nullptr) == used);
+            if (screen != nullptr) CHECK_FALSE(screen->first_look().radiance.empty());
         }
     }
 

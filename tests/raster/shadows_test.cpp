@@ -191,6 +191,74 @@ TEST_SUITE("unit") {
         }
     }
 
+    // What a square hides of a lamp of any shape, by points all over that.
+    TEST_CASE("shadows of squares, slivers of 1 : 10,000, straight and slanting, and thin triangles, from a micrometre to 1000 km") {
+        struct Lamp {
+            Vec3 u, v;
+            bool triangle;
+        };
+        const std::array<Lamp, 4> lamps{Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
+                                        Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
+        constexpr double kHeight = 3, kSide = 0.6;
+        for (const double size : {1e-6, 1.0, 1e6})
+            for (const Lamp& lamp : lamps) {
+                const float s = static_cast<float>(size);
+                Scene scene;
+                add(scene, QuadList{{{Vec3(-4, 0, 4) * s, Vec3(8, 0, 0) * s, Vec3(0, 0, -8) * s}}});
+                add(scene, QuadList{{{Vec3(-0.6f, 1, 0.6f) * s, Vec3(1.2f, 0, 0) * s, Vec3(0, 0, -1.2f) * s}}});
+                const Vec3 corner = (Vec3(0, 3, 0) - (lamp.u + lamp.v) * 0.5f) * s, u = lamp.u * s, v = lamp.v * s;
+                Mesh mesh;
+                mesh.positions = {corner, corner + u, corner + v};
+                mesh.triangles = {{0, 1, 2}};
+                add(scene, lamp.triangle ? Shape(mesh) : Shape(QuadList{{{corner, u, v}}}), Mat4(), Emissive{Rgb(5)});
+                View view = over_floor();
+                view.camera.eye *= size, view.camera.height *= size;
+                scene.camera = view.camera;
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = 1024;
+                settings.shadow_cells = 1;
+                const ImageFloat found = visible(scene, view, settings);
+                const auto expected = [&](Vec3d p) {
+                    constexpr int kSteps = 32;
+                    double all = 0, open = 0;
+                    for (int i = 0; i < kSteps * kSteps; ++i) {
+                        const double a = (i % kSteps + 0.5) / kSteps, b = (i / kSteps + 0.5) / kSteps;
+                        if (lamp.triangle && a + b > 1) continue;
+                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(lamp.u) * (a - 0.5) + Vec3d(lamp.v) * (b - 0.5), way = at - p;
+                        const Vec3d met = p + way / kHeight;
+                        const double weight = 1 / sqr(dot(way, way));
+                        all += weight;
+                        if (std::abs(met.x) > kSide || std::abs(met.z) > kSide) open += weight;
+                    }
+                    return open / all;
+                };
+                double sum = 0;
+                int dark = 0;
+                for (int y = 0; y < kSize; y += 4)
+                    for (int x = 0; x < kSize; x += 4) {
+                        const double part = expected(floor_point(x, y));
+                        sum += std::abs(static_cast<double>(found(x, y)) - part);
+                        dark += part == 0;
+                    }
+                CAPTURE(size);
+                CAPTURE(lamp.v.x);
+                CAPTURE(lamp.triangle);
+                CHECK(dark > 50);
+                CHECK(sum / (kSize * kSize / 16) < 0.02);
+            }
+    }
+
+    TEST_CASE("a lamp too thin to have an outline, 1 : 10,000,000, still throws a shadow") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{{{Vec3(-1, 3, -0.5e-7f), Vec3(1, 0, 0), Vec3(1, 0, 1e-7f)}}}, Mat4(), Emissive{Rgb(1e7f)});
+        add(scene, QuadList{{{Vec3(-1, 1, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}});
+        finish_scene(scene);
+        const ImageFloat found = visible(scene, over_floor());
+        CHECK(found(kSize / 2, kSize / 2) == 0);
+        CHECK(found(2, 2) > 0.9f);
+    }
+
     TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra is wide") {
         Scene scene = floor_scene();
         add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
