@@ -87,6 +87,12 @@ float SoftLight::bound(const Faces& faces, float farthest) const {
     return bound;
 }
 
+SoftLight::Blockers SoftLight::search(const Faces& faces) const {
+    Blockers blockers;
+    for (std::size_t i = 0; i < faces.count; ++i) add_blockers(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    return blockers;
+}
+
 /// Adds up at which fraction of the way blockers in a window stand. Each counts by how much of the light it hides: its
 /// size as seen from the receiver.
 void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {

@@ -95,12 +95,16 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
         if (!narrower) break;
         searched = faces(main, main_face, *outline, p, n, reach);
     }
-    Blockers blockers;
-    for (std::size_t i = 0; i < searched.count; ++i)
-        add_blockers(searched.parts[i]->cone, searched.parts[i]->face, searched.parts[i]->window, blockers);
+    Blockers blockers = search(searched);
+    bool again = searched.count > 1; // other faces may see what is close to the light
+    if (!(blockers.weights > 0) && !searched.small()) {
+        // What is close to the receiver may lie between the texels that were looked at: is it on the line to the centre?
+        blockers = search(faces(main, main_face, *outline, p, n, 0));
+        again = true;
+    }
     if (!(blockers.weights > 0)) return 1;
     const float blocker = blockers.sum / blockers.weights;
-    const Faces seen = searched.count > 1 ? faces(main, main_face, *outline, p, n, blocker) : searched;
+    const Faces seen = again ? faces(main, main_face, *outline, p, n, blocker) : searched;
     const auto dark = [&](int first, int count) {
         float sum = 0;
         for (std::size_t i = 0; i < seen.count; ++i) sum += dark_taps(blocker, seen.parts[i]->cone, seen.parts[i]->face, first, count);

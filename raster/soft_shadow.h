@@ -59,6 +59,7 @@ private:
     std::optional<Window> window(const Cone& cone, float reach, bool& whole) const;
     Faces faces(const Cone& cone, std::size_t main_face, const Outline& outline, Vec3 p, Vec3 n, float reach) const;
     float bound(const Faces& faces, float farthest) const;
+    Blockers search(const Faces& faces) const;
     void add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const;
     void add_row(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right, float up,
                  Blockers& blockers) const;

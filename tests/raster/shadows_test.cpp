@@ -259,6 +259,33 @@ TEST_SUITE("unit") {
         CHECK(found(2, 2) > 0.9f);
     }
 
+    // From close under the ball it covers but a few of the texels between the floor's lit part and the lamp.
+    TEST_CASE("no light in the umbra: a slanting lamp beside a ball that nearly touches the floor") {
+        constexpr double kRadius = 0.86, kMiddle = 0.98;
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-6, 0, 6), Vec3(12, 0, 0), Vec3(0, 0, -9)}}});
+        add(scene, Sphere{Vec3(0, 0.98f, 0), 0.86f});
+        add(scene, QuadList{{{Vec3(-3.2f, 2, 0.3f), Vec3(1.2f, 1.6f, 0), Vec3(0, 0, 2)}}}, Mat4(), Emissive{Rgb(12)});
+        scene.camera = look({0, 1.9, 5.2}, {0, 0.86, 0});
+        finish_scene(scene);
+        const ImageFloat found = visible(scene, over_floor(0.1));
+        int umbra = 0, lit = 0;
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const Vec3d p = floor_point(x, y);
+                bool dark = true; // however many points of the lamp
+                for (int i = 0; i < 81 && dark; ++i) {
+                    const Vec3d way = normalize(Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0) - p);
+                    const Vec3d to = Vec3d(0, kMiddle, 0) - p;
+                    dark = dot(to, way) > 0 && length(to - way * dot(to, way)) < 0.95 * kRadius;
+                }
+                umbra += dark;
+                lit += dark && found(x, y) > 0.15f; // less than one of the lamp's four pieces
+            }
+        CHECK(umbra > 1000);
+        CHECK(lit == 0);
+    }
+
     TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra is wide") {
         Scene scene = floor_scene();
         add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
