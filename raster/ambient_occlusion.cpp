@@ -24,7 +24,6 @@ template <typename F> std::array<float, OcclusionPattern::kPatterns> each_patter
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = f(static_cast<std::uint32_t>(i));
     return result;
 }
-float digits(std::uint32_t reversed) { return static_cast<float>(reverse_bits(reversed)) * 0x1p-32f; }
 
 /// A place in 4 × 4 pixels, row by row, to a number whose reversed bits differ most for those next to each other (Bayer
 /// 1973, «An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures»).
@@ -34,8 +33,8 @@ std::uint32_t bayer(std::uint32_t place) {
 }
 /// Of each pattern, in [0, 1): how far its lines are turned, and where between two steps they look; together a
 /// (0,2)-net.
-const std::array<float, 16> kTurn = each_pattern([](std::uint32_t i) { return digits(bayer(i)) + 1.0f / 32; });
-const std::array<float, 16> kJitter = each_pattern([](std::uint32_t i) { return digits(sobol_second(bayer(i))) + 1.0f / 32; });
+const std::array<float, 16> kTurn = each_pattern([](std::uint32_t i) { return net_point(bayer(i), 16).x; });
+const std::array<float, 16> kJitter = each_pattern([](std::uint32_t i) { return net_point(bayer(i), 16).y; });
 
 /// arccos, to 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
@@ -127,7 +126,7 @@ const HemispherePoints& hemisphere_points() {
         for (std::uint32_t pattern = 0; pattern < OcclusionPattern::kPatterns; ++pattern)
             for (std::uint32_t i = 0; i < kPoints; ++i) {
                 const std::uint32_t index = pattern * kPoints + i;
-                const Vec2 u{digits(index) + 0x1p-9f, digits(sobol_second(index)) + 0x1p-9f};
+                const Vec2 u = net_point(index, OcclusionPattern::kPatterns * kPoints);
                 const float part = (static_cast<float>(index * 77u % 256u) + 0.5f) / 256;
                 const Vec3 q = cosine_hemisphere(u) * sqr(part);
                 result.x[i][pattern] = q.x, result.y[i][pattern] = q.y, result.z[i][pattern] = q.z;

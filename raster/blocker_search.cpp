@@ -129,11 +129,11 @@ void SoftLight::add_row(const Cone& cone, const Floats::batch_bool_type& above, 
     const Floats depth = Floats(cube_.near) / nearness, per_scale = depth * Floats(1 / cube_.scale);
     const Vec3T<Floats> to{right * per_scale - Floats(cone.p.x), Floats(up) * per_scale - Floats(cone.p.y),
                            depth - Floats(cone.p.z)};
-    const Floats fraction = dot(lanes<Floats>(cone.o.axis), to) * Floats(cone.per_height);
+    const Floats fraction = dot(spread<Floats>(cone.o.axis), to) * Floats(cone.per_height);
     // Where the cone is narrower than a texel, half a texel beside it still belongs to what the filter sees: but not the
     // next facet of a concave surface (ShadowMap::kConcave).
     const Floats none(0.0f), margin = per_scale * Floats(0.5f * cone.per_metre);
-    const auto steps_up = dot(lanes<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(ShadowMap::kConcave));
+    const auto steps_up = dot(spread<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(ShadowMap::kConcave));
     const auto blocks = above & (fraction > none) & (fraction < Floats(1.0f)) &
                         cone.meets(to, fraction, xsimd::select(steps_up, margin, none));
     if (!xsimd::any(blocks)) return;

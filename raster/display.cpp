@@ -66,10 +66,10 @@ void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
 class TileDisplay {
 public:
     TileDisplay(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
-                const PassView& view, const DepthTile& tile, Image<Rgba8>& picture)
+                const PassView& view, const DepthTile& tile, std::optional<Rgba8> background, Image<Rgba8>& picture)
         : data_(data), settings_(settings), geometry_(geometry), view_(view), tile_(tile), picture_(picture),
           shader_(program != nullptr ? program->for_tile(data, geometry, view, tile.rect()) : nullptr),
-          background_(one_background(data, settings)) {}
+          background_(background) {}
 
     void run() {
         const PixelRect& rect = tile_.rect();
@@ -130,12 +130,6 @@ private:
                     encoded(srgb_encoder(), shade(data_, settings_, *hits_, x, y).radiance);
     }
 
-    static std::optional<Rgba8> one_background(const PreparedData& data, const Settings& settings) {
-        const std::optional<Rgb> color = constant_background(data, settings);
-        if (!color) return std::nullopt;
-        return encoded(srgb_encoder(), *color);
-    }
-
     const PreparedData& data_;
     const Settings& settings_;
     const Geometry& geometry_;
@@ -158,37 +152,45 @@ private:
 
 void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
                   const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture) {
-    const auto background = constant_background(data, settings);
+    const std::optional<Rgb> color = constant_background(data, settings);
+    const auto background = color ? std::optional(encoded(srgb_encoder(), *color)) : std::nullopt;
     if (background && is_empty(geometry, index)) {
-        fill(rect, encoded(srgb_encoder(), *background), picture);
+        fill(rect, *background, picture);
         return;
     }
     DepthTile tile;
     draw_tile(geometry, view, view.samples.front(), rect, index, tile);
     if (!background || program == nullptr) tile.empty_undrawn(); // what was not drawn to is looked at, too
-    TileDisplay(data, settings, program, geometry, view, tile, picture).run();
+    TileDisplay(data, settings, program, geometry, view, tile, background, picture).run();
 }
+
+namespace {
+
+/// keep_nearness, by way of `depths`; false where there is nothing in the tile.
+bool keep_depths(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index, DepthTile& depths,
+                 ImageFloat& picture) {
+    if (is_empty(geometry, index)) {
+        fill(rect, 0.0f, picture);
+        return false;
+    }
+    draw_tile(geometry, view, view.samples.front(), rect, index, depths);
+    copy_nearness(depths, picture);
+    return true;
+}
+
+} // namespace
 
 void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
                    ImageFloat& picture) {
-    if (is_empty(geometry, index)) {
-        fill(rect, 0.0f, picture);
-        return;
-    }
     DepthTile depths;
-    draw_tile(geometry, view, view.samples.front(), rect, index, depths);
-    copy_nearness(depths, picture);
+    keep_depths(geometry, view, rect, index, depths, picture);
 }
 
 void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
                               const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors) {
-    if (is_empty(geometry, index)) {
-        fill(rect, 0.0f, nearness);
-        return;
-    }
     DepthTile depths;
-    cover(geometry, view, view.samples.front(), rect, index, depths);
-    copy_nearness(depths, nearness);
+    if (!keep_depths(geometry, view, rect, index, depths, nearness)) return;
+    depths.empty_undrawn(); // what was not drawn to is looked at, too
     const auto shader = program.for_tile(data, geometry, view, rect);
     for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
         for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {

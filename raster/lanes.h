@@ -111,15 +111,7 @@ inline Floats inverse_sqrt(const Floats& x) {
 /// The same of one number.
 inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
 
-/// Four times four numbers, turned to batches of the first of each, the second, the third, the fourth.
-using Quads = xsimd::make_sized_batch_t<float, 4>;
-struct Transposed {
-    Quads x, y, z, w;
-};
-inline Transposed transposed(const Quads& a, const Quads& b, const Quads& c, const Quads& d) {
-    const Quads low_ac = zip_lo(a, c), low_bd = zip_lo(b, d), high_ac = zip_hi(a, c), high_bd = zip_hi(b, d);
-    return {zip_lo(low_ac, low_bd), zip_hi(low_ac, low_bd), zip_lo(high_ac, high_bd), zip_hi(high_ac, high_bd)};
-}
+using Quads = FloatBatch<4>;
 
 /// A bit for each lane that holds true, lane 0 the lowest.
 inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {

@@ -13,7 +13,6 @@ inline Quads four(float a, float b, float c, float d) {
     alignas(16) const std::array<float, 4> numbers{a, b, c, d};
     return Quads::load_aligned(numbers.data());
 }
-template <typename T> Vec3T<T> lanes(Vec3 v) { return {T(v.x), T(v.y), T(v.z)}; }
 
 /// Texels x0 to x1, y0 to y1 of a face.
 struct SoftLight::Window {
@@ -43,7 +42,7 @@ public:
     /// passes beside that by up to `margin`, as a part of its edges.
     Floats::batch_bool_type meets(const Vec3T<Floats>& to, const Floats& f, const Floats& margin) const {
         // The line goes on to corner + a·u + b·v; both sides times the fraction save the division.
-        const Floats a = Floats(p_u_) * f + dot(to, lanes<Floats>(o.dual_u)), b = Floats(p_v_) * f + dot(to, lanes<Floats>(o.dual_v));
+        const Floats a = Floats(p_u_) * f + dot(to, spread<Floats>(o.dual_u)), b = Floats(p_v_) * f + dot(to, spread<Floats>(o.dual_v));
         if (kind_ == Emitter::Kind::kBall) return a * a + b * b <= (f + margin) * (f + margin);
         const Floats most = kind_ == Emitter::Kind::kParallelogram ? max(a, b) : a + b;
         return (min(a, b) > -margin) & (most <= f + margin);

@@ -21,6 +21,10 @@ template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, 
 }
 
 Floats load_from(const ImageFloat& image, int x, int y) { return Floats::load_unaligned(&image(x, y)); }
+Vec3T<Floats> normals_from(const Screen& screen, int x, int y) {
+    const auto& [nx, ny, nz] = screen.normals();
+    return {load_from(nx, x, y), load_from(ny, x, y), load_from(nz, x, y)};
+}
 
 /// What a pixel that sees nothing is given, so that all that follows stays finite.
 Floats any_nearness(const Floats& nearness) { return xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)); }
@@ -55,8 +59,7 @@ void OcclusionImage::look_row(int y) {
         const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
         OcclusionPoints points;
         points.p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
-        points.n = {load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
-                    load_from(screen_.normals()[2], x, y)};
+        points.n = normals_from(screen_, x, y);
         points.to_viewer = screen_.to_viewer(points.p);
         const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
         const std::array<Floats, 4> numbers{seen.visible, seen.hidden.x, seen.hidden.y, seen.hidden.z};
@@ -73,8 +76,7 @@ void OcclusionImage::smooth_row(int y) {
         if (xsimd::all(nearness <= none)) return;
         const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0), last(static_cast<float>(width - 1));
         const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
-        const Vec3T<Floats> n{load_from(screen_.normals()[0], x, y), load_from(screen_.normals()[1], x, y),
-                              load_from(screen_.normals()[2], x, y)};
+        const Vec3T<Floats> n = normals_from(screen_, x, y);
         const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / any_nearness(nearness));
         Floats weights(0.0f);
         std::array<Floats, 4> sums{none, none, none, none};
@@ -132,8 +134,7 @@ SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
 }
 
 SkySeen OcclusionImage::look(Vec3 p, Vec3 n) const {
-    const auto all = [](Vec3 v) { return Vec3T<Floats>{Floats(v.x), Floats(v.y), Floats(v.z)}; };
-    const OcclusionPoints points{all(p), all(n), all(screen_.to_viewer(p))};
+    const OcclusionPoints points{spread<Floats>(p), spread<Floats>(n), spread<Floats>(screen_.to_viewer(p))};
     SkySeen sum{0, {}};
     for (int first = 0; first < OcclusionPattern::kPatterns; first += kLanesWide) {
         const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_point(first));

@@ -2,6 +2,7 @@
 
 #include "common/geometry/sphere.h"
 #include "common/material/ggx.h"
+#include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
 #include "common/system/parallel.h"
 #include "common/vec/frame.h"
@@ -23,7 +24,7 @@ std::vector<LobeSample> lobe_samples(float alpha) {
     const Vec3 n(0, 0, 1);
     for (int i = 0; i < Prefiltered::kSamples; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / Prefiltered::kSamples,
-                     static_cast<float>(reverse_bits(static_cast<std::uint32_t>(i)) >> 8) * 0x1p-24f);
+                     unit_float(reverse_bits(static_cast<std::uint32_t>(i))));
         const Vec3 h = ggx_sample_visible_normal(n, alpha, {u.y, u.x}), w = normalize(reflect(n, h));
         if (!(w.z > 0)) continue;
         samples.push_back({w, w.z, 1 / (Prefiltered::kSamples * ggx_reflection_pdf(n, h, alpha))});

@@ -7,10 +7,12 @@
 #include "raster/radiance_pyramid.h"
 #include "raster/samples.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace duet::raster {
 
@@ -32,6 +34,11 @@ public:
     Vec3 project(Vec3 p) const {
         const auto [x, y, depth, w] = homogeneous(p);
         return {x / w, y / w, depth};
+    }
+    /// The pixel of such a place, or the nearest one.
+    std::pair<int, int> pixel_at(Vec3 place) const {
+        const auto within = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
+        return {within(place.x, width()), within(place.y, height())};
     }
     /// What is seen at a pixel; nothing outside the picture, or where nothing is.
     std::optional<Vec3> seen(int x, int y) const;
@@ -87,7 +94,7 @@ public:
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
     /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
-    /// (first_look_key), or 0 where it would not be the same again; and the same at all sizes, without the scene's lamps
+    /// (FirstLookPicture::key), or 0 where it would not be the same again; and the same at all sizes, without the scene's lamps
     /// and with them.
     struct FirstLook {
         Image<std::uint32_t> keys;

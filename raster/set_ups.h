@@ -51,9 +51,7 @@ private:
     using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
     void gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const;
     std::uint32_t set_up_planes(const Corners& corners);
-    template <typename T, typename Keep>
-    void set_up_varyings(const std::array<Vec3T<T>, 3>& p, const std::array<Vec3T<T>, 3>& n, const std::array<Vec2T<T>, 3>& uv,
-                         T side, const Keep& keep) const;
+    void set_up_varyings(std::size_t i, const Corners& corners, Floats side);
 
     const Triangles& triangles_;
     const PassView& view_;
@@ -103,20 +101,29 @@ template <VertexShader S> std::uint32_t SetUps<S>::keep(std::uint32_t id) {
     return kept;
 }
 
-/// The vertex function's numbers at three corners: keep(k, first corner's, change along b1, along b2), and the normal.
-template <VertexShader S>
-template <typename T, typename Keep>
-void SetUps<S>::set_up_varyings(const std::array<Vec3T<T>, 3>& p, const std::array<Vec3T<T>, 3>& n,
-                                const std::array<Vec2T<T>, 3>& uv, T side, const Keep& keep) const {
-    const Vec3T<T> ng_here = cross(p[1] - p[0], p[2] - p[0]) * side;
-    const Vec3T<T> middle = (p[0] + p[1] + p[2]) * T(1.0f / 3);
-    std::array<std::array<T, kVaryings<S>>, 3> v;
+/// The vertex function's numbers of the triangles from the i-th on, a batch of them; `side`: 1 in front, -1 behind.
+template <VertexShader S> void SetUps<S>::set_up_varyings(std::size_t i, const Corners& corners, Floats side) {
+    const auto vector = [&](std::size_t k, std::size_t first) {
+        return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
+    };
+    const std::array<Vec3T<Floats>, 3> p{vector(0, 0), vector(1, 0), vector(2, 0)};
+    const Vec3T<Floats> ng = cross(p[1] - p[0], p[2] - p[0]) * side, middle = (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
+    std::array<std::array<Floats, kVaryings<S>>, 3> v;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3T<T> edges(T(k == 0 ? 1 : 0), T(k == 1 ? 1 : 0), T(k == 2 ? 1 : 0));
-        v[k] = numbers<S, T>(shader_.vertex(VertexInput<T>{p[k], n[k], uv[k], ng_here, middle, edges, *view_of_object_}));
+        const auto edge = [k](std::size_t of) { return Floats(of == k ? 1.0f : 0.0f); };
+        Vec2T<Floats> uv(Floats(0.0f), Floats(0.0f));
+        if constexpr (wants_texture_coordinates<S>()) uv = {load(corners[k][3], i), load(corners[k][7], i)};
+        v[k] = numbers<S, Floats>(shader_.vertex(VertexInput<Floats>{
+            p[k], vector(k, 4), uv, ng, middle, {edge(0), edge(1), edge(2)}, *view_of_object_}));
     }
-    for (std::size_t c = 0; c < kVaryings<S>; ++c) keep(c, v[0][c], v[1][c] - v[0][c], v[2][c] - v[0][c]);
-    keep.normal(ng_here);
+    for (std::size_t c = 0; c < kVaryings<S>; ++c) {
+        store(many_.n[c], i, v[0][c]);
+        store(many_.n1[c], i, v[1][c] - v[0][c]);
+        store(many_.n2[c], i, v[2][c] - v[0][c]);
+    }
+    store(many_.ng[0], i, ng.x);
+    store(many_.ng[1], i, ng.y);
+    store(many_.ng[2], i, ng.z);
 }
 
 /// Of each of three corners eight numbers: position and u, normal and v.
@@ -131,14 +138,12 @@ void SetUps<S>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& corne
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kStrip; i += Quads::size)
             for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
-                const auto from = [&](std::size_t lane) {
-                    return Quads::load_aligned(&vertices[triangles[i + lane][k]].p.x + first);
-                };
-                const Transposed four = transposed(from(0), from(1), from(2), from(3));
-                four.x.store_aligned(corners[k][first].at(i));
-                four.y.store_aligned(corners[k][first + 1].at(i));
-                four.z.store_aligned(corners[k][first + 2].at(i));
-                if constexpr (wants_texture_coordinates<S>()) four.w.store_aligned(corners[k][first + 3].at(i));
+                const auto [x, y, z, w] = load_columns<Quads::size>(
+                    [&](std::size_t lane) { return &vertices[triangles[i + lane][k]].p.x + first; });
+                x.store_aligned(corners[k][first].at(i));
+                y.store_aligned(corners[k][first + 1].at(i));
+                z.store_aligned(corners[k][first + 2].at(i));
+                if constexpr (wants_texture_coordinates<S>()) w.store_aligned(corners[k][first + 3].at(i));
             }
 }
 
@@ -179,37 +184,8 @@ template <VertexShader S> const typename SetUps<S>::Many& SetUps<S>::set_up(cons
     // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
     std::uint32_t front = set_up_planes(corners);
     if (object_->mirrored) front = ~front;
-    struct Keep {
-        Many& many;
-        std::size_t i;
-        void operator()(std::size_t c, Floats first, Floats along_1, Floats along_2) const {
-            store(many.n[c], i, first);
-            store(many.n1[c], i, along_1);
-            store(many.n2[c], i, along_2);
-        }
-        void normal(Vec3T<Floats> v) const {
-            store(many.ng[0], i, v.x);
-            store(many.ng[1], i, v.y);
-            store(many.ng[2], i, v.z);
-        }
-    };
-    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        std::array<Vec3T<Floats>, 3> p, n;
-        std::array<Vec2T<Floats>, 3> uv;
-        const auto vector = [&](std::size_t k, std::size_t first) {
-            return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
-        };
-        for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = vector(k, 0);
-            n[k] = vector(k, 4);
-            if constexpr (wants_texture_coordinates<S>())
-                uv[k] = {load(corners[k][3], i), load(corners[k][7], i)};
-            else
-                uv[k] = {Floats(0.0f), Floats(0.0f)};
-        }
-        const Floats side = xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f));
-        set_up_varyings(p, n, uv, side, Keep{many_, i});
-    }
+    for (std::size_t i = 0; i < kStrip; i += Floats::size)
+        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)));
     return many_;
 }
 

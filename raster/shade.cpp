@@ -32,8 +32,8 @@ SkySeen sky_seen(const Settings& settings, const Screen* screen, const ShadingPo
     if (screen == nullptr || screen->occlusion() == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone) return {};
     const Vec3 p = screen->relative(point.surface.p), place = screen->project(p);
     if (!(place.z > 0)) return {};
-    const auto pixel = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
-    return screen->occlusion()->at(pixel(place.x, screen->width()), pixel(place.y, screen->height()), p, point.ns);
+    const auto [x, y] = screen->pixel_at(place);
+    return screen->occlusion()->at(x, y, p, point.ns);
 }
 
 /// Light from the environment, occluded as far as that is known.
@@ -45,17 +45,16 @@ public:
 
     Rgb operator()(const DiffuseBsdf& bsdf) const {
         if (is_black(bsdf.albedo)) return {};
-        return bsdf.albedo * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns, sky_seen(settings_, screen_, point_));
+        return bsdf.albedo * kInvPi * received();
     }
     /// Of a rough one by the split sum; else what a smooth metal reflects.
     Rgb operator()(const MetalBsdf& bsdf) const {
         if (bsdf.smooth() || prefiltered_ == nullptr) return look_up(MetalBsdf{bsdf.reflectance, 0}, false);
-        const Vec3 mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
-        const Vec3 axis = Prefiltered::axis(point_.ns, mirrored, bsdf.alpha);
+        const Vec3 axis = Prefiltered::axis(point_.ns, mirrored(), bsdf.alpha);
         return prefiltered_->at(data_.scene.environment, axis, bsdf.alpha) * bsdf.albedo(std::abs(point_.wo.z));
     }
     Rgb operator()(const RoughDiffuseBsdf& bsdf) const {
-        return bsdf.reflected(std::abs(point_.wo.z)) * kInvPi * data_.irradiance.at(data_.scene.environment, point_.ns, sky_seen(settings_, screen_, point_));
+        return bsdf.reflected(std::abs(point_.wo.z)) * kInvPi * received();
     }
     /// The mirror image, and what is seen through this side of the glass alone: refracted once, tinted as by two
     /// crossings; weighed by Fresnel's equations.
@@ -76,14 +75,19 @@ public:
     /// The mirror image, and what is straight behind.
     Rgb operator()(const ThinDielectricBsdf& bsdf) const {
         const ThinDielectricBsdf::Parts parts = bsdf.parts(std::abs(point_.wo.z));
-        const Vec3 mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
         Rgb sum = radiance(data_.scene.environment, normalize(point_.frame.to_world(-point_.wo))) * parts.transmitted;
-        if (point_.receives(mirrored)) sum += radiance(data_.scene.environment, normalize(mirrored)) * parts.reflected;
+        if (point_.receives(mirrored())) sum += radiance(data_.scene.environment, normalize(mirrored())) * parts.reflected;
         return sum;
     }
     Rgb operator()(const LayeredBsdf&) const { return {}; } // its layers are shaded each by itself
 
 private:
+    /// What arrives at a diffuse surface.
+    Rgb received() const {
+        return data_.irradiance.at(data_.scene.environment, point_.ns, sky_seen(settings_, screen_, point_));
+    }
+    Vec3 mirrored() const { return point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z}); }
+
     template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted, float alpha = 0) const {
         // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
         const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
@@ -126,11 +130,7 @@ struct DirectLight {
 };
 
 /// Ray number i of kMirrorRays from a rough metal: a (0,2)-net, of which each aligned part is one.
-Vec2 mirror_ray(int i) {
-    const auto index = static_cast<std::uint32_t>(i);
-    const auto digits = [](std::uint32_t x) { return (static_cast<float>(reverse_bits(x) >> 8) + 0.5f) * 0x1p-24f + 0.5f / kMirrorRays; };
-    return {digits(index), digits(sobol_second(index))};
-}
+Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), kMirrorRays); }
 
 /// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions of its
 /// lobe: the same few for every point, each as wide as the part of the lobe that it stands for.
@@ -142,9 +142,10 @@ public:
         const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
         bounds_ = {bounds_.low - slack, bounds_.high + slack};
         const Vec3 place = screen.project(p_);
-        const auto pixel = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
-        if (place.z > 0)
-            spread_ = 2 * normal_turn(screen, pixel(place.x, screen.width()), pixel(place.y, screen.height()));
+        if (place.z > 0) {
+            const auto [x, y] = screen.pixel_at(place);
+            spread_ = 2 * normal_turn(screen, x, y);
+        }
         depth_ = max(place.z, screen.near());
     }
 

@@ -30,7 +30,6 @@ namespace duet::raster {
 struct PassView;
 
 /// One value to all lanes.
-template <typename T> Vec3T<T> spread(Vec3 v) { return {T(v.x), T(v.y), T(v.z)}; }
 template <typename T> RgbT<T> spread(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
 /// v / |v| of what is not zero.
 template <typename T> Vec3T<T> unit(Vec3T<T> v) { return v * inverse_sqrt(dot(v, v)); }

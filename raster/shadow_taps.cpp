@@ -17,9 +17,8 @@ TapTable tap_table(Emitter::Kind kind) {
     TapTable table;
     for (std::uint32_t i = 0; i < kTaps; ++i) {
         const auto index = static_cast<std::size_t>(i);
-        Vec2 u{(static_cast<float>(reverse_bits(i) >> 8) + 0.5f) * 0x1p-24f + 0.5f / kTaps,
-               (static_cast<float>(reverse_bits(sobol_second(i)) >> 8) + 0.5f) * 0x1p-24f + 0.5f / kTaps};
-        std::swap(u.x, u.y);
+        const Vec2 point = net_point(i, kTaps);
+        Vec2 u{point.y, point.x};
         if (kind == Emitter::Kind::kBall) u = concentric_disk(u);
         if (kind == Emitter::Kind::kTriangle) u = uniform_triangle(u);
         table.a[index] = u.x, table.b[index] = u.y;

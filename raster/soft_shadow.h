@@ -31,7 +31,7 @@ public:
     ///   to the light, so that the walls of a corner are no blockers.
     /// - How far from the receiver blockers can be is known from the nearest depth in the part of the map that the cone
     ///   covers; that bounds the cone, and so the part, again and again. What is left is searched texel by texel, up to
-    ///   kSearched of them: no blocker is missed at a contact.
+    ///   kSearchedSide × kSearchedRows of them: no blocker is missed at a contact.
     float visibility(const Receiver& receiver, TapRange taps) const;
 
     std::int64_t memory_bytes() const;

@@ -16,6 +16,10 @@ namespace {
 // Whether a camera ray uses all of its block's numbers, or the first two alone.
 bool uses_all(const RenderPlan& plan) { return plan.lens || plan.motion; }
 
+CameraNumbers camera_numbers(const RenderPlan& plan, Sampler& sampler) {
+    return uses_all(plan) ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
+}
+
 CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
     return {Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), u.lens, u.time};
 }
@@ -23,8 +27,7 @@ CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const Came
 } // namespace
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    const CameraNumbers u = uses_all(plan) ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
-    const CameraModel::Point point = camera_point(plan, x, y, u);
+    const CameraModel::Point point = camera_point(plan, x, y, camera_numbers(plan, sampler));
     return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
@@ -79,8 +82,8 @@ public:
         if (target_.aovs.any())
             for (std::size_t i = 0; i < size; ++i)
                 target_.aovs.add(samples_[i].x, samples_[i].y, samples_[i].index, rays[i], hits[i]);
-        radiances(target_.settings.integrator, target_.plan, rays, hits, std::span(samplers_).first(size), std::span(radiances_).first(size),
-                  counts_);
+        radiances(target_.settings.integrator, target_.plan, rays, hits, std::span(samplers_).first(size),
+                  std::span(radiances_).first(size), counts_);
         for (std::size_t i = 0; i < size; ++i) {
             const auto [x, y, index] = samples_[i];
             if (!target_.keeper.film().add(x, y, index & 1u, radiances_[i]))
@@ -112,8 +115,7 @@ private:
                 set(i, samplers_[i].camera_numbers(first));
                 set(i + 1, samplers_[i + 1].camera_numbers(second));
             }
-        for (; i < rays.size(); ++i)
-            set(i, uses_all(target_.plan) ? samplers_[i].camera_numbers() : CameraNumbers{samplers_[i].pixel_numbers()});
+        for (; i < rays.size(); ++i) set(i, camera_numbers(target_.plan, samplers_[i]));
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 

@@ -21,9 +21,6 @@ Vec3d rounded(Vec3d p) {
     return {one(p.x), one(p.y), one(p.z)};
 }
 
-// The same number in all lanes of a batch.
-template <typename T> Vec3T<T> in_all(Vec3d v) { return {T(v.x), T(v.y), T(v.z)}; }
-
 Vec3T<DoubleBatch> rounded(const Vec3T<DoubleBatch>& p) {
     const auto one = [](DoubleBatch x) {
         alignas(64) std::array<float, kDoubleLanes> floats;
@@ -119,8 +116,8 @@ template <typename T> struct CameraModel::Exact {
 // The lens point's offset from the centre, ending on float coordinates.
 template <typename T> Vec3T<T> CameraModel::lens_offset(Vec2T<T> on_disk) const {
     const Vec2T<T> lens = on_disk * T(aperture_radius_);
-    const Vec3T<T> origin = in_all<T>(center_.origin);
-    return rounded(origin + in_all<T>(right_) * lens.x + in_all<T>(up_) * lens.y) - origin;
+    const Vec3T<T> origin = spread<T>(center_.origin);
+    return rounded(origin + spread<T>(right_) * lens.x + spread<T>(up_) * lens.y) - origin;
 }
 
 // Seen from another point of the lens, the plane in focus stays where it is: a pixel's ray goes to the point
@@ -140,16 +137,16 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
 
 // As through(lens point).ray(pixel), without the matrix.
 template <typename T> CameraModel::Exact<T> CameraModel::exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const {
-    Vec3T<T> d = in_all<T>(center_.direction) + in_all<T>(center_.direction_dx) * pixel.x +
-                 in_all<T>(center_.direction_dy) * pixel.y;
+    Vec3T<T> d = spread<T>(center_.direction) + spread<T>(center_.direction_dx) * pixel.x +
+                 spread<T>(center_.direction_dy) * pixel.y;
     Vec3T<T> origin;
     if (has_lens()) {
         const Vec3T<T> offset = lens_offset(on_disk);
-        d = (d * T(focus_distance_) - offset) / (T(focus_distance_) - dot(offset, in_all<T>(center_.forward)));
-        origin = in_all<T>(center_.origin) + offset;
+        d = (d * T(focus_distance_) - offset) / (T(focus_distance_) - dot(offset, spread<T>(center_.forward)));
+        origin = spread<T>(center_.origin) + offset;
     } else {
-        origin = in_all<T>(center_.origin) + in_all<T>(center_.origin_dx) * pixel.x +
-                 in_all<T>(center_.origin_dy) * pixel.y;
+        origin = spread<T>(center_.origin) + spread<T>(center_.origin_dx) * pixel.x +
+                 spread<T>(center_.origin_dy) * pixel.y;
     }
     const T per_depth = length(d); // distance along the ray for each unit of depth
     return {origin, d / per_depth, T(center_.near) * per_depth};

@@ -29,6 +29,13 @@ inline float cos_theta(Vec3 w) { return w.z; }
 inline float abs_cos_theta(Vec3 w) { return abs(w.z); }
 inline bool same_hemisphere(Vec3 a, Vec3 b) { return a.z * b.z > 0; }
 
+/// A direction that a Bsdf without delta lobes has drawn as its sample: density and weight are those of the very
+/// direction, rounded as it is.
+template <typename BsdfType> BsdfSample sample_of(const BsdfType& bsdf, Vec3 wo, Vec3 wi, TransportMode mode) {
+    const float density = bsdf.pdf(wo, wi, mode);
+    return {wi, bsdf.eval(wo, wi, mode) * (abs_cos_theta(wi) / density), density};
+}
+
 /// The direction to the viewer, in the shading frame, kept on the side that is really seen. Interpolated normals make
 /// surfaces near their silhouette face away though they are seen: there wo is lifted just above the shading horizon, or
 /// the material would show its other side, as a dark rim. `side` is the sign of the geometric normal's cosine with the

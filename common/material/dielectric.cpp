@@ -33,7 +33,7 @@ ThinDielectricBsdf Dielectric::thin_at(const TextureSet& textures, const Surface
 }
 
 RoughDielectricBsdf Dielectric::rough_at(const TextureSet& textures, const SurfacePoint& point) const {
-    return {ior, evaluate_reflectance(textures, tint, point), sqr(clamp(evaluate(textures, roughness, point), 0.0f, 1.0f))};
+    return {ior, evaluate_reflectance(textures, tint, point), sqr(evaluate_unit(textures, roughness, point))};
 }
 
 } // namespace duet

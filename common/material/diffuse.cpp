@@ -9,7 +9,7 @@ DiffuseBsdf Diffuse::at(const TextureSet& textures, const SurfacePoint& point) c
 }
 
 RoughDiffuseBsdf Diffuse::rough_at(const TextureSet& textures, const SurfacePoint& point) const {
-    return {evaluate_reflectance(textures, albedo, point), clamp(evaluate(textures, roughness, point), 0.0f, 1.0f)};
+    return {evaluate_reflectance(textures, albedo, point), evaluate_unit(textures, roughness, point)};
 }
 
 } // namespace duet

@@ -2,11 +2,10 @@
 // common/material/ggx.h says what they hold.
 #include "common/material/ggx.h"
 #include "common/material/ggx_albedo_table.h"
+#include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
+#include "common/system/source_table.h"
 
-#include <cstdio>
-#include <fstream>
-#include <iostream>
 #include <memory>
 
 using namespace duet;
@@ -24,7 +23,7 @@ Entry integrate(float alpha, float cosine) {
     double energy = 0, offset = 0, lost = 0;
     for (int i = 0; i < kSamples; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
-                     static_cast<float>(reverse_bits(static_cast<std::uint32_t>(i)) >> 8) * 0x1p-24f + 0x1p-25f);
+                     unit_float(reverse_bits(static_cast<std::uint32_t>(i))) + 0x1p-25f);
         const Vec3 h = ggx_sample_visible_normal(wo, alpha, u), wi = reflect(wo, h);
         const double weight = wi.z > 0 ? static_cast<double>(ggx_g2_over_g1(wo, wi, alpha)) : 0;
         const double x = 1 - static_cast<double>(dot(wo, h));
@@ -50,50 +49,40 @@ void add_means(GgxAlbedoTables& tables, std::size_t row, float alpha) {
     tables.mean_share[row] = static_cast<float>(share);
 }
 
-void write(std::ostream& out, const std::array<float, GgxAlbedoTables::kSide>& row) {
-    out << "{";
-    for (const float number : row) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.9ef, ", static_cast<double>(number)); // nine digits bring back every float
-        out << text;
-    }
-    out << "},\n";
-}
-
 void write(std::ostream& out, const GgxAlbedoTables::Table& table) {
     out << "{{\n";
-    for (const auto& row : table) write(out, row);
+    for (const auto& row : table) write_numbers(out, row);
     out << "}},\n";
 }
 
-} // namespace
-
-int main(int count, char** arguments) {
-    if (count != 2) {
-        std::cerr << "usage: make_ggx_albedo OUT.cpp\n";
-        return 2;
-    }
-    const auto tables = std::make_unique<GgxAlbedoTables>();
+std::unique_ptr<GgxAlbedoTables> compute_tables() {
+    auto tables = std::make_unique<GgxAlbedoTables>();
     constexpr std::size_t kSide = GgxAlbedoTables::kSide;
     for (std::size_t row = 0; row < kSide; ++row) {
         const float alpha = sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row)));
         for (std::size_t column = 0; column < kSide; ++column) {
             const float x = static_cast<float>(column) / (kSide - 1);
-            tables->lost[row][column] = static_cast<float>(integrate(alpha, GgxAlbedoTables::cosine_of_steepness(alpha, x)).lost);
+            tables->lost[row][column] =
+                static_cast<float>(integrate(alpha, GgxAlbedoTables::cosine_of_steepness(alpha, x)).lost);
             tables->share[row][column] = static_cast<float>(integrate(alpha, std::max(x * x, 1e-7f)).share);
         }
     }
     for (std::size_t row = 0; row < kSide; ++row)
         add_means(*tables, row, sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row))));
+    return tables;
+}
 
-    std::ofstream out(arguments[1]);
-    out << "#include \"common/material/ggx_albedo_table.h\"\n\nnamespace duet {\n\nextern const GgxAlbedoTables "
-           "kGgxAlbedoTables;\nconst GgxAlbedoTables kGgxAlbedoTables{\n";
-    write(out, tables->lost);
-    write(out, tables->share);
-    write(out, tables->mean_lost);
-    write(out, tables->mean_share);
-    out << "};\n\n} // namespace duet\n";
-    out.close();
-    return out ? 0 : 1;
+} // namespace
+
+int main(int count, char** arguments) {
+    return write_source(count, arguments, "make_ggx_albedo", [](std::ostream& out) {
+        const auto tables = compute_tables();
+        out << "#include \"common/material/ggx_albedo_table.h\"\n\nnamespace duet {\n\nextern const GgxAlbedoTables "
+               "kGgxAlbedoTables;\nconst GgxAlbedoTables kGgxAlbedoTables{\n";
+        write(out, tables->lost);
+        write(out, tables->share);
+        write_numbers(out, tables->mean_lost);
+        write_numbers(out, tables->mean_share);
+        out << "};\n\n} // namespace duet\n";
+    });
 }

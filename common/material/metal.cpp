@@ -50,9 +50,7 @@ std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float lobe, Vec2 u, Transpo
     // integrates to less than 1 by as much.
     if (!(wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
-    // Density and weight are those of the rounded direction returned.
-    const float density = pdf(wo, wi, mode);
-    return BsdfSample{wi, eval(wo, wi, mode) * (abs_cos_theta(wi) / density), density};
+    return sample_of(*this, wo, wi, mode);
 }
 
 float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
@@ -64,7 +62,7 @@ float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
 }
 
 MetalBsdf Metal::at(const TextureSet& textures, const SurfacePoint& point) const {
-    const float alpha = sqr(clamp(evaluate(textures, roughness, point), 0.0f, 1.0f));
+    const float alpha = sqr(evaluate_unit(textures, roughness, point));
     return conductor.exists() ? MetalBsdf(conductor, alpha) : MetalBsdf(evaluate_reflectance(textures, reflectance, point), alpha);
 }
 

@@ -9,16 +9,12 @@ namespace {
 
 float normal_reflectance(float ior) { return sqr((ior - 1) / (ior + 1)); }
 
-float unit(const TextureSet& textures, const ScalarSlot& slot, const SurfacePoint& point) {
-    return clamp(evaluate(textures, slot, point), 0.0f, 1.0f);
-}
-
 } // namespace
 
 LayeredBsdf Principled::at(const TextureSet& textures, const SurfacePoint& point) const {
-    return LayeredBsdf({evaluate_reflectance(textures, base_color, point), unit(textures, metallic, point),
-                        normal_reflectance(ior), unit(textures, roughness, point), unit(textures, clearcoat, point),
-                        unit(textures, clearcoat_roughness, point)});
+    return LayeredBsdf({evaluate_reflectance(textures, base_color, point), evaluate_unit(textures, metallic, point),
+                        normal_reflectance(ior), evaluate_unit(textures, roughness, point), evaluate_unit(textures, clearcoat, point),
+                        evaluate_unit(textures, clearcoat_roughness, point)});
 }
 
 LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) const {
@@ -28,7 +24,7 @@ LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) co
     // (Kubelka's relation; Egan and Hilgeman 1973). The sum over all such reflections; white stays white.
     const float back = 1 - (1 - schlick_average(Rgb(normal)).r) / sqr(ior);
     const auto deep = [back](float x) { return x * (1 - back) / (1 - x * back); };
-    return LayeredBsdf({{deep(bare.r), deep(bare.g), deep(bare.b)}, 0, normal, unit(textures, roughness, point), 0, 0});
+    return LayeredBsdf({{deep(bare.r), deep(bare.g), deep(bare.b)}, 0, normal, evaluate_unit(textures, roughness, point), 0, 0});
 }
 
 } // namespace duet

@@ -12,4 +12,9 @@ inline Rgb evaluate_reflectance(const TextureSet& textures, const RgbSlot& slot,
     return {clamp(c.r, 0.0f, 1.0f), clamp(c.g, 0.0f, 1.0f), clamp(c.b, 0.0f, 1.0f)};
 }
 
+/// A slot's number at a point, clamped to [0, 1] likewise.
+inline float evaluate_unit(const TextureSet& textures, const ScalarSlot& slot, const SurfacePoint& point) {
+    return clamp(evaluate(textures, slot, point), 0.0f, 1.0f);
+}
+
 } // namespace duet

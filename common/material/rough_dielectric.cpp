@@ -72,11 +72,10 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 
     wi = normalize(wi);
     if (!(through ? wi.z < 0 : wi.z > 0)) return std::nullopt; // it would meet a second microfacet
     if (wo.z < 0) wi.z = -wi.z;
-    // Density and weight are those of the rounded direction returned.
-    const float density = pdf(wo, wi, mode);
-    if (!(density > 0 && density < kInfinity)) return std::nullopt;
-    const Rgb weight = eval(wo, wi, mode) * (abs_cos_theta(wi) / density);
-    return BsdfSample{wi, weight, density, false, through};
+    BsdfSample result = sample_of(*this, wo, wi, mode);
+    if (!(result.pdf > 0 && result.pdf < kInfinity)) return std::nullopt;
+    result.transmitted = through;
+    return result;
 }
 
 float RoughDielectricBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {

@@ -12,7 +12,7 @@ namespace duet {
 struct RoughDielectricBsdf {
     float eta;   ///< index of refraction inside over outside, not 1
     Rgb tint;    ///< transmitted light is multiplied by it at each crossing
-    float alpha; ///< GGX width: roughness², at least MetalBsdf::kSmoothAlpha
+    float alpha; ///< GGX width: roughness², at least Dielectric::kSmoothAlpha
 
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Chooses reflection (lobe < F) or refraction at a visible microfacet.

@@ -50,8 +50,7 @@ std::optional<BsdfSample> RoughDiffuseBsdf::sample(Vec3 wo, float lobe, Vec2 u, 
     Vec3 wi = uniform ? upwards(uniform_sphere(u)) : cosine_hemisphere(u);
     if (!(wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
-    const float density = pdf(wo, wi, mode);
-    return BsdfSample{wi, eval(wo, wi, mode) * (abs_cos_theta(wi) / density), density};
+    return sample_of(*this, wo, wi, mode);
 }
 
 float RoughDiffuseBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {

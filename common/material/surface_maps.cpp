@@ -1,5 +1,7 @@
 #include "common/material/surface_maps.h"
 
+#include "common/material/reflectance.h"
+
 #include <cmath>
 
 namespace duet {
@@ -78,7 +80,7 @@ void bend_normal(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direc
 float opacity(const TextureSet& textures, const SurfaceMaps& maps, const SurfacePoint& point) {
     SurfacePoint sharp = point;
     sharp.duv_dx = sharp.duv_dy = Vec2();
-    const float value = clamp(evaluate(textures, maps.opacity, sharp), 0.0f, 1.0f);
+    const float value = evaluate_unit(textures, maps.opacity, sharp);
     if (maps.cutoff > 0) return value >= maps.cutoff ? 1.0f : 0.0f;
     return value;
 }

@@ -31,8 +31,8 @@ float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominato
 // computed for one number or, U being a batch, for several dimensions at once.
 
 /// The seed of a dimension's shuffling, well mixed, from the pixel's 64 bits.
-template <typename U> U dimension_seed(std::uint64_t pixel, U dimension) {
-    return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + U(low_bits(pixel))) ^ U(high_bits(pixel)));
+template <typename U> U dimension_seed(U pixel_low, U pixel_high, U dimension) {
+    return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + pixel_low) ^ pixel_high);
 }
 /// The seed of the scrambling of its first (0) or second (1) coordinate.
 template <typename U> U scramble_seed(U seed, U coordinate) {
@@ -54,46 +54,46 @@ Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
             unit_float(reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, 1u))))};
 }
 
-/// Pairs of dimensions from `first` on, a number a lane.
-Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
-    using Batch = xsimd::make_sized_batch_t<std::uint32_t, kSimdLanes>;
-    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6};
-    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
-    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
-    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes) {
-        const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
-        const Batch seed = dimension_seed(pixel, Batch::load_aligned(&kPairs[lane]) + Batch(first));
-        const Batch point = sobol_point(Batch(reversed_index), seed);
-        const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
-        reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(&bits[lane]);
-    }
-    std::array<float, Sampler::kBlock> numbers;
+/// Pairs of dimensions from `first` on, a number a lane: of one sample of a pixel, or of two one after the other.
+template <std::size_t kLanes> using WholeBatch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
+template <std::size_t kLanes>
+WholeBatch<kLanes> sobol_lanes(std::size_t lane, WholeBatch<kLanes> reversed_index, WholeBatch<kLanes> pixel_low,
+                               WholeBatch<kLanes> pixel_high, std::uint32_t first) {
+    using Batch = WholeBatch<kLanes>;
+    alignas(64) constexpr std::array<std::uint32_t, 16> kPairs{0, 0, 2, 2, 4, 4, 6, 6, 0, 0, 2, 2, 4, 4, 6, 6};
+    alignas(64) constexpr std::array<std::uint32_t, 16> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
+    const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
+    const Batch seed = dimension_seed(pixel_low, pixel_high, Batch::load_aligned(&kPairs[lane]) + Batch(first));
+    const Batch point = sobol_point(reversed_index, seed);
+    const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
+    return reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate)));
+}
+
+Sampler::Block block_of(const std::uint32_t* bits) {
+    Sampler::Block numbers;
     for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
     return numbers;
 }
 
-/// The same of two samples of two pixels.
+Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
+    using Batch = WholeBatch<kSimdLanes>;
+    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
+    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes)
+        sobol_lanes<kSimdLanes>(lane, Batch(reversed_index), Batch(low_bits(pixel)), Batch(high_bits(pixel)), first)
+            .store_aligned(&bits[lane]);
+    return block_of(bits.data());
+}
+
 std::pair<Sampler::Block, Sampler::Block> sobol_blocks(std::array<std::uint32_t, 2> reversed_index,
                                                        std::array<std::uint64_t, 2> pixel, std::uint32_t first) {
 #if XSIMD_WITH_AVX512F
     constexpr std::size_t kLanes = 2 * Sampler::kBlock;
-    using Batch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
     const auto both = [](std::uint32_t a, std::uint32_t b) { return whole_halves<kLanes>(a, b); };
-    alignas(Batch) constexpr std::array<std::uint32_t, kLanes> kPairs{0, 0, 2, 2, 4, 4, 6, 6, 0, 0, 2, 2, 4, 4, 6, 6};
-    alignas(Batch) constexpr std::array<std::uint32_t, kLanes> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1,
-                                                                            0, 1, 0, 1, 0, 1, 0, 1};
-    const Batch dimension = Batch::load_aligned(kPairs.data()) + Batch(first);
-    const Batch coordinate = Batch::load_aligned(kCoordinates.data());
-    const Batch low = both(low_bits(pixel[0]), low_bits(pixel[1])), high = both(high_bits(pixel[0]), high_bits(pixel[1]));
-    const Batch seed = mix_bits_32(mix_bits_32(dimension * Batch(kGoldenStep32) + low) ^ high);
-    const Batch point = sobol_point(both(reversed_index[0], reversed_index[1]), seed);
-    const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
-    alignas(Batch) std::array<std::uint32_t, kLanes> bits;
-    reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(bits.data());
-    std::pair<Sampler::Block, Sampler::Block> numbers;
-    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers.first[i] = unit_float(bits[i]);
-    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers.second[i] = unit_float(bits[Sampler::kBlock + i]);
-    return numbers;
+    alignas(64) std::array<std::uint32_t, kLanes> bits;
+    sobol_lanes<kLanes>(0, both(reversed_index[0], reversed_index[1]), both(low_bits(pixel[0]), low_bits(pixel[1])),
+                        both(high_bits(pixel[0]), high_bits(pixel[1])), first)
+        .store_aligned(bits.data());
+    return {block_of(bits.data()), block_of(bits.data() + Sampler::kBlock)};
 #else
     return {sobol_block(reversed_index[0], pixel[0], first), sobol_block(reversed_index[1], pixel[1], first)};
 #endif
@@ -185,7 +185,7 @@ void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
 
 float Sampler::get_1d() {
     const std::uint32_t dimension = dimension_++;
-    if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
     if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
     return unit_float(high_bits(stream_number(key, index_)));
@@ -194,7 +194,7 @@ float Sampler::get_1d() {
 Vec2 Sampler::get_2d() {
     const std::uint32_t dimension = dimension_;
     dimension_ += 2;
-    if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(pixel_hash_, dimension));
+    if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
     if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
     const std::uint64_t bits = stream_number(key, index_);

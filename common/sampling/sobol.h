@@ -6,6 +6,8 @@
 // end.
 #pragma once
 
+#include "common/vec/vec.h"
+
 #include <cstdint>
 
 namespace duet {
@@ -31,6 +33,15 @@ template <typename U> constexpr U sobol_second(U index) {
     x = x ^ ((x >> 4) & U(0x0f0f0f0fu));
     x = x ^ ((x >> 8) & U(0x00ff00ffu));
     return x ^ ((x >> 16) & U(0x0000ffffu));
+}
+
+/// Point `index` of the first n, n a power of two up to 2^24: in each coordinate in the middle of its n-th. All n are a
+/// (0, 2)-net, and so is each aligned part of 2^k.
+inline Vec2 net_point(std::uint32_t index, int n) {
+    const auto digits = [n](std::uint32_t reversed) {
+        return static_cast<float>(reverse_bits(reversed)) * 0x1p-32f + 0.5f / static_cast<float>(n);
+    };
+    return {digits(index), digits(sobol_second(index))};
 }
 
 /// Nested uniform («Owen») scrambling of a number with reversed digits, one scrambling a seed: a digit is flipped or

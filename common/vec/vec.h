@@ -85,6 +85,8 @@ template <typename T> constexpr Vec4T<T> operator*(Vec4T<T> a, T s) { return {a.
 template <typename T> constexpr Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
+/// The same vector in all lanes of a batch.
+template <typename T, Arithmetic S> constexpr Vec3T<T> spread(Vec3T<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
 template <typename T> constexpr Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }

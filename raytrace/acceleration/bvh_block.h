@@ -66,7 +66,6 @@ protected:
     Lanes first_half() const { return first_half_; }
 
 private:
-
     static Lanes same_sign(Batch a, Batch b, Batch c) {
         return (xsimd::min(xsimd::min(a, b), c) >= Batch(0.0f)) | (xsimd::max(xsimd::max(a, b), c) <= Batch(0.0f));
     }
@@ -130,11 +129,7 @@ private:
     [[gnu::always_inline]] static Batch plane_distances(const ShearedRay& ray, const Corner& a, const Corner& b,
                                                         const Corner& c) {
         using Double = DoubleBatch;
-        const auto same = [](Vec3 v) {
-            const Vec3d d(v);
-            return Vec3T<Double>(Double(d.x), Double(d.y), Double(d.z));
-        };
-        const Vec3T<Double> origin = same(ray.origin), direction = same(ray.direction);
+        const auto origin = spread<Double>(Vec3d(ray.origin)), direction = spread<Double>(Vec3d(ray.direction));
         alignas(sizeof(Batch)) BlockLanes<float> distances;
         for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
             const auto at = [i](const Corner& p) {
@@ -155,6 +150,7 @@ inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const Triangl
 inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
     return intersect_quad(ray, block.corners(lane));
 }
+
 /// The spheres of a block against one ray, all at once: in double, as one by one. (A filter in float before that gains
 /// nothing, with 8 doubles at once or with 4.)
 class SphereBlockTest {

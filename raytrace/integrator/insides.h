@@ -31,10 +31,10 @@ private:
     /// The one that fills the place, or null; one entry of `without` does not count.
     const Dielectric* filling(std::int64_t without = -1) const;
 
-    const RenderPlan* plan_;
     /// Boundaries passed at once: a path that goes nowhere for want of precision has to end.
     static constexpr int kMostPassed = 1000;
 
+    const RenderPlan* plan_;
     std::array<std::uint32_t, 8> materials_{}; ///< as entered
     std::size_t count_ = 0;
     int deeper_ = 0; ///< those that were entered when the array was full: they fill nothing

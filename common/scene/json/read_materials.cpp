@@ -206,10 +206,12 @@ Material read_material(const JsonValue& value, const NameIndex& textures) {
     case 1: {
         value.check_keys(scene_keys("metal"));
         Metal material;
-        if (value.has("conductor"))
-            material.conductor = read_conductor(value), material.reflectance = {material.conductor.normal};
-        else
+        if (value.has("conductor")) {
+            material.conductor = read_conductor(value);
+            material.reflectance = {material.conductor.normal};
+        } else {
             material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
+        }
         material.roughness = read_scalar(value, "roughness", material.roughness, textures);
         return material;
     }
