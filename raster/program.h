@@ -20,19 +20,18 @@ public:
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
         constexpr std::size_t kMost = StripSolver<S>::kMost;
-        if (solved_.size() < std::min(places.size(), kMost)) solved_.resize(std::min(places.size(), kMost));
         for (std::size_t first = 0; first < places.size(); first += kMost) {
             const auto some = places.subspan(first, std::min(kMost, places.size() - first));
-            solver_.solve(some, std::span(solved_).first(some.size()), true);
-            for (std::size_t s = 0; s < some.size(); ++s) {
-                seen[first + s] = solved_[s].seen;
+            solver_.solve(some, true, [&](std::size_t s, const SolvedStrip<S>& strip) {
+                const StripSamples& samples = *strip.samples;
+                seen[first + s] = samples.seen;
                 place_ = &some[s];
-                strip_ = &solved_[s];
-                if (strip_->on_mesh == strip_->seen)
-                    shade_together(*place_, *strip_, colors[first + s]);
+                strip_ = &strip;
+                if (samples.on_mesh == samples.seen)
+                    shade_together(*place_, strip, colors[first + s]);
                 else
-                    shade_one_by_one(*place_, *strip_, colors[first + s]);
-            }
+                    shade_one_by_one(*place_, samples, colors[first + s]);
+            });
         }
     }
 
@@ -65,7 +64,7 @@ private:
     }
 
     void shade_together(const StripPlace& place, const SolvedStrip<S>& strip, StripColors& colors) const {
-        if (strip.seen == 0) return;
+        if (strip.samples->seen == 0) return;
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -116,15 +115,16 @@ private:
     /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
     /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
     Rgb base_color(std::size_t sample) const override {
-        if (!(strip_->seen >> sample & 1)) return {};
-        const Mesh& mesh = *strip_->mesh;
+        const StripSamples& samples = *strip_->samples;
+        if (!(samples.seen >> sample & 1)) return {};
+        const Mesh& mesh = *samples.mesh;
         const bool filtered = data_.scene.needs.footprints;
         const auto kept = [&](double b) { return filtered ? static_cast<double>(static_cast<float>(b)) : b; }; // as by a Hit
         const double u = kept(strip_->b1[sample]), v = kept(strip_->b2[sample]);
-        const auto& corners = mesh.triangles[strip_->index(sample)];
+        const auto& corners = mesh.triangles[samples.index(sample)];
         SurfacePoint point;
-        point.object = strip_->object->object;
-        point.primitive = static_cast<std::uint32_t>(strip_->index(sample));
+        point.object = samples.object->object;
+        point.primitive = static_cast<std::uint32_t>(samples.index(sample));
         point.material = material_index(data_.scene, point.object, point.primitive);
         point.time = view_.time;
         const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
@@ -155,7 +155,6 @@ private:
     const S& shader_;
     StripSolver<S> solver_;
     Linear ways_, eyes_; ///< camera rays
-    std::vector<SolvedStrip<S>> solved_;
     const StripPlace* place_ = nullptr; ///< of the strip at hand
     const SolvedStrip<S>* strip_ = nullptr;
 };
