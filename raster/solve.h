@@ -38,8 +38,7 @@ public:
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
     /// For up to kMost strips: use(i, strip) for each of them, in any order; `strip` is there until use() returns, solved if
-    /// it sees a mesh. (So it stays in the first cache, where all of them would not.) `mend`: solve otherwise where the
-    /// solution does not hold as it is.
+    /// it sees a mesh. `mend`: solve otherwise where the solution does not hold as it is.
     template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
@@ -74,10 +73,11 @@ private:
         }
     };
     void read(std::span<const StripPlace> places);
-    void solve_one(const StripPlace& place, const ReadStrip& samples, bool mend);
-    template <typename SetUpsOf> void solve_at(const SetUpsOf& set_ups, const StripPlace& place);
-    template <typename SetUpsOf, typename Positions> void solve_lanes(const SetUpsOf& set_ups, const Positions& positions);
-    void mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples);
+    void solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend);
+    template <typename SetUpsOf> void solve_at(const SetUpsOf& set_ups, const StripPlace& place, Solved& strip) const;
+    template <typename SetUpsOf, typename Positions>
+    void solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const;
+    void mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples, Solved& strip) const;
 
     const Triangles& triangles_;
     const PassView& view_;
@@ -86,7 +86,8 @@ private:
     int origin_x_, origin_y_;
     bool steps_;
     std::array<ReadStrip, kMost> read_;
-    Solved solved_; ///< one after the other
+    static constexpr std::size_t kTogether = 8; ///< enough for one's work to overlap with the next's, few enough for the first cache
+    std::array<Solved, kTogether> solved_;
 };
 
 /// What has nothing to interpolate: for who wants barycentrics and depths alone.
@@ -133,9 +134,8 @@ struct Scattered {
 /// (eᵢ' − bᵢ·(Σe)') / Σe.
 template <VertexShader S>
 template <typename SetUpsOf, typename Positions>
-void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& positions) {
+void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const {
     using strips::lanes_of;
-    Solved& strip = solved_;
     const Doubles zero(0.0);
     std::uint32_t inside = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
@@ -212,9 +212,9 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
 
 template <VertexShader S>
 template <typename SetUpsOf>
-void StripSolver<S>::solve_at(const SetUpsOf& set_ups, const StripPlace& place) {
+void StripSolver<S>::solve_at(const SetUpsOf& set_ups, const StripPlace& place, Solved& strip) const {
     if (place.offsets == nullptr) {
-        solve_lanes(set_ups, strips::OnGrid{place.offset.position(place.x - origin_x_, place.y - origin_y_)});
+        solve_lanes(set_ups, strips::OnGrid{place.offset.position(place.x - origin_x_, place.y - origin_y_)}, strip);
         return;
     }
     strips::Scattered positions;
@@ -223,12 +223,11 @@ void StripSolver<S>::solve_at(const SetUpsOf& set_ups, const StripPlace& place) 
         positions.xs[i] = p.x - origin_x_;
         positions.ys[i] = p.y - origin_y_;
     }
-    solve_lanes(set_ups, positions);
+    solve_lanes(set_ups, positions, strip);
 }
 
 template <VertexShader S>
-void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples) {
-    Solved& strip = solved_;
+void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples, Solved& strip) const {
     for (std::uint32_t left = samples.on_mesh & ~strip.inside; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
         const Run& run = run_of(samples.id(i));
@@ -247,16 +246,19 @@ void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, const
     }
 }
 
-template <VertexShader S> void StripSolver<S>::solve_one(const StripPlace& place, const ReadStrip& samples, bool mend) {
+template <VertexShader S>
+void StripSolver<S>::solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend) {
+    strip.samples = &samples;
+    if (samples.on_mesh == 0) return;
     set_ups_.use(*samples.object, *samples.mesh, samples.first_id);
-    solved_.object_view = &set_ups_.object();
+    strip.object_view = &set_ups_.object();
     const Many* many = samples.each ? &set_ups_.set_up(samples.ids) : nullptr;
     if (many != nullptr)
-        solve_at(OfEach{*many}, place);
+        solve_at(OfEach{*many}, place, strip);
     else
-        solve_at(OfFew{set_ups_, samples}, place);
-    solved_.inside &= sabotaged(Guard::kPerspective) ? 0 : samples.on_mesh;
-    if (mend) mend_strip(many, place, samples);
+        solve_at(OfFew{set_ups_, samples}, place, strip);
+    strip.inside &= sabotaged(Guard::kPerspective) ? 0 : samples.on_mesh;
+    if (mend) mend_strip(many, place, samples, strip);
 }
 
 /// Reads all, and sets up what they see, side by side across strips.
@@ -286,11 +288,10 @@ void StripSolver<S>::solve(std::span<const StripPlace> places, bool mend, const 
     for (std::size_t k = 1; k < kKinds; ++k) first[k] += first[k - 1];
     std::array<std::size_t, kMost> order;
     for (std::size_t s = 0; s < places.size(); ++s) order[first[kind(s)]++] = s;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const ReadStrip& samples = read_[order[i]];
-        solved_.samples = &samples;
-        if (samples.on_mesh != 0) solve_one(places[order[i]], samples, mend);
-        use(order[i], solved_);
+    for (std::size_t i = 0; i < places.size(); i += kTogether) {
+        const auto some = std::span<const std::size_t>(order).subspan(i, std::min(kTogether, places.size() - i));
+        for (std::size_t k = 0; k < some.size(); ++k) solve_one(places[some[k]], read_[some[k]], solved_[k], mend);
+        for (std::size_t k = 0; k < some.size(); ++k) use(some[k], solved_[k]);
     }
 }
 
