@@ -149,6 +149,62 @@ private:
         return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
     }
 
+    /// The same side by side, of an object that one texture colours.
+    RgbT<Floats> base_colors(std::size_t first) const override {
+        const std::optional<RgbSlot>& slot = data_.objects[strip_->samples->object->object].one_texture;
+        if (!slot) return ColorSource::base_colors(first);
+        const auto& texture = std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
+        TexturePlaces places;
+        find_places(first, places);
+        const RgbT<Floats> c = spread<Floats>(slot->value) * data_.texels[texture.image].look_up(texture, places);
+        const Floats zero(0.0f), one(1.0f); // as evaluate_reflectance()
+        return {clamp(c.r, zero, one), clamp(c.g, zero, one), clamp(c.b, zero, one)};
+    }
+
+    void find_places(std::size_t first, TexturePlaces& places) const {
+        std::array<std::array<StripOf<float>, 2>, 3> corners; // axis
+        const std::uint32_t with_area = gather_uvs(first, corners);
+        const Doubles scale(1 / std::sqrt(samples_per_pixel(*place_, view_))), one(1.0), zero(0.0); // as PixelFootprint's
+        for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
+            const Doubles u = rounded(load(strip_->b1, first + k)), v = rounded(load(strip_->b2, first + k)); // as by a Hit
+            const auto has_area = lanes_from<double>(with_area >> k);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                const auto uv = [&](std::size_t corner) { return load_doubles(corners[corner][axis].at(k)); };
+                store_floats(uv(0) * (one - u - v) + uv(1) * u + uv(2) * v, places.uv[axis].at(k));
+                const auto step = [&](std::size_t way) -> Doubles {
+                    const Doubles steps = (uv(1) - uv(0)) * load_doubles(strip_->b1_steps[way].at(first + k)) +
+                                          (uv(2) - uv(0)) * load_doubles(strip_->b2_steps[way].at(first + k));
+                    return xsimd::select(has_area, steps * scale, zero);
+                };
+                store_floats(step(0), places.duv_dx[axis].at(k));
+                store_floats(step(1), places.duv_dy[axis].at(k));
+            }
+        }
+    }
+    /// Texture coordinates at the corners of each sample's triangle, 0 where nothing is seen. A bit for each triangle that has
+    /// an area in the texture.
+    std::uint32_t gather_uvs(std::size_t first, std::array<std::array<StripOf<float>, 2>, 3>& corners) const {
+        const StripSamples& samples = *strip_->samples;
+        const Mesh& mesh = *samples.mesh;
+        std::uint32_t with_area = 0;
+        for (std::size_t i = 0; i < Floats::size; ++i) {
+            if (!(samples.seen >> (first + i) & 1)) continue;
+            std::array<Vec2, 3> uv{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+            if (!mesh.uvs.empty())
+                for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[mesh.triangles[samples.index(first + i)][k]];
+            const Vec2d along_u = Vec2d(uv[1]) - Vec2d(uv[0]), along_v = Vec2d(uv[2]) - Vec2d(uv[0]);
+            const bool area = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0;
+            with_area |= std::uint32_t{area} << i;
+            for (std::size_t k = 0; k < 3; ++k) corners[k][0][i] = uv[k].x, corners[k][1][i] = uv[k].y;
+        }
+        return with_area;
+    }
+    static Doubles rounded(const Doubles& value) {
+        std::array<float, Doubles::size> floats;
+        store_floats(value, floats.data());
+        return load_doubles(floats.data());
+    }
+
     const PreparedData& data_;
     const Geometry& geometry_;
     const PassView& view_;
