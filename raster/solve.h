@@ -43,13 +43,15 @@ public:
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
 private:
-    static constexpr std::size_t kCount = Solved::kCount, kFew = StripSamples::kFew;
+    static constexpr std::size_t kCount = Solved::kCount, kFew = 8;
     static constexpr bool kDerivatives = Solved::kDerivatives;
     using One = typename SetUps<S>::One;
     using Many = typename SetUps<S>::Many;
 
     struct ReadStrip : StripSamples {
-        std::array<std::uint32_t, kFew> few_kept{}; ///< where the few triangles' set-ups are
+        bool each = false;   ///< so many triangles that each sample's is worked on by itself, side by side
+        std::size_t few = 0; ///< else: how many there are
+        std::array<std::uint32_t, kFew> few_lanes{}, few_kept{}; ///< a bit for each of their samples; where their set-ups are
     };
 
     /// The set-ups of a strip's samples: each its own, or some, each for several samples. for_each<T>() calls
@@ -267,9 +269,17 @@ template <VertexShader S> void StripSolver<S>::read(std::span<const StripPlace> 
     for (std::size_t s = 0; s < places.size(); ++s) {
         ReadStrip& strip = read_[s];
         reader_.read(places[s].ids, strip);
-        if (strip.on_mesh == 0 || strip.each) continue;
+        if (strip.on_mesh == 0) continue;
+        std::uint32_t firsts = first_of_each(strip.ids);
+        strip.few = static_cast<std::size_t>(std::popcount(firsts));
+        strip.each = strip.few > kFew;
+        if (strip.each) continue;
         set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
-        for (std::size_t k = 0; k < strip.few; ++k) strip.few_kept[k] = set_ups_.keep(strip.few_id(k));
+        for (std::size_t k = 0; k < strip.few; ++k, firsts &= firsts - 1) {
+            const std::int32_t id = strip.ids[static_cast<std::size_t>(std::countr_zero(firsts))];
+            strip.few_lanes[k] = lanes_of_number(strip.ids, id);
+            strip.few_kept[k] = set_ups_.keep(static_cast<std::uint32_t>(id));
+        }
     }
     set_ups_.finish();
 }

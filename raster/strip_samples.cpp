@@ -47,12 +47,6 @@ void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
     samples.on_mesh = samples.seen;
     samples.mesh = mesh_;
     samples.first_id = first_id_;
-    std::uint32_t firsts = first_of_each(samples.ids);
-    const auto different = static_cast<std::size_t>(std::popcount(firsts));
-    samples.each = different > StripSamples::kFew;
-    samples.few = samples.each ? 0 : different;
-    for (std::size_t k = 0; k < samples.few; ++k, firsts &= firsts - 1)
-        samples.few_lanes[k] = lanes_of_number(samples.ids, samples.ids[static_cast<std::size_t>(std::countr_zero(firsts))]);
 }
 
 } // namespace duet::raster
