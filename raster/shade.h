@@ -25,6 +25,8 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
 bool needs_screen(const PreparedData& data, const Settings& settings);
 /// Whether that must have its radiance, too, shaded by the same settings without reflections of it.
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
+/// Whether that must have what there is without glass (Screen::behind).
+bool needs_screen_behind(const PreparedData& data, const Settings& settings);
 /// Whether that must have its occlusion.
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
 /// Works it out, if so.
