@@ -15,7 +15,17 @@ std::optional<Vec3> refract_out(Vec3 way, Vec3 n, float eta) {
     return normalize(way * eta + n * (std::sqrt(squared) - eta * cosine));
 }
 
-constexpr float kParting = 0.3f; ///< radians by which neighbouring rays part, by guess, that are mirrored within glass
+constexpr float kTouching = 1e-3f; ///< of the depth: what is no farther from glass touches it
+constexpr float kParting = 0.3f; ///< radians by which neighbouring rays part, by guess, whose ways through glass differ
+
+/// Whether the surface at a pixel is curved outwards, as its neighbours' normals say.
+bool bulges(const Screen& screen, int x, int y) {
+    const std::optional<Vec3> here = screen.seen(x, y);
+    float sum = 0;
+    for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)})
+        if (const auto there = screen.seen(x + dx, y + dy); here && there) sum += dot(screen.normal(x + dx, y + dy) - screen.normal(x, y), *there - *here);
+    return sum >= 0;
+}
 
 /// How wide GGX alpha makes what is seen through two boundaries: slopes turn a refracted ray by η − 1, a mirrored one by 2.
 float blur_through(float eta, float alpha) { return 2.8f * std::abs(eta - 1) * alpha; }
@@ -33,16 +43,13 @@ SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, con
     const Vec3 place = screen.project(p_);
     if (!(place.z > 0)) return;
     const auto [x, y] = screen.pixel_at(place);
-    width_ = screen.pixel_size(place.z), turn_ = normal_turn(screen, x, y);
-}
-
-Rgb SeenThrough::look(Vec3 p, Vec3 n, Vec3 way, float spread, float alpha, bool lamps) const {
-    return around_.seen({.p = p, .n = n, .way = way, .width = width_, .spread = spread, .alpha = alpha, .lamps = lamps, .from_picture = false});
+    width_ = screen.pixel_size(place.z);
+    turn_ = bulges(screen, x, y) ? normal_turn(screen, x, y) : -normal_turn(screen, x, y);
 }
 
 /// Of its front.
 Rgb SeenThrough::mirror(Vec3 way, float alpha, bool lamps) const {
-    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .spread = 2 * turn_ + blur_mirrored(alpha), .alpha = alpha,
+    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = 2 * turn_, .spread = blur_mirrored(alpha), .alpha = alpha,
                          .lamps = lamps, .point = &point_, .from_picture = false});
 }
 
@@ -58,7 +65,8 @@ Rgb SeenThrough::boundary(const DielectricBsdf& bsdf, float alpha) const {
         if (!transmitted)
             sum += mirror(way, alpha, alpha == 0) * sample->weight * sample->pdf;
         else if (point_.wo.z < 0) // seen from inside
-            sum += look(p_, -point_.ng, way, turn_ + blur_through(bsdf.eta, alpha), alpha, true) * sample->weight * sample->pdf;
+            sum += around_.seen({.p = p_, .n = -point_.ng, .way = way, .width = width_, .turn = (bsdf.eta - 1) * turn_,
+                                 .spread = blur_through(bsdf.eta, alpha), .alpha = alpha, .from_picture = false}) * sample->weight * sample->pdf;
         else
             sum += through(way, bsdf.eta, alpha) * sample->pdf;
     }
@@ -69,10 +77,24 @@ Rgb SeenThrough::through(Vec3 way, float eta, float alpha) const {
     const auto& glass = std::get<Dielectric>(data_.scene.materials[point_.surface.material]);
     const Rgb tint = glass.at(data_.scene.textures, point_.surface).tint;
     const Segment left = follow(way, eta);
-    const float spread = 2 * std::abs(eta - 1) * turn_ + kParting * static_cast<float>(left.mirrored) + blur_through(eta, alpha);
+    // Each side bends neighbours towards each other where it bulges: as a thick lens whose sides are alike.
+    const float bend = (1 - 1 / eta) * turn_, parting = static_cast<float>(left.lost) * kParting;
     const auto kept = [&](float absorption) { return std::exp(-left.inside * absorption); };
-    const Rgb light = look(left.p, left.n, left.way, spread, alpha, left.mirrored == 0);
+    const std::optional<Rgb> met = met_inside(left.p);
+    const Rgb light = met ? *met : around_.seen({.p = left.p, .n = left.n, .way = left.way, .width = width_ - left.inside * bend, .turn = -2 * bend,
+                                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .from_picture = false});
     return light * tint * tint * Rgb(kept(glass.absorption.r), kept(glass.absorption.g), kept(glass.absorption.b));
+}
+
+/// What stands in the glass, or touches it where the ray would leave.
+std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
+    const Screen& behind = *screen_.behind();
+    const Vec3 place = behind.project(p);
+    if (!(place.z > 0) || !behind.contains(place.x, place.y)) return std::nullopt;
+    const auto [x, y] = behind.pixel_at(place);
+    const float depth = behind.depth(x, y);
+    if (!(depth <= place.z * (1 + kTouching)) || !(screen_.depth(x, y) < depth)) return std::nullopt;
+    return behind.first_look().radiance.at(place.x, place.y, 1);
 }
 
 /// From where the ray enters to where it leaves, or to the last place that is known.
@@ -88,7 +110,7 @@ SeenThrough::Segment SeenThrough::follow(Vec3 way, float eta) const {
             return at;
         }
         at.way = normalize(at.way - at.n * (2 * dot(at.way, at.n)));
-        ++at.mirrored;
+        ++at.lost;
     }
     at.n = at.way;
     return at;
@@ -103,7 +125,7 @@ std::optional<SeenThrough::Segment> SeenThrough::across_ball(const Segment& from
     const float t = -2 * dot(p, way) / dot(way, way); // it starts on the sphere
     if (!(t > 0)) return std::nullopt;
     const Vec3 n = transform_normal(transform.to_object, p + way * t);
-    return Segment{.p = from.p + from.way * t, .way = from.way, .n = normalize(n), .inside = from.inside + t, .mirrored = from.mirrored};
+    return Segment{.p = from.p + from.way * t, .way = from.way, .n = normalize(n), .inside = from.inside + t, .lost = from.lost};
 }
 
 std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& from) const {
@@ -111,7 +133,8 @@ std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& f
     const Screen& far = deeper ? *screen_.backs() : screen_;
     float t = 0;
     Vec3 n;
-    for (int i = 0; i < kSteps; ++i) {
+    bool found = false;
+    for (int i = 0; i < kSteps && !found; ++i) {
         const Vec3 place = screen_.project(from.p + from.way * t);
         if (!(place.z > 0)) return std::nullopt;
         const auto [x, y] = screen_.pixel_at(place);
@@ -126,11 +149,10 @@ std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& f
         const Vec3 to = *seen - from.p;
         const float along = dot(n, to) / max(dot(n, from.way), 0.2f); // no farther than the plane's neighbourhood
         const float next = clamp(along > 0 ? along : length(to), 0.0f, size_);
-        const bool done = std::abs(next - t) < 0.5f * width_;
+        found = std::abs(next - t) < width_;
         t = next;
-        if (done) break;
     }
-    return Segment{.p = from.p + from.way * t, .way = from.way, .n = n, .inside = from.inside + t, .mirrored = from.mirrored};
+    return Segment{.p = from.p + from.way * t, .way = from.way, .n = n, .inside = from.inside + t, .lost = from.lost + !found};
 }
 
 /// The mirror image, and what is straight behind. Of a closed sheet two sides lie on the way, between which light is mirrored
@@ -147,7 +169,7 @@ Rgb SeenThrough::operator()(const ThinDielectricBsdf& bsdf) const {
         const float t = sqr(parts.transmitted[c]) / max(1 - sqr(parts.reflected[c]), 1e-6f);
         transmitted[c] = t, reflected[c] += t * parts.reflected[c];
     }
-    const Rgb sum = look(p_, -point_.ng, normalize(straight), 0, 0, true) * transmitted;
+    const Rgb sum = around_.seen({.p = p_, .n = -point_.ng, .way = normalize(straight), .width = width_, .from_picture = false}) * transmitted;
     if (!point_.receives(mirrored)) return sum;
     return sum + mirror(normalize(mirrored), 0, true) * reflected;
 }

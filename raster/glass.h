@@ -34,16 +34,16 @@ private:
         Vec3 p, way;
         Vec3 n;            ///< outwards, where it leaves
         float inside = 0;  ///< metres gone through glass
-        int mirrored = 0;  ///< how many times in it
+        int lost = 0;      ///< how often neighbouring rays have parted: mirrored within, or its far side not found for sure
     };
 
     Rgb boundary(const DielectricBsdf& bsdf, float alpha) const;
     Rgb through(Vec3 way, float eta, float alpha) const;
+    std::optional<Rgb> met_inside(Vec3 p) const;
     Segment follow(Vec3 way, float eta) const;
     std::optional<Segment> across_ball(const Segment& from) const;
     std::optional<Segment> across_picture(const Segment& from) const;
     Rgb mirror(Vec3 way, float alpha, bool lamps) const;
-    Rgb look(Vec3 p, Vec3 n, Vec3 way, float spread, float alpha, bool lamps) const;
 
     const PreparedData& data_;
     const Settings& settings_;
@@ -51,7 +51,8 @@ private:
     const ShadingPoint& point_;
     Surroundings around_;
     Vec3 p_;           ///< relative to the eye
-    float width_ = 0, turn_ = 0; ///< of a pixel here, metres; by which its neighbour's normal differs, radians
+    float width_ = 0, turn_ = 0; ///< of a pixel here, metres; by which its neighbour's normal parts from its own, radians:
+                                 ///< negative in a hollow
     float size_;       ///< of the object, metres
 };
 

@@ -4,6 +4,7 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
+#include "raster/glass.h"
 #include "raster/layers.h"
 #include "raster/multisample.h"
 #include "raster/overlay.h"
@@ -69,8 +70,9 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
-/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: another
-/// first look, of which pixels that see the same are taken; or null.
+/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
+/// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with before
+/// the screen has Screen::behind.
 void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, const Screen::FirstLook* known, Screen& screen) {
     Settings settings = frame.settings;
     settings.screen_reflections = false;
@@ -87,10 +89,11 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x) {
                 const Hit& hit = tile.hit(x, y);
-                const std::uint32_t key = FirstLookPicture::key(frame.data.scene, hit);
+                const bool later = screen.behind() == nullptr && hit.valid() && is_glass(frame.data, hit.object);
+                const std::uint32_t key = later ? 0 : FirstLookPicture::key(frame.data.scene, hit);
                 const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
                 picture.set(frame.data.scene, x, y, hit,
-                            same ? known->radiance.finest()(x, y) : shade(frame.data, settings, tile, x, y).radiance);
+                            same ? known->radiance.finest()(x, y) : shade(frame.data, settings, tile, x, y).radiance, key);
             }
     });
     screen.set_first_look(std::move(picture).finish());
@@ -116,7 +119,7 @@ void look_behind_glass(const Frame& frame, const View& view, const PassView& cen
     process_without_glass(frame.data, frame.grid, central, frame.settings, *geometry);
     std::unique_ptr<Screen> behind = depths_and_normals(frame, view, central, *geometry);
     add_occlusion(frame.data, frame.settings, *behind);
-    first_look(frame, view, *geometry, central, nullptr, *behind);
+    first_look(frame, view, *geometry, central, &screen.first_look(), *behind);
     process_backs_of_glass(frame.data, frame.grid, central, frame.settings, *geometry);
     screen.set_glass(std::move(behind), depths_and_normals(frame, view, central, *geometry));
 }
@@ -131,9 +134,10 @@ std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, con
     std::unique_ptr<Screen> screen = depths_and_normals(frame, view, central, *geometry);
     add_occlusion(frame.data, frame.settings, *screen);
     const bool glass = needs_screen_behind(frame.data, frame.settings);
-    if (glass) look_behind_glass(frame, view, central, *screen);
-    if (glass || needs_screen_radiance(frame.data, frame.settings))
-        first_look(frame, view, *geometry, central, glass ? &screen->behind()->first_look() : nullptr, *screen);
+    if (glass || needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, nullptr, *screen);
+    if (!glass) return screen;
+    look_behind_glass(frame, view, central, *screen);
+    first_look(frame, view, *geometry, central, &screen->first_look(), *screen);
     return screen;
 }
 

@@ -165,7 +165,7 @@ private:
         const bool smooth = bsdf_.smooth();
         // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
         const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
-        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .spread = wide + spread_, .lamps = smooth, .point = &point_}) * sample->weight;
+        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide, .lamps = smooth, .point = &point_}) * sample->weight;
     }
 
     Surroundings around_;
@@ -302,9 +302,9 @@ std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
     return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
 }
 
-void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance) {
+void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
     radiance_(x, y) = radiance;
-    keys_(x, y) = key(scene, hit);
+    keys_(x, y) = key;
     lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
 }
 

@@ -36,7 +36,8 @@ class FirstLookPicture {
 public:
     FirstLookPicture(int width, int height) : radiance_(width, height), keys_(width, height, 0), lamps_(width, height, 0) {}
 
-    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance);
+    /// `key`: of the hit, or 0 where it is to be shaded again.
+    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
     Screen::FirstLook finish() &&;
 
     /// Of what a pixel sees: 0 of what mirrors the picture, and of nothing.

@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-constexpr float kGuessBlur = 0.5f;
+constexpr float kGuessBlur = 0.25f;
 
 /// A lamp that a ray meets: how far off, and how much of a look of some width about the ray it fills.
 struct LampSeen {
@@ -24,12 +24,12 @@ float part_within(float x, float length, float width) {
 
 struct LampFinder {
     Vec3 p, way;
-    float width, spread;
+    const Look& look;
 
     LampSeen operator()(const Quad& quad) const {
         float distance, a, b;
         if (!meet(quad.corner, quad.u, quad.v, distance, a, b)) return {};
-        const float wide = max(width + spread * distance, 1e-6f * distance);
+        const float wide = max(look.size(distance), 1e-6f * distance);
         return {distance, part_within(a, length(quad.u), wide) * part_within(b, length(quad.v), wide)};
     }
     /// Others may go on beyond its edges.
@@ -42,7 +42,7 @@ struct LampFinder {
         const Vec3 to = sphere.center - p;
         const float along = dot(to, way), beside = length(to - way * along);
         if (!(along > 0) || dot(to, to) < sqr(sphere.radius)) return {};
-        const float wide = max(width + spread * along, 1e-6f * along);
+        const float wide = max(look.size(along), 1e-6f * along);
         return {along - std::sqrt(max(sqr(sphere.radius) - sqr(beside), 0.0f)),
                 clamp((sphere.radius - beside) / wide + 0.5f, 0.0f, 1.0f)};
     }
@@ -78,7 +78,7 @@ Rgb Surroundings::seen(const Look& look) const {
     const std::size_t first = data_.scene.first_surface_light;
     if (!look.lamps || lights.size() - first > kMostLamps) return sum;
     const Vec3 p = screen_.absolute(look.p);
-    const LampFinder finder{p, look.way, look.width, look.spread};
+    const LampFinder finder{p, look.way, look};
     LampSeen nearest;
     const SurfaceLight* lamp = nullptr;
     std::size_t index = 0;
@@ -98,7 +98,7 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
         distance = hit->distance;
         const float there = max(screen_.homogeneous(look.p + look.way * hit->distance)[2], screen_.near());
         // What is guessed is seen no sharper than the guess is good.
-        const float size = max(look.width + hit->distance * look.spread, kGuessBlur * hit->gap);
+        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap);
         const RadiancePyramid& picture = look.lamps && hit->gap == 0 ? screen_.first_look().radiance : screen_.first_look().without_lamps;
         return picture.at(hit->x, hit->y, size / screen_.pixel_size(there));
     }

@@ -6,18 +6,24 @@
 #include "raster/prepare.h"
 #include "raster/screen.h"
 
+#include <cmath>
+
 namespace duet::raster {
 
 /// A ray from a surface, and how wide a look it stands for.
 struct Look {
     Vec3 p;                   ///< where it begins, relative to the eye
     Vec3 n, way;              ///< unit: the surface's normal on the ray's side; the ray's direction
-    float width = 0;          ///< of the look where it begins, metres
-    float spread = 0;         ///< by which that grows, radians
+    float width = 0, turn = 0; ///< of the look where it begins, metres; by how much its two sides part, radians, which a
+                               ///< lens may have meet: either may be negative
+    float spread = 0;         ///< by which its blur grows, radians
     float alpha = 0;          ///< GGX alpha by which an environment is blurred
     bool lamps = true;        ///< whether it sees what shines: to rough surfaces lamps are direct light
     const ShadingPoint* point = nullptr; ///< that it leaves, where shadow maps tell which lamps that sees
     bool from_picture = true; ///< whether it begins at what the screen shows
+
+    /// Of the look, metres.
+    float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
 };
 
 /// What a picture and the scene's lists know without tracing a ray through its surfaces: what the picture shows
