@@ -126,9 +126,16 @@ def metal(nodes, m):
                      Roughness=0.0 if smooth else m["roughness"])
 
 
+def clear_glass(m):
+    return m["slot"]["texture"] is None and all(channel == 1.0 for channel in m["slot"]["value"])
+
+
 def dielectric(nodes, m):
-    # Blender's own glass tints reflections, too.
+    # Blender's own glass is ours where it is rough, Fresnel's term at the microfacet, and all light kept; but it tints
+    # reflections, too.
     rough = m["roughness"]
+    if rough > 0 and clear_glass(m):
+        return nodes.add("ShaderNodeBsdfGlass", 0, {"distribution": "MULTI_GGX"}, Color=WHITE, IOR=m["ior"], Roughness=rough)
     lobe = {"distribution": "GGX" if rough > 0 else SHARP}
     through = nodes.add("ShaderNodeBsdfRefraction", 0, lobe, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=rough)
     back = nodes.add(GLOSSY, 0, lobe, Color=WHITE, Roughness=rough)
