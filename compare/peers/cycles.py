@@ -156,7 +156,9 @@ def principled(nodes, m):
     normal = ((m["ior"] - 1.0) / (m["ior"] + 1.0)) ** 2
     inputs = {"Base_Color": slot(nodes, m["slot"]), "Metallic": m["metallic"], "Roughness": m["roughness"]}
     if bpy.app.version < (4, 0, 0):
-        inputs |= {"Specular": normal / 0.08, "Clearcoat": m["clearcoat"], "Clearcoat_Roughness": m["clearcoat_roughness"]}
+        # Its coat is a quarter of one of index 1.5; only through a link may it be more than 1.
+        coat = nodes.math("MULTIPLY", 4.0, m["clearcoat"]) if m["clearcoat"] > 0.0 else 0.0
+        inputs |= {"Specular": normal / 0.08, "Clearcoat": coat, "Clearcoat_Roughness": m["clearcoat_roughness"]}
     else:
         inputs |= {"IOR": m["ior"], "Coat_Weight": m["clearcoat"], "Coat_Roughness": m["clearcoat_roughness"]}
     return nodes.add("ShaderNodeBsdfPrincipled", 0, {"distribution": "MULTI_GGX"}, **inputs)
