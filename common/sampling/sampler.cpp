@@ -149,13 +149,14 @@ std::string_view sampler_name(SamplerKind kind) {
     return {};
 }
 
-Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
+Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)
     : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
-      samples_per_pixel_(static_cast<std::uint32_t>(std::max(samples_per_pixel, 1))) {}
+      samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) / replicates),
+      replicates_(replicates) {}
 
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
-    replicate_ = index & 1u;
-    index_ = index >> 1;
+    replicate_ = index % replicates_;
+    index_ = index / replicates_;
     dimension_ = 0;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
@@ -171,8 +172,7 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
 // §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
 // sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    const std::uint32_t samples = (samples_per_pixel_ + 1) / 2;
-    const int digits = std::bit_width(samples - 1);       // of the index within a pixel
+    const int digits = std::bit_width(samples_per_replicate_ - 1); // of the index within a pixel
     const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
     const std::uint32_t mask = (1u << side) - 1;
     const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;
@@ -187,7 +187,7 @@ float Sampler::get_1d() {
     const std::uint32_t dimension = dimension_++;
     if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
-    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
+    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, samples_per_replicate_, key);
     return unit_float(high_bits(stream_number(key, index_)));
 }
 
@@ -196,7 +196,7 @@ Vec2 Sampler::get_2d() {
     dimension_ += 2;
     if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
-    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
+    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, samples_per_replicate_, key);
     const std::uint64_t bits = stream_number(key, index_);
     return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
 }
