@@ -41,11 +41,10 @@ float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
 
 } // namespace
 
-bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
-    const Ray ray = spawn_ray(vertex, arrival.wi);
+bool reaches(const RenderPlan& plan, const Ray& ray, Vec3 p, const Arrival& arrival) {
     Hit end;
     // A lamp at a point may lie in a surface, which then does not hide it: the way ends a rounding error before it.
-    end.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - vertex.point.p)
+    end.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - p)
                           : arrival.distance;
     if (arrival.light >= 0) {
         if (const auto* light =

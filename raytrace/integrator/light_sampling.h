@@ -20,7 +20,10 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
                                       float choice, Vec2 u);
 
 /// Whether nothing stands between the vertex and the light. Sends one shadow ray.
-bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival);
+bool reaches(const RenderPlan& plan, const Ray& ray, Vec3 p, const Arrival& arrival); ///< a ray that left p towards it
+inline bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
+    return reaches(plan, spawn_ray(vertex, arrival.wi), vertex.point.p, arrival);
+}
 
 /// The density with which sample_arrival returns the direction to `point`, which lies on an emissive surface: 0 where
 /// that is no light that is sampled (it moves, or does not emit towards the receiver).
@@ -31,6 +34,6 @@ float arrival_pdf(const Environment& environment, const LightChooser& lights, co
 
 /// The weight of a sample that was drawn with density `own` and could have been drawn with density `other`: the power
 /// heuristic, β = 2 (Veach 1997, §9.2.4). own > 0.
-inline float mis_weight(float own, float other) { return 1 / (1 + sqr(other / own)); }
+template <typename T> T mis_weight(T own, T other) { return T(1.0f) / (T(1.0f) + sqr(other / own)); }
 
 } // namespace duet::raytrace
