@@ -108,14 +108,19 @@ private:
         const auto set = [&](std::size_t i, const CameraNumbers& u) {
             points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, u);
         };
-        std::size_t i = 0;
-        if (uses_all(target_.plan))
+        if (uses_all(target_.plan)) {
+            std::size_t i = 0;
             for (; i + 1 < rays.size(); i += 2) {
                 const auto [first, second] = Sampler::get_blocks(samplers_[i], samplers_[i + 1]);
                 set(i, samplers_[i].camera_numbers(first));
                 set(i + 1, samplers_[i + 1].camera_numbers(second));
             }
-        for (; i < rays.size(); ++i) set(i, camera_numbers(target_.plan, samplers_[i]));
+            if (i < rays.size()) set(i, samplers_[i].camera_numbers());
+        } else {
+            std::array<Vec2, kSize> numbers;
+            Sampler::pixel_numbers(std::span(samplers_).first(rays.size()), numbers);
+            for (std::size_t i = 0; i < rays.size(); ++i) set(i, CameraNumbers{numbers[i]});
+        }
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 

@@ -48,10 +48,14 @@ float sobol_1d(std::uint32_t reversed_index, std::uint32_t seed) {
     return unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u))));
 }
 
+template <typename U> Vec2T<U> sobol_2d_digits(U reversed_index, U seed) {
+    const U point = sobol_point(reversed_index, seed);
+    return {reverse_bits(owen_scramble(point, scramble_seed(seed, U(0u)))),
+            reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, U(1u))))};
+}
 Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
-    const std::uint32_t point = sobol_point(reversed_index, seed);
-    return {unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u)))),
-            unit_float(reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, 1u))))};
+    const Vec2T<std::uint32_t> digits = sobol_2d_digits(reversed_index, seed);
+    return {unit_float(digits.x), unit_float(digits.y)};
 }
 
 /// Pairs of dimensions from `first` on, a number a lane: of one sample of a pixel, or of two one after the other.
@@ -227,9 +231,36 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
     return numbers;
 }
 
+void Sampler::get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers) {
+    using Batch = WholeBatch<kMaxSimdLanes>;
+    std::size_t done = 0;
+    for (; samplers[0].is_sobol() && samplers.size() - done >= kMaxSimdLanes; done += kMaxSimdLanes) {
+        alignas(Batch) std::array<std::uint32_t, kMaxSimdLanes> index, low, high, x, y;
+        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) {
+            Sampler& s = samplers[done + i];
+            index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
+            s.dimension_ += 2;
+        }
+        const auto load = [](const auto& lanes) { return Batch::load_aligned(lanes.data()); };
+        const Batch seed = dimension_seed(load(low), load(high), Batch(samplers[done].dimension_ - 2));
+        const Vec2T<Batch> digits = sobol_2d_digits(load(index), seed);
+        digits.x.store_aligned(x.data());
+        digits.y.store_aligned(y.data());
+        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) numbers[done + i] = {unit_float(x[i]), unit_float(y[i])};
+    }
+    for (; done < samplers.size(); ++done) numbers[done] = samplers[done].get_2d();
+}
+
 Vec2 Sampler::pixel_numbers() {
     dimension_ = 0;
     return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
+}
+
+void Sampler::pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers) {
+    if (samplers.empty()) return;
+    for (Sampler& s : samplers) s.dimension_ = 0;
+    if (samplers[0].kind_ != SamplerKind::kCenter) return get_2d(samplers, numbers);
+    std::fill(numbers.begin(), numbers.end(), Vec2(0.5f, 0.5f));
 }
 
 CameraNumbers Sampler::camera_numbers() {

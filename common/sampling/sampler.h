@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -55,10 +56,13 @@ public:
     /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
     /// machine has room for both at once.
     static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
+    /// get_2d of each of several of one kind that stand at the same dimension, some at a time.
+    static void get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers);
     /// The first block, or only its first pair, for the camera; of kCenter (½, ½), (½, ½) and 0.
     CameraNumbers camera_numbers();
     CameraNumbers camera_numbers(const Block& first) const; ///< that block given
     Vec2 pixel_numbers();
+    static void pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers);
 
 private:
     bool is_sobol() const {

@@ -18,6 +18,9 @@ struct Arrival {
 /// choice in [0, 1) chooses the light, u in [0, 1)² the point on it. Empty where the chosen one sends nothing.
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                                       float choice, Vec2 u);
+/// The same from the light that was chosen.
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                                      const LightChoice& chosen, Vec2 u);
 
 /// Whether nothing stands between the vertex and the light. Sends one shadow ray.
 bool reaches(const RenderPlan& plan, const Ray& ray, Vec3 p, const Arrival& arrival); ///< a ray that left p towards it

@@ -1,6 +1,8 @@
 #include "raytrace/integrator/matt_vertices.h"
 
 #include "common/vec/robust_batch.h"
+#include "common/light/area_sampling.h"
+#include "common/light/solid_angle.h"
 #include "raytrace/integrator/light_sampling.h"
 
 #include <array>
@@ -124,11 +126,14 @@ public:
     void add_light_samples(RayCounts& counts) {
         Arrivals arrivals;
         receivers();
-        for (std::size_t i = 0; i < paths_.size(); ++i) {
-            const VertexNumbers& u = *paths_[i].numbers;
-            arrivals.set(i, sample_arrival(plan_.scene, *plan_.lights, paths_[i].state->departure.receiver,
-                                           u.light_choice, u.light));
-        }
+        std::array<std::optional<LightChoice>, kLanes> choices;
+        for (std::size_t i = 0; i < paths_.size(); ++i)
+            choices[i] = plan_.lights->sample(paths_[i].state->departure.receiver, paths_[i].numbers->light_choice);
+        const unsigned drawn = sample_rectangles(choices, arrivals);
+        for (std::size_t i = 0; i < paths_.size(); ++i)
+            if (choices[i] && (drawn >> i & 1u) == 0)
+                arrivals.set(i, sample_arrival(plan_.scene, *plan_.lights, paths_[i].state->departure.receiver,
+                                               *choices[i], paths_[i].numbers->light));
         const Vec wi = arrivals.wi.floats(), local = frame_.to_local(wi);
         const Mask reflected = (wo_.z * local.z > Floats(0.0f)) & (dot(wi, points_.n) * local.z > Floats(0.0f));
         const Color scattered = albedo_ * Floats(kInvPi) * abs(local.z) * arrivals.radiance.colors();
@@ -192,8 +197,8 @@ private:
         Columns wi, radiance;
         Column pdf, delta;
 
+        Arrivals() { pdf.of.fill(1); }
         void set(std::size_t i, const std::optional<Arrival>& arrival) {
-            pdf.of[i] = 1;
             if (!arrival) return;
             all[i] = *arrival;
             some |= 1u << i;
@@ -203,6 +208,47 @@ private:
             delta.of[i] = arrival->delta ? 1.0f : 0.0f;
         }
     };
+
+    // Light samples of paths whose light is a rectangle that they are not near: those are drawn by area. As sample_arrival
+    // has them; a bit for each path that is done.
+    unsigned sample_rectangles(const std::array<std::optional<LightChoice>, kLanes>& choices, Arrivals& arrivals) const {
+        if (plan_.scene.needs.lamp_textures) return 0;
+        unsigned rectangles = 0;
+        Columns corner, edge_u, edge_v;
+        Column ux, uy, two_sided;
+        for (std::size_t i = 0; i < paths_.size(); ++i) {
+            const SurfaceLight* light = choices[i] ? surface_light(*choices[i]) : nullptr;
+            const Quad* quad = light != nullptr ? std::get_if<Quad>(&light->shape) : nullptr;
+            if (quad == nullptr || !is_rectangle(*quad)) continue;
+            rectangles |= 1u << i;
+            corner.set(i, quad->corner);
+            edge_u.set(i, quad->u);
+            edge_v.set(i, quad->v);
+            ux.of[i] = paths_[i].numbers->light.x, uy.of[i] = paths_[i].numbers->light.y;
+            two_sided.of[i] = light->two_sided ? 1.0f : 0.0f;
+        }
+        if (rectangles == 0) return 0;
+        const Vecd du = edge_u.doubles(), dv = edge_v.doubles(), to_plane = corner.doubles() - Columns(points_.p).doubles();
+        const AreaSeen<Doubles> seen{cross(du, dv), to_plane};
+        rectangles &= ~lane_bits(seen.near(to_plane + (du + dv) * Doubles(0.5)));
+        const Vecd w = to_plane + du * ux.doubles() + dv * uy.doubles();
+        const Doubles distance = length(w), pdf = seen.pdf(w), front = -dot(seen.area_vector, to_plane), zero(0.0);
+        const auto emits = (front > zero) | ((front < zero) & (two_sided.doubles() > zero));
+        const Columns wi(w / distance);
+        const Column distances(distance), pdfs(pdf);
+        unsigned some = rectangles & lane_bits(emits & (pdf > zero) & (pdf < Doubles(1e38)));
+        for (; some != 0; some &= some - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(some));
+            const LightChoice& choice = *choices[i];
+            arrivals.set(i, Arrival{wi.vec(i), surface_light(choice)->radiance, pdfs.of[i] * choice.probability, false,
+                                    distances.of[i], static_cast<std::int64_t>(choice.index)});
+        }
+        return rectangles;
+    }
+    const SurfaceLight* surface_light(const LightChoice& choice) const {
+        const auto& lights = plan_.scene.lights;
+        return choice.index < lights.size() ? std::get_if<SurfaceLight>(&lights[choice.index]) : nullptr;
+    }
 
     // The side from which the surface is seen gathers light; it is what the next ray departs from, too.
     void receivers() {
