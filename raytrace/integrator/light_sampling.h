@@ -22,10 +22,28 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                                       const LightChoice& chosen, Vec2 u);
 
+/// Where a shadow ray to an arrival's light ends, if it leaves the surface point p.
+class ShadowEnd {
+public:
+    ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& arrival);
+    /// The end, or, of a surface, a place just behind it: where nothing stands before that, nothing is in the way.
+    const Hit& about() const { return end_; }
+    Hit exact(const Ray& ray) const;
+    bool is_surface() const { return light_ != nullptr; }
+    /// Whether the light is where the ray meets it, if it does.
+    bool is_flat() const { return is_surface() && !std::holds_alternative<Sphere>(light_->shape); }
+
+private:
+    const SurfaceLight* light_ = nullptr;
+    float sampled_;
+    Hit end_;
+};
+
 /// Whether nothing stands between the vertex and the light. Sends one shadow ray.
-bool reaches(const RenderPlan& plan, const Ray& ray, Vec3 p, const Arrival& arrival); ///< a ray that left p towards it
+bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end); ///< the ray to that end
 inline bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
-    return reaches(plan, spawn_ray(vertex, arrival.wi), vertex.point.p, arrival);
+    const Ray ray = spawn_ray(vertex, arrival.wi);
+    return reaches(plan, ray, ShadowEnd(plan.scene, ray, vertex.point.p, arrival));
 }
 
 /// The density with which sample_arrival returns the direction to `point`, which lies on an emissive surface: 0 where

@@ -123,7 +123,7 @@ public:
     }
 
     // As Path::add_light_sample.
-    void add_light_samples(RayCounts& counts) {
+    void add_light_samples(ShadowRays& shadows, RayCounts& counts) {
         Arrivals arrivals;
         receivers();
         std::array<std::optional<LightChoice>, kLanes> choices;
@@ -150,7 +150,7 @@ public:
             ++counts.shadow;
             Ray ray{origins.vec(i), arrivals.all[i].wi};
             ray.time = paths_[i].ray->time;
-            if (reaches(plan_, ray, p.vec(i), arrivals.all[i])) paths_[i].light = light.rgb(i);
+            shadows.add(paths_[i].index, ray, p.vec(i), arrivals.all[i], light.rgb(i));
         }
     }
 
@@ -271,16 +271,17 @@ private:
 } // namespace
 
 void scatter_matt(const RenderPlan& plan, MattSurfaces::Kind kind, std::span<MattPath> paths, int depth,
-                  RayCounts& counts) {
+                  ShadowRays& shadows, RayCounts& counts) {
     const bool flat = kind == MattSurfaces::Kind::kFlat;
     Block block(plan, paths, flat ? flat_points(plan.scene, paths) : round_points(plan.scene, paths));
-    if (plan.lights != nullptr) block.add_light_samples(counts);
+    if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
     if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
 }
 
 #else // too few lanes: RenderPlan::matt has no surfaces
 
-void scatter_matt(const RenderPlan&, MattSurfaces::Kind, std::span<MattPath>, int, RayCounts&) {}
+void scatter_matt(const RenderPlan&, MattSurfaces::Kind, std::span<MattPath>, int, ShadowRays&,
+                  RayCounts&) {}
 
 #endif
 

@@ -275,7 +275,7 @@ void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const 
 template <bool kInsides> class Paths {
 public:
     Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
-        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()) {
+        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()), shadows_(plan) {
         paths_.reserve(rays.size());
         for (std::uint32_t i = 0; i < rays.size(); ++i) {
             paths_.emplace_back(plan, counts);
@@ -287,7 +287,8 @@ public:
         for (int depth = 0; !going_.empty(); ++depth) {
             if (depth < plan_.max_depth) draw_numbers(samplers_, hits_, going_, depth, numbers_);
             advance(depth);
-            for (const std::uint32_t i : going_) hits_[i] = plan_.prepared.accelerator.closest(rays_[i]);
+            shadows_.send([&](std::uint32_t i, Rgb light) { paths_[i].add(light); });
+            find_hits();
         }
         for (std::size_t i = 0; i < paths_.size(); ++i) radiances[i] = paths_[i].result();
     }
@@ -295,6 +296,19 @@ public:
 private:
     using Kind = MattSurfaces::Kind;
     static constexpr std::size_t kFewest = 3; // to go side by side
+
+    void find_hits() {
+        const Accelerator& accelerator = plan_.prepared.accelerator;
+        if (!accelerator.few_primitives()) {
+            for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
+            return;
+        }
+        some_rays_.clear();
+        for (const std::uint32_t i : going_) some_rays_.push_back(rays_[i]);
+        some_hits_.resize(going_.size());
+        accelerator.closest_of_scattered(some_rays_, some_hits_);
+        for (std::size_t k = 0; k < going_.size(); ++k) hits_[going_[k]] = some_hits_[k];
+    }
 
     void advance(int depth) {
         std::array<std::vector<std::uint32_t>, 2> matt;
@@ -314,13 +328,11 @@ private:
             const std::size_t size = std::min(which.size(), kMattLanes);
             for (std::size_t k = 0; k < size; ++k) {
                 const std::uint32_t i = which[k];
-                some[k] = {&rays_[i], &hits_[i], &numbers_[i], &paths_[i].state()};
+                some[k] = {i, &rays_[i], &hits_[i], &numbers_[i], &paths_[i].state()};
             }
-            scatter_matt(plan_, kind, std::span(some).first(size), depth, counts_);
-            for (std::size_t k = 0; k < size; ++k) {
-                paths_[which[k]].add(some[k].light);
+            scatter_matt(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+            for (std::size_t k = 0; k < size; ++k)
                 if (some[k].goes_on) going_.push_back(which[k]);
-            }
         }
         for (const std::uint32_t i : which)
             if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
@@ -334,6 +346,9 @@ private:
     std::vector<Path<Sum, kInsides>> paths_;
     std::vector<std::uint32_t> going_;
     std::vector<VertexNumbers> numbers_;
+    ShadowRays shadows_;
+    std::vector<Ray> some_rays_;
+    std::vector<Hit> some_hits_;
 };
 
 template <typename Sink>
