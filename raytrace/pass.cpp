@@ -97,7 +97,7 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    static constexpr std::size_t kSize = 256;
+    static constexpr std::size_t kSize = 512;
     struct Sample {
         int x, y;
         std::uint32_t index;
