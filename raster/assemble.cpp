@@ -128,9 +128,10 @@ void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t co
         out.any_outcode[i] = static_cast<std::int32_t>(any);
         out.common_outcode[i] = static_cast<std::int32_t>(common);
     }
-    // The next sixteen's vertices, while these are worked on.
-    const std::uint32_t end = std::min(first + 2 * static_cast<std::uint32_t>(kStrip), run_.first + run_.count);
-    for (std::uint32_t i = first + kStrip; i < end; ++i)
+    // Vertices of the sixteen after the next, while these are worked on.
+    constexpr std::uint32_t kAhead = 2 * kStrip;
+    const std::uint32_t end = std::min<std::uint32_t>(first + kAhead + kStrip, run_.first + run_.count);
+    for (std::uint32_t i = first + kAhead; i < end; ++i)
         for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
 }
 
