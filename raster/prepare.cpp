@@ -22,6 +22,11 @@ bool can_be_seen_through(const Scene& scene, const Object& object) {
                        [&](std::uint32_t material) { return scene.maps[material].cuts_out(); });
 }
 
+bool all_glass(const Scene& scene, const Object& object) {
+    return std::all_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return std::holds_alternative<Dielectric>(scene.materials[material]); });
+}
+
 bool any_emissive(const Scene& scene, const Object& object) {
     return std::any_of(object.materials.begin(), object.materials.end(),
                        [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
@@ -104,6 +109,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
             (sphere ? data.open_spheres : data.open_polygonal).push_back(i);
         else
             (sphere ? data.spheres : data.polygonal).push_back(i);
+        if (all_glass(scene, object) && !can_be_seen_through(scene, object)) data.glass.push_back(i);
         data.primitives += primitive_count(shape);
         const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
         data.unsampled_emitters =
@@ -120,7 +126,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
     const PartSet& parts = settings.parts; // a picture that is mirrored shows all of them
-    const bool direct = parts.direct || (parts.reflection && settings.screen_reflections);
+    const bool direct = parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
     if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();

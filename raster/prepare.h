@@ -41,6 +41,7 @@ struct PreparedData {
     std::vector<std::uint32_t> spheres;   ///< the others
     std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
                                                                  ///< above (raster/layers.h)
+    std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/glass.h)
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
