@@ -128,9 +128,10 @@ void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t co
         out.any_outcode[i] = static_cast<std::int32_t>(any);
         out.common_outcode[i] = static_cast<std::int32_t>(common);
     }
-    // The next sixteen's vertices, while these are worked on.
-    const std::uint32_t end = std::min(first + 2 * static_cast<std::uint32_t>(kStrip), run_.first + run_.count);
-    for (std::uint32_t i = first + kStrip; i < end; ++i)
+    // Vertices of the sixteen after the next, while these are worked on.
+    constexpr std::uint32_t kAhead = 2 * kStrip;
+    const std::uint32_t end = std::min<std::uint32_t>(first + kAhead + kStrip, run_.first + run_.count);
+    for (std::uint32_t i = first + kAhead; i < end; ++i)
         for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
 }
 
@@ -176,25 +177,23 @@ void Assembler::judge(Outlines& out) const {
 }
 
 void Assembler::sort_out(const Outlines& out) {
-    std::array<std::int64_t, kClip + 1> counts{};
-    std::array<std::uint32_t, kStrip> chosen; // those not culled, without a branch to be guessed wrong
-    std::size_t left = 0;
-    for (std::uint32_t i = 0; i < out.count; ++i) {
-        ++counts[static_cast<std::size_t>(out.verdict[i])];
-        chosen[left] = i;
-        left += out.verdict[i] >= kSmall;
-    }
+    std::uint32_t chosen = (1u << out.count) - 1; // a bit each: those not culled
+    const auto take_out = [&](Verdict verdict) {
+        const std::uint32_t these = chosen & lanes_of_number(out.verdict, verdict);
+        chosen &= ~these;
+        return std::popcount(these);
+    };
     CullCounts& culled = batch_->culled;
-    culled.outside += counts[kOutside];
-    culled.degenerate += counts[kDegenerate];
-    culled.backfaces += counts[kBackface];
-    culled.subpixel += counts[kSubpixel];
+    culled.outside += take_out(kOutside);
+    culled.degenerate += take_out(kDegenerate);
+    culled.backfaces += take_out(kBackface);
+    culled.subpixel += take_out(kSubpixel);
     if (mesh_ != nullptr)
-        for (std::size_t k = 0; k < left; ++k)
-            for (const std::uint32_t corner : mesh_->triangles[out.first + chosen[k]])
+        for (std::uint32_t left = chosen; left != 0; left &= left - 1)
+            for (const std::uint32_t corner : mesh_->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
                 prefetch(&mesh_->positions[corner]);
-    for (std::size_t k = 0; k < left; ++k) {
-        const std::uint32_t i = chosen[k], index = out.first + i;
+    for (std::uint32_t left = chosen; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(left)), index = out.first + i;
         if (out.verdict[i] == kSmall) {
             add_candidate(out, i);
         } else if (out.verdict[i] == kDraw) {

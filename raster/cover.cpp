@@ -69,8 +69,14 @@ void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offs
     draw_all(geometry, geometry.outlines.tile(index), &Batch::triangles, &Batch::order,
              [&](const DrawTriangle& triangle) { tile.draw(triangle, geometry.triangles); });
     draw_all(geometry, geometry.patches.tile(index), &Batch::patches, &Batch::patch_order, [&](const Patch& patch) { tile.draw(patch); });
-    for (const TileLists::Item& item : geometry.fragments.tile(index))
-        tile.draw(std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count));
+    const auto fragments = [&](const TileLists::Item& item) {
+        return std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count);
+    };
+    const std::span<const TileLists::Item> lists = geometry.fragments.tile(index);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        if (i + 1 < lists.size()) prefetch(fragments(lists[i + 1]).data());
+        tile.draw(fragments(lists[i]));
+    }
     if (!geometry.spheres.empty())
         for (const std::uint32_t i : geometry.sphere_bins.tile(index)) draw(geometry.spheres[i], view, tile);
 }

@@ -236,9 +236,10 @@ void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_
     const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
     const auto block = static_cast<std::size_t>(row * kBlocks + column);
     open(block);
-    for (std::size_t i = 0; i < kBlockSamples; i += Floats::size) {
+    constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
+    for (auto i = static_cast<std::size_t>(std::countr_zero(samples) / kLanesOfBatch * kLanesOfBatch);
+         i < kBlockSamples && samples >> i != 0; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
-        if (here == 0) continue;
         keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(patch.id), nearness.at(i), lanes_from<float>(here));
     }
 }

@@ -60,6 +60,9 @@ void gather(const Shape& shape, std::size_t first, std::size_t end, VertexStrip&
     const std::size_t last = std::min(kStrip, end - first) - 1;
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
         static_assert(sizeof(Vec3) == 3 * sizeof(float));
+        constexpr std::size_t kAhead = 16 * kStrip; // gathering does not tell the machine that it goes on and on
+        if (first + kAhead + kStrip <= end)
+            for (std::size_t i = 0; i < kStrip; i += 5) prefetch(&mesh->positions[first + kAhead + i]);
         for (std::size_t i = 0; i < kStrip; i += Ints::size) {
             const Ints place = min(load(kLanes, i), Ints(static_cast<std::int32_t>(last))) * Ints(3);
             for (std::size_t axis = 0; axis < 3; ++axis) store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, place));
