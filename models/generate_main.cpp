@@ -38,6 +38,8 @@ int run(const std::vector<std::string>& arguments) {
         print_usage(arguments.empty() ? std::cerr : std::cout);
         return arguments.empty() ? 2 : 0;
     }
+    for (const std::string& argument : arguments)
+        if (argument.starts_with("-")) throw duet::Error(argument + ": generate has no such option, only --help");
     const std::filesystem::path folder = arguments.front();
     std::vector<const Model*> chosen;
     for (std::size_t i = 1; i < arguments.size(); ++i) chosen.push_back(&model_named(arguments[i]));

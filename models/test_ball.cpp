@@ -77,6 +77,7 @@ void write_test_ball(const std::filesystem::path& folder) {
     compute_normals(mesh, 50);
     write_obj(folder / "meshes/test-ball.obj", mesh, "A ball to see materials on, made by models/test_ball.cpp.");
 
+    // The floor is a millimetre below: where glass touched it, which of the two were hit would be chance.
     for (const BallScene& ball : ball_scenes())
         write_file(folder / "balls" / (ball.name + ".json"), R"({
   "description": ")" + ball.description + R"(",
@@ -95,7 +96,7 @@ void write_test_ball(const std::filesystem::path& folder) {
   },
   "objects": [
     {"name": "ball", "type": "mesh", "file": "../meshes/test-ball.obj", "material": "ball"},
-)" + ball.objects + (ball.objects.empty() ? "" : "\n") + R"(    {"name": "floor", "type": "quad", "corner": [-6, 0, 6], "u": [12, 0, 0], "v": [0, 0, -9], "material": "floor"},
+)" + ball.objects + (ball.objects.empty() ? "" : "\n") + R"(    {"name": "floor", "type": "quad", "corner": [-6, -0.001, 6], "u": [12, 0, 0], "v": [0, 0, -9], "material": "floor"},
     {"name": "wall", "type": "quad", "corner": [-6, 0, -3], "u": [12, 0, 0], "v": [0, 6, 0], "material": "wall"},
     {"name": "lamp", "type": "quad", "corner": [-3.2, 2.0, 0.3], "u": [1.2, 1.6, 0], "v": [0, 0, 2], "material": "lamp"}
   ],

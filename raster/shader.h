@@ -107,6 +107,15 @@ class ColorSource {
 public:
     virtual ~ColorSource() = default;
     virtual Rgb base_color(std::size_t sample) const = 0;
+    /// Of as many samples from `first` on as a batch has lanes.
+    virtual RgbT<Floats> base_colors(std::size_t first) const {
+        RgbT<StripOf<float>> found;
+        for (std::size_t lane = 0; lane < Floats::size; ++lane) {
+            const Rgb c = base_color(first + lane);
+            found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
+        }
+        return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+    }
     virtual Vec3 bent_normal(std::size_t sample) const = 0; ///< in the world, unit, on the side that is seen
 };
 
@@ -142,13 +151,8 @@ private:
 
 /// A strip's base colours from sample `first` on. Never inlined: so a fragment whose object has one colour need not lie in
 /// memory.
-template <typename T> [[gnu::noinline]] RgbT<T> sampled_colors(const ColorSource& colors, std::size_t first) {
-    RgbT<StripOf<float>> found;
-    for (std::size_t lane = 0; lane < T::size; ++lane) {
-        const Rgb c = colors.base_color(first + lane);
-        found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
-    }
-    return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+[[gnu::noinline]] inline RgbT<Floats> sampled_colors(const ColorSource& colors, std::size_t first) {
+    return colors.base_colors(first);
 }
 
 template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
@@ -156,7 +160,7 @@ template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V,
     if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
     else
-        return sampled_colors<T>(colors, first);
+        return sampled_colors(colors, first);
 }
 
 /// And its normals, likewise.

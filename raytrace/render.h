@@ -18,7 +18,7 @@ namespace duet::raytrace {
 /// The version of what the estimators of light (path, naive, direct) converge to: part of the name under which compare
 /// bench keeps its references. Raise it with every change of that (a material, a light, a filter, a mended bias), not
 /// for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp notices where it was forgotten.
-inline constexpr int kEstimatorVersion = 3;
+inline constexpr int kEstimatorVersion = 4;
 
 enum class Integrator {
     kPath,        ///< light and BSDF sampling, combined by multiple importance sampling
@@ -51,6 +51,13 @@ struct Settings : RenderSettings {
     double film_interval = 60;      ///< seconds between two writings of it
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
     double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
+
+    /// Whether the film has to tell its error: then samples fall into two replicates (common/sampling/sampler.h). Else
+    /// all of a pixel's are spread together, which leaves less of it.
+    bool knows_error() const { return adaptive || error_limit > 0 || aovs.variance; }
+    std::uint32_t replicates() const { return knows_error() ? 2 : 1; }
+    /// Of the samples of such a render.
+    Sampler make_sampler() const { return {sampler, seed, samples_per_pixel, replicates()}; }
 };
 
 struct PreparedData; // raytrace/prepare.h

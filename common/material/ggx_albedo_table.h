@@ -29,9 +29,9 @@ struct GgxAlbedoTables {
         std::size_t i;
         float f;
     };
-    static Place place_of(float x) { // of x in [0, 1] among kSide entries
-        const float at = clamp(x, 0.0f, 1.0f) * (kSide - 1);
-        const int i = std::min(static_cast<int>(at), kSide - 2);
+    static Place place_of(float x, int entries = kSide) { // of x in [0, 1] among so many entries
+        const float at = clamp(x, 0.0f, 1.0f) * static_cast<float>(entries - 1);
+        const int i = std::min(static_cast<int>(at), entries - 2);
         return {static_cast<std::size_t>(i), at - static_cast<float>(i)};
     }
     static Place row_of(float alpha) { return place_of((std::sqrt(alpha) - kSmoothest) / (kRoughest - kSmoothest)); }

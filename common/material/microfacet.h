@@ -1,6 +1,7 @@
-// What reflections by microfacets have in common.
+// What reflections and refractions by microfacets have in common.
 #pragma once
 
+#include "common/material/fresnel.h"
 #include "common/vec/vec.h"
 
 namespace duet {
@@ -18,6 +19,12 @@ inline Microfacet microfacet(Vec3 wo, Vec3 wi) {
     const Vec3 sum = wo + wi;
     const float size = length(sum);
     return {sum / size, 0.5f * size};
+}
+
+/// Where a microfacet h sends what comes from wo, refracted; cos_o = wo·h > 0, `relative` the index beyond over that on wo's
+/// side. Not where it reflects all.
+inline Vec3 refract(Vec3 wo, Vec3 h, float cos_o, float relative) {
+    return normalize((h * cos_o - wo) / relative - h * safe_sqrt(cos2_refracted(cos_o, relative)));
 }
 
 } // namespace duet

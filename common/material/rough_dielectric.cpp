@@ -3,6 +3,8 @@
 #include "common/material/fresnel.h"
 #include "common/material/ggx.h"
 #include "common/material/microfacet.h"
+#include "common/material/rough_glass_energy.h"
+#include "common/sampling/warp.h"
 
 namespace duet {
 
@@ -40,36 +42,50 @@ std::optional<Refraction> refraction(const Seen& s) {
 /// D·G₁-like factors of refraction without Fresnel's: |cos_i| relative²/(sum)² is dω_h/dω_i (eq. 17).
 float jacobian(const Refraction& r, float relative) { return sqr(relative / r.sum) * -r.cos_i; }
 
+/// What further microfacets add, as wo sees it.
+struct Further {
+    RoughGlassEnergy energy;
+    RoughGlassEnergy::Lobe lobe; ///< of reflection
+    bool dense;                  ///< wo is on the side of the larger index
+    float lost;                  ///< from wo to the lobe: also how often it is drawn from
+
+    Further(const Seen& s, float alpha)
+        : energy(s.relative, alpha), lobe(energy.lobe(s.relative < 1)), dense(s.relative < 1), lost(energy.lost(lobe, s.wo.z)) {}
+
+    float reflected(const Seen& s) const { return lost > 0 ? lost * energy.lost(lobe, s.wi.z) * kInvPi / lobe.mean_lost : 0; }
+    float gain(const Seen& s) const { return energy.gain(dense ? -s.wi.z : s.wo.z); }
+};
+
 } // namespace
 
 Rgb RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, TransportMode mode) const {
     if (wo.z == 0 || wi.z == 0) return Rgb();
     const Seen s(wo, wi, eta);
+    const Further further(s, alpha);
     if (s.wi.z > 0) {
         const Microfacet h = microfacet(s.wo, s.wi);
-        return Rgb(fresnel_dielectric(h.cosine, s.relative) * ggx_d(h.normal, alpha) * ggx_visibility(s.wo, s.wi, alpha));
+        return Rgb(fresnel_dielectric(h.cosine, s.relative) * ggx_d(h.normal, alpha) * ggx_visibility(s.wo, s.wi, alpha) +
+                   further.reflected(s));
     }
     const auto r = refraction(s);
     if (!r) return Rgb();
     // (eq. 21); the visibility is G₂/(4 cos cos).
     const float through = (1 - fresnel_dielectric(r->cos_o, s.relative)) * ggx_d(r->normal, alpha) *
-                          ggx_visibility(s.wo, Vec3(s.wi.x, s.wi.y, -s.wi.z), alpha) * 4 * r->cos_o * jacobian(*r, s.relative);
+                          ggx_visibility(s.wo, Vec3(s.wi.x, s.wi.y, -s.wi.z), alpha) * 4 * r->cos_o * jacobian(*r, s.relative) *
+                          further.gain(s);
     return tint * (mode == TransportMode::kRadiance ? through / sqr(s.relative) : through);
 }
 
 std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const {
     if (wo.z == 0) return std::nullopt;
     const Seen s(wo, wo, eta);
+    const float single = 1 - Further(s, alpha).lost;
+    const bool several = lobe >= single;
     const Vec3 h = ggx_sample_visible_normal(s.wo, alpha, u);
     const float cos_o = dot(s.wo, h);
-    if (!(cos_o > 0)) return std::nullopt;
-    const bool through = !(lobe < fresnel_dielectric(cos_o, s.relative));
-    Vec3 wi;
-    if (through)
-        wi = (h * cos_o - s.wo) / s.relative - h * safe_sqrt(cos2_refracted(cos_o, s.relative));
-    else
-        wi = reflect(s.wo, h);
-    wi = normalize(wi);
+    if (!(several || cos_o > 0)) return std::nullopt;
+    const bool through = !several && !(lobe < single * fresnel_dielectric(cos_o, s.relative));
+    Vec3 wi = through ? refract(s.wo, h, cos_o, s.relative) : several ? cosine_hemisphere(u) : normalize(reflect(s.wo, h));
     if (!(through ? wi.z < 0 : wi.z > 0)) return std::nullopt; // it would meet a second microfacet
     if (wo.z < 0) wi.z = -wi.z;
     BsdfSample result = sample_of(*this, wo, wi, mode);
@@ -81,14 +97,16 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 
 float RoughDielectricBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     if (wo.z == 0 || wi.z == 0) return 0;
     const Seen s(wo, wi, eta);
+    const float several = Further(s, alpha).lost;
     if (s.wi.z > 0) {
         const Microfacet h = microfacet(s.wo, s.wi);
-        return fresnel_dielectric(h.cosine, s.relative) * ggx_reflection_pdf(s.wo, h.normal, alpha);
+        return lerp(fresnel_dielectric(h.cosine, s.relative) * ggx_reflection_pdf(s.wo, h.normal, alpha),
+                    cosine_hemisphere_pdf(s.wi.z), several);
     }
     const auto r = refraction(s);
     if (!r) return 0;
     // D_visible(h) = G₁ D cos_o / cos θₒ, four times the reflection's density times cos_o.
-    return (1 - fresnel_dielectric(r->cos_o, s.relative)) * 4 * r->cos_o * ggx_reflection_pdf(s.wo, r->normal, alpha) *
+    return (1 - several) * (1 - fresnel_dielectric(r->cos_o, s.relative)) * 4 * r->cos_o * ggx_reflection_pdf(s.wo, r->normal, alpha) *
            jacobian(*r, s.relative);
 }
 

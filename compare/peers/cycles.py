@@ -126,9 +126,16 @@ def metal(nodes, m):
                      Roughness=0.0 if smooth else m["roughness"])
 
 
+def clear_glass(m):
+    return m["slot"]["texture"] is None and all(channel == 1.0 for channel in m["slot"]["value"])
+
+
 def dielectric(nodes, m):
-    # Blender's own glass tints reflections, too.
+    # Blender's own glass is ours where it is rough, Fresnel's term at the microfacet, and all light kept; but it tints
+    # reflections, too.
     rough = m["roughness"]
+    if rough > 0 and clear_glass(m):
+        return nodes.add("ShaderNodeBsdfGlass", 0, {"distribution": "MULTI_GGX"}, Color=WHITE, IOR=m["ior"], Roughness=rough)
     lobe = {"distribution": "GGX" if rough > 0 else SHARP}
     through = nodes.add("ShaderNodeBsdfRefraction", 0, lobe, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=rough)
     back = nodes.add(GLOSSY, 0, lobe, Color=WHITE, Roughness=rough)
@@ -149,7 +156,9 @@ def principled(nodes, m):
     normal = ((m["ior"] - 1.0) / (m["ior"] + 1.0)) ** 2
     inputs = {"Base_Color": slot(nodes, m["slot"]), "Metallic": m["metallic"], "Roughness": m["roughness"]}
     if bpy.app.version < (4, 0, 0):
-        inputs |= {"Specular": normal / 0.08, "Clearcoat": m["clearcoat"], "Clearcoat_Roughness": m["clearcoat_roughness"]}
+        # Its coat is a quarter of one of index 1.5; only through a link may it be more than 1.
+        coat = nodes.math("MULTIPLY", 4.0, m["clearcoat"]) if m["clearcoat"] > 0.0 else 0.0
+        inputs |= {"Specular": normal / 0.08, "Clearcoat": coat, "Clearcoat_Roughness": m["clearcoat_roughness"]}
     else:
         inputs |= {"IOR": m["ior"], "Coat_Weight": m["clearcoat"], "Coat_Roughness": m["clearcoat_roughness"]}
     return nodes.add("ShaderNodeBsdfPrincipled", 0, {"distribution": "MULTI_GGX"}, **inputs)

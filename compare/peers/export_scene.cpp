@@ -87,7 +87,10 @@ private:
         const float roughness = constant(glass.roughness, "roughness");
         result["roughness"] = glass.smooth() ? 0 : roughness;
         result["absorption"] = rgb_json(glass.absorption);
-        if (!glass.smooth()) notes_.insert("frosted glass takes Fresnel's term at the shading normal, not at the microfacet's");
+        if (glass.smooth()) return;
+        const bool clear = glass.tint.texture < 0 && glass.tint.value == Rgb(1.0f);
+        notes_.insert(clear ? "what meets further microfacets of frosted glass goes ways of its own"
+                            : "frosted glass takes Fresnel's term at the shading normal, and loses what meets further microfacets");
     }
 
     json material(const Material& m) {

@@ -45,8 +45,7 @@ public:
         const auto [rendering, seconds] = rendered(adaptive, control);
         trial.seconds = seconds;
         trial.stated = rendering.statistics.estimated_relmse;
-        for (const std::uint32_t n : rendering.samples) trial.samples += n;
-        trial.samples /= static_cast<double>(rendering.samples.size());
+        trial.samples = mean_samples(rendering);
         set_errors(rendering.radiance, trial.relmse, trial.mse);
         if (control.stopped()) return trial;
 
@@ -64,8 +63,9 @@ public:
         limited.seed = seed;
         limited.time_limit = time;
         limited.adaptive = true;
+        limited.aovs.samples = true;
         const auto [rendering, seconds] = rendered(limited, control);
-        return {seconds, seconds / std::max(1, rendering.statistics.passes)};
+        return {seconds, seconds * std::min(1.0, 2 / mean_samples(rendering))};
     }
 
 private:
@@ -74,6 +74,11 @@ private:
         Control silent{control.stop, {}};
         Rendering rendering = raytrace::render(*prepared_, view_, settings, silent);
         return {std::move(rendering), watch.seconds()};
+    }
+    static double mean_samples(const Rendering& rendering) {
+        double sum = 0;
+        for (const std::uint32_t n : rendering.samples) sum += n;
+        return sum / static_cast<double>(rendering.samples.size());
     }
     void set_errors(const ImageRgb& picture, double& relmse, double& mse) const {
         const PictureError error = picture_error(picture, reference_.mean, all_);

@@ -31,7 +31,7 @@ struct StopTrial {
 /// One render to a time.
 struct TimeTrial {
     double seconds = 0;  ///< of the render
-    double one_pass = 0; ///< of its passes, in the mean
+    double one_pass = 0; ///< of the least pass that there is at the end: two samples a pixel
 };
 
 /// A scene's trials and what they say. Ratios of squared errors are ratios of their means over the seeds.

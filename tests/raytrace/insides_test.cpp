@@ -162,7 +162,7 @@ TEST_SUITE("unit") {
         CHECK(walk.throughput.g == doctest::Approx(std::exp(-0.5)).epsilon(1e-3));
     }
 
-    TEST_CASE("clear dielectrics that stand in each other in a constant environment: nothing is lost, frosted little") {
+    TEST_CASE("clear dielectrics that stand in each other in a constant environment: nothing is lost, frosted or not") {
         Settings settings;
         settings.samples_per_pixel = 4;
         settings.max_depth = 100000;
@@ -177,8 +177,6 @@ TEST_SUITE("unit") {
             return sum / (32 * 32);
         };
         CHECK(mean(0) == doctest::Approx(1).epsilon(1e-4));
-        const double frosted = mean(0.3f); // microfacets lose what meets a second of them
-        CHECK(frosted < 1);
-        CHECK(frosted > 0.9);
+        CHECK(mean(0.3f) == doctest::Approx(1).epsilon(0.01)); // by tables; several crossings
     }
 }

@@ -53,12 +53,32 @@ private:
 
 constexpr ImageContent kGreyData{ImageContent::Values::kData, ImageContent::Channel::kRed};
 
-/// Pr, or map_Pr times it (times 1 where there is a map and no Pr).
-ScalarSlot roughness_of(const tinyobj::material_t& m, float without, Pictures& pictures) {
-    const std::int32_t map = pictures.add(m.roughness_texname, m.roughness_texopt, kGreyData);
-    const float given = clamp(m.roughness, 0.0f, 1.0f);
-    if (map >= 0) return {given > 0 ? given : 1.0f, map};
-    return given > 0 ? given : without;
+/// A number in [0, 1], or its picture times it (times 1 where there is a picture and no number); 0 without either.
+ScalarSlot scalar(float number, const std::string& name, const tinyobj::texture_option_t& options, Pictures& pictures) {
+    const std::int32_t map = pictures.add(name, options, kGreyData);
+    const float given = clamp(number, 0.0f, 1.0f);
+    return map >= 0 ? ScalarSlot{given > 0 ? given : 1.0f, map} : ScalarSlot{given};
+}
+
+ScalarSlot roughness_of(const tinyobj::material_t& m, Pictures& pictures) {
+    return scalar(m.roughness, m.roughness_texname, m.roughness_texopt, pictures);
+}
+
+/// Whether anything of the PBR extension is given: by its defaults, Pr 0 among them, all surfaces would be varnished.
+bool is_metallic(const tinyobj::material_t& m) { return m.metallic > 0 || !m.metallic_texname.empty(); }
+bool is_physical(const tinyobj::material_t& m) {
+    return is_metallic(m) || m.roughness > 0 || !m.roughness_texname.empty() || m.clearcoat_thickness > 0;
+}
+
+Principled physical(const tinyobj::material_t& m, const RgbSlot& color, Pictures& pictures) {
+    Principled result;
+    result.base_color = color;
+    result.metallic = scalar(m.metallic, m.metallic_texname, m.metallic_texopt, pictures);
+    result.roughness = roughness_of(m, pictures);
+    if (m.ior > 1) result.ior = min(m.ior, 4.0f);
+    result.clearcoat = clamp(m.clearcoat_thickness, 0.0f, 1.0f);
+    result.clearcoat_roughness = clamp(m.clearcoat_roughness, 0.0f, 1.0f);
+    return result;
 }
 
 Material map_material(const tinyobj::material_t& m, Pictures& pictures) {
@@ -68,11 +88,12 @@ Material map_material(const tinyobj::material_t& m, Pictures& pictures) {
     const std::int32_t map_ke = pictures.add(m.emissive_texname, m.emissive_texopt);
     if (!is_black(ke) || map_ke >= 0) return Emissive{is_black(ke) ? Rgb(1.0f) : ke, false, diffuse(), map_ke};
     if (is_glass(m)) return Dielectric{m.ior > 1 ? min(m.ior, 4.0f) : 1.5f, {is_black(tf) ? Rgb(1.0f) : tf}};
-    if (m.metallic >= 0.5f) return Metal{diffuse(), roughness_of(m, 0, pictures)};
-    if ((m.illum == 3 || m.illum == 5) && !is_black(ks)) {
+    if (!is_metallic(m) && (m.illum == 3 || m.illum == 5) && !is_black(ks)) {
         const RgbSlot specular{ks, pictures.add(m.specular_texname, m.specular_texopt)};
-        return Metal{specular, roughness_of(m, roughness_of_exponent(m.shininess), pictures)};
+        const ScalarSlot rough = roughness_of(m, pictures);
+        return Metal{specular, rough.constant() && rough.value == 0 ? ScalarSlot{roughness_of_exponent(m.shininess)} : rough};
     }
+    if (is_physical(m)) return physical(m, diffuse(), pictures);
     return Diffuse{diffuse()};
 }
 

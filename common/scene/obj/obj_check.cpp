@@ -230,7 +230,7 @@ void check_mtl(const std::filesystem::path& path, std::string_view text) {
         if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf" || key == "Kt")
             check_numbers(path, lines.number(), words, 3, 3);
         else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr" || key == "Pr" || key == "Pm" ||
-                 key == "illum")
+                 key == "Pc" || key == "Pcr" || key == "illum")
             check_numbers(path, lines.number(), words, 1, 1);
     }
 }

@@ -63,9 +63,9 @@ std::vector<Named> rough_materials() {
 }
 /// Those that light goes through, and not as through lenses.
 std::vector<Named> frosted_materials() {
-    return {{"frosted glass 0.3", RoughDielectricBsdf{1.5f, Rgb(1.0f), 0.3f}, 0.3f, false, 0.8},
+    return {{"frosted glass 0.3", RoughDielectricBsdf{1.5f, Rgb(1.0f), 0.3f}, 0.3f, true, 0.8},
             {"frosted water 0.5", RoughDielectricBsdf{1.33f, Rgb(0.9f, 1.0f, 0.8f), 0.5f}, 0.5f, false, 0.6},
-            {"frosted diamond 1", RoughDielectricBsdf{2.4f, Rgb(1.0f), 1.0f}, 1, false, 0.4}};
+            {"frosted diamond 1", RoughDielectricBsdf{2.4f, Rgb(1.0f), 1.0f}, 1, true, 0.4}};
 }
 std::vector<Named> all_materials() {
     std::vector<Named> all = rough_materials();
@@ -94,9 +94,9 @@ template <typename F> void for_numbers(int n, F f) {
     for (const float x : {0.0f, kOneMinusEpsilon})
         for (const float y : {0.0f, kOneMinusEpsilon})
             for (const float z : {0.0f, kOneMinusEpsilon}) f(x, Vec2{y, z});
-    Sampler sampler(SamplerKind::kSobol, 17, 2 * n);
+    Sampler sampler(SamplerKind::kSobol, 17, n);
     for (int i = 0; i < n; ++i) {
-        sampler.start(0, 0, static_cast<std::uint32_t>(2 * i));
+        sampler.start(0, 0, static_cast<std::uint32_t>(i));
         const float lobe = sampler.get_1d();
         f(lobe, sampler.get_2d());
     }
@@ -105,9 +105,9 @@ template <typename F> void for_numbers(int n, F f) {
 /// Share of uniform incoming light of radiance 1 that is sent to wo: the mean weight.
 Rgbd albedo(const Bsdf& bsdf, Vec3 wo, TransportMode mode, int n) {
     Rgbd sum;
-    Sampler sampler(SamplerKind::kSobol, 23, 2 * n);
+    Sampler sampler(SamplerKind::kSobol, 23, n);
     for (int i = 0; i < n; ++i) {
-        sampler.start(0, 0, static_cast<std::uint32_t>(2 * i));
+        sampler.start(0, 0, static_cast<std::uint32_t>(i));
         const float lobe = sampler.get_1d();
         if (const auto s = sample(bsdf, wo, lobe, sampler.get_2d(), mode)) sum += Rgbd(s->weight);
     }
@@ -208,18 +208,33 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("frosted glass loses only what meets a second microfacet: bounds by roughness") {
-        struct Bound {
-            float alpha;
-            double least;
-        };
-        for (const Bound& bound : {Bound{0.01f, 0.985}, Bound{0.1f, 0.94}, Bound{0.3f, 0.76}, Bound{1.0f, 0.43}})
-            for (const float z : {1.0f, 0.7f, 0.3f, -0.9f, -0.4f}) {
-                CAPTURE(bound.alpha);
-                CAPTURE(z);
-                const Bsdf frosted = RoughDielectricBsdf{1.5f, Rgb(1.0f), bound.alpha};
-                CHECK(albedo(frosted, direction(z, 0.3f), TransportMode::kImportance, 4096).g > bound.least);
-            }
+    TEST_CASE("white frosted glass returns all, from both sides, at any roughness and index") {
+        for (const float alpha : {0.05f, 0.1f, 0.3f, 0.55f, 1.0f})
+            for (const float eta : {1.05f, 1.2f, 1.33f, 1.5f, 1.7f, 2.4f, 3.9f, 1 / 1.5f})
+                for (const float z : {1.0f, 0.7f, 0.3f, 0.1f, -0.9f, -0.7f, -0.4f, -0.05f}) {
+                    CAPTURE(alpha);
+                    CAPTURE(eta);
+                    CAPTURE(z);
+                    const Bsdf frosted = RoughDielectricBsdf{eta, Rgb(1.0f), alpha};
+                    const double all = albedo(frosted, direction(z, 0.3f), TransportMode::kImportance, 4096).g;
+                    CHECK(all == doctest::Approx(1).epsilon(0.01));
+                }
+    }
+
+    TEST_CASE("frosted glass that hardly refracts does not blur: light goes on through all facets that it meets") {
+        for (const float z : {0.9f, 0.4f, -0.9f, -0.4f}) {
+            const RoughDielectricBsdf pane{1.01f, Rgb(1.0f), 0.5f};
+            const Vec3 wo = direction(z, 0.3f);
+            double ahead = 0, all = 0;
+            for_numbers(4096, [&](float lobe, Vec2 u) {
+                const auto s = pane.sample(wo, lobe, u, TransportMode::kImportance);
+                if (!s) return;
+                all += static_cast<double>(s->weight.g);
+                if (dot(s->wi, wo) < -0.99f) ahead += static_cast<double>(s->weight.g);
+            });
+            CAPTURE(z);
+            CHECK(ahead / all > 0.93);
+        }
     }
 
     TEST_CASE("furnace: no material sends out more than it receives, lossless ones send all") {
@@ -228,9 +243,12 @@ TEST_SUITE("unit") {
                 CAPTURE(m.name);
                 CAPTURE(z);
                 const bool exact = is_specular(m.bsdf) && !std::holds_alternative<ThinDielectricBsdf>(m.bsdf); // of one colour
-                const Rgbd a = albedo(m.bsdf, direction(z, 0.3f), TransportMode::kImportance, exact ? 256 : 16384);
+                const Rgbd a = albedo(m.bsdf, direction(z, 0.3f), TransportMode::kImportance,
+                                       exact ? 256 : is_transmissive(m.bsdf) ? 65536 : 16384); // of which the lobe is drawn by chance
                 // Specular ones are exact; 0.007 are the quadrature's, and the tables' of microfacets' energy.
-                const double tolerance = exact ? 1e-6 : 0.007;
+                // Where glass hardly refracts its table is coarse, at grazing angles.
+                const double tolerance = exact ? 1e-6 : std::holds_alternative<RoughDielectricBsdf>(m.bsdf) && refraction_index(m.bsdf) < 1.01f ? 0.05 : 0.007;
+                CAPTURE(a.g);
                 CHECK((a.r <= 1 + tolerance && a.g <= 1 + tolerance && a.b <= 1 + tolerance));
                 if (m.lossless) CHECK(a.g >= 1 - 0.007);
             }
@@ -532,8 +550,10 @@ TEST_SUITE("statistical") {
     TEST_CASE("the mean weight is the integral of eval·cos: sampling leaves nothing out but what falls below") {
         // Two independent estimates of the albedo, by the material's own samples and by uniform directions; 4.5
         // standard errors, odds of a false alarm 7e-6 a comparison.
-        for (const Named& m : rough_materials())
-            for (const float z : {0.9f, 0.3f}) {
+        std::vector<Named> materials = rough_materials();
+        for (Named& frosted : frosted_materials()) materials.push_back(std::move(frosted));
+        for (const Named& m : materials)
+            for (const float z : {0.9f, 0.3f, -0.6f}) {
                 const Vec3 wo = direction(z, 0.4f);
                 constexpr int kSamples = 100'000;
                 Sampler sampler(SamplerKind::kIndependent, 3, kSamples);

@@ -183,9 +183,23 @@ TEST_SUITE("unit") {
             CHECK(std::get<Dielectric>(material_of("illum " + illum + "\n")).ior == 1.5f);
         CHECK(std::get<Dielectric>(material_of("illum 7\nNi 9\nTf 0.9 1 1\n")).ior == 4);
         CHECK(std::get<Dielectric>(material_of("illum 7\nNi 9\nTf 0.9 1 1\n")).tint.value == Rgb(0.9f, 1, 1));
-        const auto metal = std::get<Metal>(material_of("Kd 1 0.8 0.3\nPm 1\nPr 0.25\n"));
-        CHECK(metal.reflectance.value == Rgb(1, 0.8f, 0.3f));
+        const auto metal = std::get<Principled>(material_of("Kd 1 0.8 0.3\nPm 1\nPr 0.25\nillum 3\nKs 1 1 1\n"));
+        CHECK(metal.base_color.value == Rgb(1, 0.8f, 0.3f));
+        CHECK(metal.metallic.value == 1);
         CHECK(metal.roughness.value == 0.25f);
+        CHECK(metal.ior == 1.5f);
+        CHECK(metal.clearcoat.value == 0);
+        const auto varnished = std::get<Principled>(material_of("Kd 1 0 0\nPr 0.5\nNi 1.45\nPc 2\nPcr 0.25\n"));
+        CHECK(varnished.metallic.value == 0);
+        CHECK(varnished.roughness.value == 0.5f);
+        CHECK(varnished.ior == 1.45f);
+        CHECK(varnished.clearcoat.value == 1);
+        CHECK(varnished.clearcoat_roughness.value == 0.25f);
+        CHECK(std::get<Principled>(material_of("Kd 1 0 0\nPm 0.3\n")).metallic.value == 0.3f);
+        CHECK(std::get<Principled>(material_of("Kd 1 0 0\nPc 1\n")).clearcoat.value == 1);
+        CHECK(std::holds_alternative<Diffuse>(material_of("Kd 1 0 0\nPm 0\nPr 0\nPc 0\n")));
+        const auto satin = std::get<Metal>(material_of("Ks 0.9 0.9 0.9\nillum 3\nNs 30\nPr 0.125\n"));
+        CHECK(satin.roughness.value == 0.125f);
         const auto mirror = std::get<Metal>(material_of("Kd 0 0 0\nKs 0.9 0.9 0.9\nillum 3\nNs 30\n"));
         CHECK(mirror.reflectance.value == Rgb(0.9f));
         CHECK(mirror.roughness.value == doctest::Approx(0.5)); // (2 / 32)^¼
@@ -194,7 +208,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("MTL pictures of all kinds arrive, each with what is taken of it") {
         const ScratchFolder folder;
-        folder.write("m.mtl", "newmtl a\nKd 1 1 1\nPm 1\nPr 0.5\nmap_Kd a.png\nmap_Pr b.png\nnorm c.png\nmap_Bump -bm 3 "
+        folder.write("m.mtl", "newmtl a\nKd 1 1 1\nPm 1\nPr 0.5\nmap_Kd a.png\nmap_Pr b.png\nmap_Pm g.png\nnorm c.png\nmap_Bump -bm 3 "
                               "d.png\nmap_d e.png\nd 0.75\nNi 1\nnewmtl b\nKd 0 0 0\nmap_Ke f.png\nmap_d e.png\n");
         const ObjFile file = load_obj(
             folder.write("mesh.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"));
@@ -204,10 +218,12 @@ TEST_SUITE("unit") {
             return file.textures.at(static_cast<std::size_t>(index));
         };
         using Values = ImageContent::Values;
-        const auto metal = std::get<Metal>(file.materials[0].material);
+        const auto metal = std::get<Principled>(file.materials[0].material);
         const SurfaceMaps& maps = file.materials[0].maps;
-        CHECK(texture(metal.reflectance.texture).file == folder / "a.png");
-        CHECK(texture(metal.reflectance.texture).content.values == Values::kColors);
+        CHECK(texture(metal.base_color.texture).file == folder / "a.png");
+        CHECK(texture(metal.metallic.texture).file == folder / "g.png");
+        CHECK(texture(metal.metallic.texture).content.values == Values::kData);
+        CHECK(texture(metal.base_color.texture).content.values == Values::kColors);
         CHECK(texture(metal.roughness.texture).file == folder / "b.png");
         CHECK(texture(metal.roughness.texture).content.values == Values::kData);
         CHECK(metal.roughness.value == 0.5f);

@@ -1,0 +1,119 @@
+// Writes the tables of common/material/rough_glass_energy.h as a source file, when the project is built: nothing but ggx.h,
+// fresnel.h and microfacet.h say what they hold.
+#include "common/material/fresnel.h"
+#include "common/material/ggx.h"
+#include "common/material/microfacet.h"
+#include "common/material/rough_glass_table.h"
+#include "common/sampling/hash.h"
+#include "common/sampling/sobol.h"
+#include "common/system/source_table.h"
+
+#include <memory>
+
+using namespace duet;
+
+namespace {
+
+using Tables = RoughGlassTables;
+constexpr int kSamples = 1024;
+
+struct Boundary {
+    float index, alpha;
+
+    /// Calls add(reflected, cosine of wi, part of the light) for all that a single microfacet scatters: samples of visible
+    /// normals, whose weight is G₂/G₁ (importance's, so that a sum of 1 is all the light).
+    template <typename Add> void scatter(bool dense, float cosine, const Add& add) const {
+        const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
+        const float relative = dense ? 1 / index : index;
+        const auto part = [&](Vec3 wi, float share) { return static_cast<double>(share * ggx_g2_over_g1(wo, wi, alpha)) / kSamples; };
+        for (int i = 0; i < kSamples; ++i) {
+            const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
+                         unit_float(reverse_bits(static_cast<std::uint32_t>(i))) + 0x1p-25f);
+            const Vec3 h = ggx_sample_visible_normal(wo, alpha, u);
+            const float cos_o = dot(wo, h), fresnel = fresnel_dielectric(max(cos_o, 0.0f), relative);
+            const Vec3 mirrored = reflect(wo, h);
+            if (mirrored.z > 0) add(true, mirrored.z, part(mirrored, fresnel));
+            if (!(cos_o > 0 && fresnel < 1)) continue;
+            const Vec3 through = refract(wo, h, cos_o, relative);
+            if (through.z < 0) add(false, -through.z, part({through.x, through.y, -through.z}, 1 - fresnel));
+        }
+    }
+};
+
+struct Curves {
+    Tables::Curve &gain, &lost_thin, &lost_dense;
+};
+
+void compute(const Boundary& boundary, Curves curves) {
+    for (std::size_t i = 0; i < Tables::kAngles; ++i) {
+        double reflected = 0, all = 0;
+        boundary.scatter(false, Tables::cosine_of(static_cast<int>(i), boundary.alpha), [&](bool back, float, double part) {
+            all += part;
+            if (back) reflected += part;
+        });
+        curves.gain[i] = static_cast<float>(1 / all);
+        curves.lost_thin[i] = static_cast<float>(std::max(1 - all, 0.0) * reflected / all);
+    }
+    for (std::size_t i = 0; i < Tables::kAngles; ++i) {
+        double all = 0;
+        boundary.scatter(true, Tables::cosine_of(static_cast<int>(i), boundary.alpha), [&](bool back, float cosine, double part) {
+            all += part * (back ? 1.0 : static_cast<double>(Tables::look_up(curves.gain, Tables::place_of_cosine(cosine, boundary.alpha))));
+        });
+        curves.lost_dense[i] = static_cast<float>(std::max(1 - all, 0.0));
+    }
+}
+
+/// 2∫ … μ dμ of the table itself, so that what is lost and what is added again are the same.
+float mean_of(const Tables::Curve& curve, float alpha) {
+    constexpr int kSteps = 2048;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // closer near the horizon
+        sum += 4.0 * static_cast<double>(x * cosine) / kSteps *
+               static_cast<double>(Tables::look_up(curve, Tables::place_of_cosine(cosine, alpha)));
+    }
+    return static_cast<float>(sum);
+}
+
+std::unique_ptr<Tables> compute_tables() {
+    auto tables = std::make_unique<Tables>();
+    for (std::size_t i = 0; i < Tables::kIndices; ++i)
+        for (std::size_t a = 0; a < Tables::kAlphas; ++a) {
+            const Boundary boundary{Tables::index_of(static_cast<int>(i)), Tables::alpha_of(static_cast<int>(a))};
+            compute(boundary, {tables->gain[i][a], tables->lost_thin[i][a], tables->lost_dense[i][a]});
+            tables->mean_lost_thin[i][a] = mean_of(tables->lost_thin[i][a], boundary.alpha);
+            tables->mean_lost_dense[i][a] = mean_of(tables->lost_dense[i][a], boundary.alpha);
+        }
+    return tables;
+}
+
+void write(std::ostream& out, const Tables::Means& rows) {
+    out << "{{\n";
+    for (const auto& row : rows) write_numbers(out, row);
+    out << "}},\n";
+}
+void write(std::ostream& out, const Tables::Surface& surface) {
+    out << "{{\n";
+    for (const auto& rows : surface) {
+        out << "{{\n";
+        for (const Tables::Curve& curve : rows) write_numbers(out, curve);
+        out << "}},\n";
+    }
+    out << "}},\n";
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    return write_source(count, arguments, "make_rough_glass", [](std::ostream& out) {
+        const auto tables = compute_tables();
+        out << "#include \"common/material/rough_glass_table.h\"\n\nnamespace duet {\n\nextern const RoughGlassTables "
+               "kRoughGlassTables;\nconst RoughGlassTables kRoughGlassTables{\n";
+        write(out, tables->gain);
+        write(out, tables->lost_thin);
+        write(out, tables->lost_dense);
+        write(out, tables->mean_lost_thin);
+        write(out, tables->mean_lost_dense);
+        out << "};\n\n} // namespace duet\n";
+    });
+}
