@@ -72,16 +72,19 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
 
 /// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
 /// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with before
-/// the screen has Screen::behind.
-void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, const Screen::FirstLook* known, Screen& screen) {
+/// the screen has Screen::behind. `with_glass`: tiles that show some, found where nothing is known; the others are taken
+/// whole from what is.
+void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, const Screen::FirstLook* known,
+                std::vector<std::uint8_t>& with_glass, Screen& screen) {
     Settings settings = frame.settings;
     settings.screen_reflections = false;
     settings.parts = {};
     settings.aovs = {};
     pass.screen = &screen;
-    FirstLookPicture picture(view.width, view.height);
+    with_glass.resize(frame.grid.size(), 0);
+    FirstLookPicture picture = known != nullptr ? FirstLookPicture(*known) : FirstLookPicture(view.width, view.height);
     parallel_for(frame.grid.size(), settings.threads, [&](std::size_t i) {
-        if (frame.control.stopped()) return;
+        if (frame.control.stopped() || (known != nullptr && with_glass[i] == 0)) return;
         const PixelRect rect = frame.grid.tile(i);
         DepthTile depths;
         cover(geometry, pass, pass.samples.front(), rect, i, depths);
@@ -90,6 +93,7 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
             for (int x = rect.x0; x < rect.x1; ++x) {
                 const Hit& hit = tile.hit(x, y);
                 const bool later = screen.behind() == nullptr && hit.valid() && is_glass(frame.data, hit.object);
+                if (later) with_glass[i] = 1;
                 const std::uint32_t key = later ? 0 : FirstLookPicture::key(frame.data.scene, hit);
                 const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
                 picture.set(frame.data.scene, x, y, hit,
@@ -114,12 +118,12 @@ std::unique_ptr<Screen> depths_and_normals(const Frame& frame, const View& view,
 }
 
 /// What there is without glass, and the back of that.
-void look_behind_glass(const Frame& frame, const View& view, const PassView& central, Screen& screen) {
+void look_behind_glass(const Frame& frame, const View& view, const PassView& central, std::vector<std::uint8_t>& with_glass, Screen& screen) {
     GeometryLoan geometry(*frame.data.geometries);
     process_without_glass(frame.data, frame.grid, central, frame.settings, *geometry);
     std::unique_ptr<Screen> behind = depths_and_normals(frame, view, central, *geometry);
     add_occlusion(frame.data, frame.settings, *behind);
-    first_look(frame, view, *geometry, central, &screen.first_look(), *behind);
+    first_look(frame, view, *geometry, central, &screen.first_look(), with_glass, *behind);
     process_backs_of_glass(frame.data, frame.grid, central, frame.settings, *geometry);
     screen.set_glass(std::move(behind), depths_and_normals(frame, view, central, *geometry));
 }
@@ -134,10 +138,12 @@ std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, con
     std::unique_ptr<Screen> screen = depths_and_normals(frame, view, central, *geometry);
     add_occlusion(frame.data, frame.settings, *screen);
     const bool glass = needs_screen_behind(frame.data, frame.settings);
-    if (glass || needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, nullptr, *screen);
+    std::vector<std::uint8_t> with_glass;
+    if (glass || needs_screen_radiance(frame.data, frame.settings))
+        first_look(frame, view, *geometry, central, nullptr, with_glass, *screen);
     if (!glass) return screen;
-    look_behind_glass(frame, view, central, *screen);
-    first_look(frame, view, *geometry, central, &screen->first_look(), *screen);
+    look_behind_glass(frame, view, central, with_glass, *screen);
+    first_look(frame, view, *geometry, central, &screen->first_look(), with_glass, *screen);
     return screen;
 }
 

@@ -4,7 +4,8 @@ namespace duet::raster {
 
 Screen::Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness)
     : eye_(view.origin), near_(static_cast<float>(view.near)),
-      perspective_(view.world_to_pixel[3] == view.world_to_pixel[2]), nearness_(std::move(nearness)) {
+      perspective_(view.world_to_pixel[3] == view.world_to_pixel[2]), nearness_(std::move(nearness)),
+      nearest_(nearness_) {
     const Vec2d first = offset.position(0, 0);
     origin_ = Vec3(view.origin_dx * first.x + view.origin_dy * first.y);
     origin_dx_ = Vec3(view.origin_dx), origin_dy_ = Vec3(view.origin_dy);

@@ -4,6 +4,7 @@
 #include "common/camera/camera.h"
 #include "common/image/image.h"
 #include "raster/lanes.h"
+#include "raster/nearest_pyramid.h"
 #include "raster/radiance_pyramid.h"
 #include "raster/samples.h"
 
@@ -83,6 +84,8 @@ public:
     template <typename T> T pixel_size(T depth) const { return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_)); }
     float near() const { return near_; }
     const ImageFloat& nearness() const { return nearness_; }
+    /// The least depth in columns x0 to x1 and rows y0 to y1, or a little less.
+    float least_depth(int x0, int y0, int x1, int y1) const { return near_ / nearest_.greatest(x0, y0, x1, y1); }
 
     /// Shading normals on the viewer's side, unit, once they are there; any where nothing is seen.
     /// Given as colours, as Shading::kNormal shows them.
@@ -118,6 +121,7 @@ private:
     float near_;
     bool perspective_;
     ImageFloat nearness_;
+    NearestPyramid nearest_;
     std::array<ImageFloat, 3> normals_;
     std::shared_ptr<const OcclusionImage> occlusion_;
     FirstLook first_look_;

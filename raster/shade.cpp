@@ -308,6 +308,11 @@ void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb
     lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
 }
 
+FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
+    : radiance_(look.radiance.finest()), keys_(look.keys), lamps_(look.keys.width(), look.keys.height(), 0) {
+    for (std::size_t i = 0; i < radiance_.size(); ++i) lamps_[i] = look.without_lamps.finest()[i] != radiance_[i];
+}
+
 Screen::FirstLook FirstLookPicture::finish() && {
     ImageRgb dark = radiance_;
     for (std::size_t i = 0; i < dark.size(); ++i)
@@ -343,7 +348,8 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
     if (!hit.valid()) return {.radiance = background(data, settings, ray), .normal = {}, .albedo = {}};
     const Scene& scene = data.scene;
     const RayFootprint footprint = scene.needs.footprints ? tile.footprint(x, y, settings.samples_per_pixel) : RayFootprint{};
-    const SurfacePoint surface = surface_point(scene, ray, hit, &footprint);
+    const std::uint32_t material = material_index(scene, hit.object, hit.primitive);
+    const SurfacePoint surface = surface_point(scene, ray, hit, &footprint, surface_detail(scene, material));
     const ShadingPoint point(surface, -ray.direction);
     const auto color = [&] { return base_color(scene.materials[surface.material], scene.textures, surface); };
     Shaded result{.radiance = {}, .normal = point.ns, .albedo = settings.aovs.albedo ? color() : Rgb()};

@@ -35,6 +35,8 @@ void add_occlusion(const PreparedData& data, const Settings& settings, Screen& s
 class FirstLookPicture {
 public:
     FirstLookPicture(int width, int height) : radiance_(width, height), keys_(width, height, 0), lamps_(width, height, 0) {}
+    /// Begins as another.
+    explicit FirstLookPicture(const Screen::FirstLook& look);
 
     /// `key`: of the hit, or 0 where it is to be shaded again.
     void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
