@@ -94,12 +94,13 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
                                  settings.ambient_occlusion == AmbientOcclusion::kSsao ? " m away, as if all of it were equally bright." : " m away."));
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
-    const bool rest = needs.transmission || needs.glossy || !needs_screen_radiance(data, settings);
-    name(parts.reflection && (needs.specular || needs.glossy) && rest,
-         !needs_screen_radiance(data, settings)
-             ? "Metal and glass mirror the environment alone, no surfaces and no lights that have one."
-             : "Glass and rougher metal mirror the environment alone, no surfaces and no lights that have one.");
-    name(needs_screen_radiance(data, settings),
+    const bool refracts = needs_screen_behind(data, settings);
+    const bool mirrors = needs_screen_radiance(data, settings), any = parts.reflection && (needs.specular || needs.glossy);
+    const bool glass = needs.transmission && !refracts;
+    name(any && !mirrors && !refracts, "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
+    name(any && (mirrors || refracts) && glass, "Glass mirrors the environment alone, no surfaces and no lights that have one.");
+    name(any && (mirrors || refracts) && needs.glossy, "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
+    name(mirrors,
          "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
          "things what is seen there is taken to go on.");
     const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
@@ -111,9 +112,12 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
-    name(parts.reflection && needs.transmission,
+    name(refracts, "Glass mirrors and refracts what the picture shows without any glass, its far side found in the picture's depths, and "
+                   "casts no caustics.");
+    name(refracts && needs.insides, "Glass overlaps as if it did not.");
+    name(parts.reflection && needs.transmission && !refracts,
          "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
-    name(parts.reflection && needs.insides, "Glass absorbs as over the mean way through a ball of its size, and overlaps as if it did not.");
+    name(parts.reflection && needs.insides && !refracts, "Glass absorbs as over the mean way through a ball of its size, and overlaps as if it did not.");
     name(needs.layers, "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
     name(parts.direct && needs.lamp_textures, "Surfaces that emit a picture light others by its mean.");
     name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");

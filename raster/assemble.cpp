@@ -24,10 +24,6 @@ enum Verdict : std::int32_t {
 /// Boxes below this side, in grid points, have edge functions that fit into 32 bits.
 constexpr std::int32_t kNarrow = 1 << 14;
 
-Ints as_ints(const xsimd::batch_bool<std::int32_t>& flags, std::int32_t value) {
-    return xsimd::select(flags, Ints(value), Ints(0));
-}
-
 /// Boxes of at most so many samples along a side are small.
 constexpr std::int32_t kSmallSide = 8;
 
@@ -46,6 +42,12 @@ struct SmallEdge {
         step_y = dx * Ints(kSubPixels);
     }
 };
+
+/// Samples along one axis from the first on, of the triangle that has most; corners and first samples in grid points.
+std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const Ints& first) {
+    const Ints widths = max(max(a, b), c) - first; // of small boxes: exact as floats
+    return (static_cast<std::int32_t>(highest(xsimd::to_float(widths))) >> kSubPixelBits) + 1;
+}
 
 } // namespace
 
@@ -258,10 +260,11 @@ void Assembler::add_candidate(const Outlines& out, std::uint32_t i) {
     if (++c.count == kStrip) cover_candidates();
 }
 
-/// The samples of small boxes against their triangles' edges, sixteen triangles side by side.
+/// The samples of small boxes against their triangles' edges, sixteen triangles side by side: as many rows and columns of
+/// samples as the largest of their boxes has.
 void Assembler::cover_candidates() {
     Candidates& c = candidates_;
-    constexpr std::size_t kWords = kSmallSide * kSmallSide / 32;
+    constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallSide / kWordRows;
     std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
     const Ints zero(0);
     for (std::size_t i = 0; i < c.count; i += Ints::size) {
@@ -276,20 +279,23 @@ void Assembler::cover_candidates() {
         const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
         const std::array<Ints, 3> margin = edge_margins({ab.length, bc.length, ca.length}, Ints(abs(area)));
         std::array<Ints, 3> row{ab.at, bc.at, ca.at};
-        for (std::size_t word = 0; word < kWords; ++word) {
+        const std::int32_t columns = samples_across(ax, px, cx, sx), rows = samples_across(ay, py, cy, sy);
+        for (std::int32_t word = 0; word < kWords; ++word) {
             Ints some = zero, sure = zero;
-            for (std::uint32_t bit = 0; bit < 32;) {
+            for (std::int32_t y = word * kWordRows; y < std::min((word + 1) * kWordRows, rows); ++y) {
                 std::array<Ints, 3> e = row;
-                for (std::int32_t x = 0; x < kSmallSide; ++x, ++bit) {
+                Ints bit(static_cast<std::int32_t>(1u << y % kWordRows * kSmallSide));
+                for (std::int32_t x = 0; x < columns; ++x) {
                     const Ints least = min(min(e[0], e[1]), e[2]);
-                    some = some | as_ints(least >= zero, static_cast<std::int32_t>(1u << bit));
-                    sure = sure | as_ints(e[0] >= margin[0] && e[1] >= margin[1] && e[2] >= margin[2], static_cast<std::int32_t>(1u << bit));
+                    some = some | xsimd::select(least >= zero, bit, zero);
+                    sure = sure | xsimd::select(e[0] >= margin[0] && e[1] >= margin[1] && e[2] >= margin[2], bit, zero);
                     e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
+                    bit = bit + bit;
                 }
                 row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
             }
-            store(covered[word], i, some);
-            store(well_inside[word], i, sure);
+            store(covered[static_cast<std::size_t>(word)], i, some);
+            store(well_inside[static_cast<std::size_t>(word)], i, sure);
         }
     }
     for (std::size_t i = 0; i < c.count; ++i) {

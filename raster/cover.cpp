@@ -117,7 +117,11 @@ public:
         : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
-        solver_.solve(std::span(&place, 1), std::span(&strip_, 1), false);
+        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const SolvedStrip<NoVaryings>& strip) { fill(place, strip); });
+    }
+
+private:
+    void fill(const StripPlace& place, const SolvedStrip<NoVaryings>& strip) {
         for (std::size_t i = 0; i < kStrip; ++i) {
             const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
             if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
@@ -125,23 +129,22 @@ public:
             const Rayd exact = view_.pinhole.ray(place.position(i));
             tile_.rays_[at] = rounded(exact, view_.time);
             tile_.distance_per_depth_[at] = exact.t_min / view_.pinhole.near;
-            if (!(strip_.seen >> i & 1)) continue;
-            tile_.hits_[at] = hit(i, place, at);
+            if (!(strip.samples->seen >> i & 1)) continue;
+            tile_.hits_[at] = hit(i, place, strip, at);
             tile_.nearness_[at] = place.nearness != nullptr
                                       ? place.nearness[i]
                                       : static_cast<float>(min(exact.t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
         }
     }
 
-private:
-    Hit hit(std::size_t i, const StripPlace& place, std::size_t at) const {
+    Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings>& strip, std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
-        if (!(strip_.on_mesh & strip_.inside & 1u << i))
-            return find_hit(geometry_, view_, strip_.id(i), place.position(i));
-        const Run& run = solver_.run_of(strip_.id(i));
-        const double depth = std::max(strip_.depth[i], view_.pinhole.near);
-        return make_hit(triangles.objects[run.object].object, Triangles::index(run, strip_.id(i)), Piece::kTriangle,
-                        strip_.b1[i], strip_.b2[i], depth * tile_.distance_per_depth_[at]);
+        const std::uint32_t id = strip.samples->id(i);
+        if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
+        const Run& run = solver_.run_of(id);
+        const double depth = std::max(strip.depth[i], view_.pinhole.near);
+        return make_hit(triangles.objects[run.object].object, Triangles::index(run, id), Piece::kTriangle, strip.b1[i], strip.b2[i],
+                        depth * tile_.distance_per_depth_[at]);
     }
 
     HitTile& tile_;
@@ -149,7 +152,6 @@ private:
     const PassView& view_;
     NoVaryings nothing_;
     StripSolver<NoVaryings> solver_;
-    SolvedStrip<NoVaryings> strip_;
 };
 
 void HitTile::make_room() {

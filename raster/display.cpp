@@ -89,9 +89,12 @@ private:
     void block(const PixelRect& rect) {
         const std::uint32_t place = tile_.place(rect.x0, rect.y0);
         const std::size_t block = place / kBlockSamples, slot = block % DepthTile::kBlocks * kStrips;
-        const bool undrawn = background_ && !tile_.drawn(block);
+        if (background_ && !tile_.drawn(block)) {
+            for (std::size_t s = 0; s < kStrips; ++s) codes_[slot + s].fill(*background_);
+            return;
+        }
         for (std::size_t s = 0; s < kStrips; ++s) {
-            if (undrawn || (background_ && samples_seen(tile_.ids() + place + s * kStrip) == 0))
+            if (background_ && samples_seen(tile_.ids() + place + s * kStrip) == 0)
                 codes_[slot + s].fill(*background_);
             else
                 strip(intersect(rect, strip_rect(rect, s)), place + static_cast<std::uint32_t>(s * kStrip), slot + s);

@@ -18,7 +18,7 @@ struct SeenPicture {
     Image<std::uint32_t> object; ///< kNoObject: nothing
 
     SeenPicture(int width, int height) : nearness(width, height), normal(width, height), object(width, height) {}
-    /// A tile's part. `normals`: Shading::kNormal's, for that tile.
+    /// A tile's part. `normals`: smooth_normal_program's, for that tile.
     void add(const DepthTile& tile, const Geometry& geometry, StripShader& normals);
 };
 

@@ -5,6 +5,7 @@
 #include "common/system/stopwatch.h"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 
 namespace duet::raster {
@@ -124,9 +125,12 @@ std::size_t Geometry::memory_bytes() const {
 
 namespace {
 
+/// Which of each surface's two sides are drawn.
+enum class Sides { kAsSettings, kBacks };
+
 void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
              const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const Settings& settings, bool patches, Geometry& result) {
+             const Settings& settings, bool patches, Geometry& result, Sides sides = Sides::kAsSettings) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
@@ -142,8 +146,14 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
-    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only, patches}, settings.threads,
-             result);
+    const bool backs = sides == Sides::kBacks; // the fronts of what is turned inside out
+    const auto turn = [&] {
+        for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
+    };
+    turn();
+    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only || backs, patches},
+             settings.threads, result);
+    turn();
     result.setup_seconds = watch.lap();
 
     result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
@@ -158,6 +168,23 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result) {
     process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
+}
+
+void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                           Geometry& result) {
+    const auto others = [&](const std::vector<std::uint32_t>& objects) {
+        std::vector<std::uint32_t> kept;
+        std::set_difference(objects.begin(), objects.end(), data.glass.begin(), data.glass.end(), std::back_inserter(kept));
+        return kept;
+    };
+    process(data, others(data.polygonal), others(data.spheres), grid, view, settings, true, result);
+}
+
+void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                            Geometry& result) {
+    std::vector<std::uint32_t> kept;
+    std::set_intersection(data.polygonal.begin(), data.polygonal.end(), data.glass.begin(), data.glass.end(), std::back_inserter(kept));
+    process(data, kept, {}, grid, view, settings, true, result, Sides::kBacks);
 }
 
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,

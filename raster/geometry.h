@@ -39,6 +39,12 @@ struct Geometry {
 /// The same for any number of threads. Throws Error for more triangles in view than can be numbered (2^31).
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result);
+/// The same without PreparedData::glass.
+void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                           Geometry& result);
+/// The same of the back faces of PreparedData::glass, spheres apart, alone.
+void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                            Geometry& result);
 /// The same of the surfaces that may be seen through.
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result);

@@ -4,6 +4,7 @@
 #include "common/vec/simd.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -125,6 +126,29 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
 }
 
 using duet::lane_bits; // of floats and doubles
+
+/// A bit for each sample of a strip that holds a number.
+inline std::uint32_t lanes_of_number(const StripOf<std::int32_t>& strip, std::int32_t number) {
+    std::uint32_t lanes = 0;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(load(strip, i) == Ints(number)) << i;
+    return lanes;
+}
+
+/// A bit for the first sample of a strip that holds each of its numbers.
+inline std::uint32_t first_of_each(const StripOf<std::int32_t>& strip) {
+#if defined(__AVX512CD__)
+    const __m512i before = _mm512_conflict_epi32(load(strip, 0)); // of each, those before it that are equal
+    return _mm512_testn_epi32_mask(before, before);
+#else
+    std::uint32_t firsts = 0;
+    for (std::uint32_t left = (1u << kStrip) - 1; left != 0;) {
+        const int i = std::countr_zero(left);
+        firsts |= 1u << i;
+        left &= ~lanes_of_number(strip, strip[static_cast<std::size_t>(i)]);
+    }
+    return firsts;
+#endif
+}
 
 /// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
 template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {

@@ -1,6 +1,8 @@
 #include "raster/geometry.h"
 #include "raster/shader.h"
 
+#include <algorithm>
+
 namespace duet::raster {
 
 ObjectView::ObjectView(const PreparedData& data_, const PassView& pass_, std::uint32_t object_)
@@ -9,6 +11,8 @@ ObjectView::ObjectView(const PreparedData& data_, const PassView& pass_, std::ui
     const Object& placed = data.scene.objects[object];
     const Mesh* mesh = std::get_if<Mesh>(&data.scene.shapes[placed.shape]);
     smooth = std::holds_alternative<Sphere>(data.scene.shapes[placed.shape]) || (mesh != nullptr && !mesh->normals.empty());
+    bent = std::any_of(placed.materials.begin(), placed.materials.end(),
+                       [&](std::uint32_t material) { return data.scene.maps[material].bends_normals(); });
     identity = placed.identity;
     if (identity) return;
     const ObjectTransform at = object_transform(placed, pass.time);

@@ -111,6 +111,12 @@ Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hi
     return base_color(scene.materials[surface.material], scene.textures, surface);
 }
 
+Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel) {
+    const Ray ray = rounded(view.pinhole.ray(pixel), view.time);
+    const SurfacePoint surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
+    return dot(surface.ng, ray.direction) > 0 ? -surface.ns : surface.ns;
+}
+
 HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel) {
     const Scene& scene = object.data.scene;
     HitCorners at;
@@ -118,8 +124,9 @@ HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const 
     const Ray ray = rounded(exact, view.time);
     at.depth = static_cast<double>(hit.t) * view.pinhole.near / exact.t_min;
     at.surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
-    const Vec3 ng = at.surface.ng;
-    at.ng = to_object_normal(object, dot(ng, ray.direction) > 0 ? -ng : ng);
+    const bool back = dot(at.surface.ng, ray.direction) > 0;
+    at.ng = to_object_normal(object, back ? -at.surface.ng : at.surface.ng);
+    at.ns = back ? -at.surface.ns : at.surface.ns;
     const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
     if (std::holds_alternative<Sphere>(shape)) {
         set_sphere(at, scene, view, hit, pixel, object);

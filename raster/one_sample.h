@@ -16,11 +16,15 @@ struct HitCorners {
     Vec3 ng, middle;           ///< VertexInput's
     std::array<float, 3> weights{}, dx{}, dy{};
     SurfacePoint surface;
+    Vec3 ns; ///< shading normal in the world, unit, on the side that is seen
     double depth = 0; ///< camera-space −z
 };
 HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel);
 /// The base colour where a camera ray hits, textures filtered over what the sample stands for.
 Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel);
+
+/// The shading normal there, likewise, on the side that is seen.
+Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
 /// The colour of a hit of the ray through `pixel`. `nearness`: known, or null.
 template <Shader S>
@@ -28,8 +32,10 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
               int samples_per_pixel, const float* nearness = nullptr) {
     struct Source final : ColorSource {
         const Scene& scene;
+        const HitCorners& at;
         const SurfacePoint& surface;
-        Source(const Scene& scene_, const SurfacePoint& surface_) : scene(scene_), surface(surface_) {}
+        Source(const Scene& scene_, const HitCorners& at_) : scene(scene_), at(at_), surface(at_.surface) {}
+        Vec3 bent_normal(std::size_t) const override { return at.ns; }
         Rgb base_color(std::size_t) const override {
             return duet::base_color(scene.materials[surface.material], scene.textures, surface);
         }
@@ -50,7 +56,7 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
     ScreenDerivatives<V, wants_derivatives<S>()> derivatives;
     if constexpr (wants_derivatives<S>()) derivatives = {weighed(at.dx), weighed(at.dy)};
     const Pinhole& pinhole = view.pinhole;
-    const Source colors(data.scene, at.surface);
+    const Source colors(data.scene, at);
     return shader.template fragment<float>(FragmentOf<S, float>{
         derivatives, weighed(at.weights), at.ng,
         Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),

@@ -22,6 +22,11 @@ bool can_be_seen_through(const Scene& scene, const Object& object) {
                        [&](std::uint32_t material) { return scene.maps[material].cuts_out(); });
 }
 
+bool all_glass(const Scene& scene, const Object& object) {
+    return std::all_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return std::holds_alternative<Dielectric>(scene.materials[material]); });
+}
+
 bool any_emissive(const Scene& scene, const Object& object) {
     return std::any_of(object.materials.begin(), object.materials.end(),
                        [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
@@ -35,13 +40,25 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
-PreparedObject prepare_object(const Scene& scene, const Object& object) {
+std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
+    if (object.materials.size() != 1) return std::nullopt;
+    const Material& material = scene.materials[object.materials.front()];
+    const RgbSlot& slot = texture_slot(material);
+    if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt; // metal may have colours by a table
+    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
+    const bool packed = texture != nullptr && uses_footprint(texture->filter) && texture->image < texels.size() &&
+                        !texels[texture->image].empty();
+    return packed ? std::optional(slot) : std::nullopt;
+}
+
+PreparedObject prepare_object(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
     const Shape& shape = scene.shapes[object.shape];
     PreparedObject result;
     result.bounds = bounds(shape, object.to_world);
     // Matrix entries are interpolated, so a point moves on a straight line: between the bounds of both ends.
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
     result.one_color = one_color(scene, object);
+    result.one_texture = one_texture(scene, object, texels);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
@@ -81,16 +98,18 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
                       .spheres = {},
                       .irradiance = Irradiance(scene.environment, settings.threads),
                       .vertices = pack_vertices(scene),
+                      .texels = settings.shading != Shading::kLit ? pack_texels(scene.textures) : std::vector<Texels>{},
                       .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
-        data.objects.push_back(prepare_object(scene, object));
+        data.objects.push_back(prepare_object(scene, object, data.texels));
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
             (sphere ? data.open_spheres : data.open_polygonal).push_back(i);
         else
             (sphere ? data.spheres : data.polygonal).push_back(i);
+        if (all_glass(scene, object) && !can_be_seen_through(scene, object)) data.glass.push_back(i);
         data.primitives += primitive_count(shape);
         const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
         data.unsampled_emitters =
@@ -100,13 +119,14 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     for (const auto& shape : data.vertices) vertices += shape.size();
     data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
+    for (const Texels& texels : data.texels) data.memory_bytes += static_cast<std::int64_t>(texels.memory_bytes());
     data.geometries = std::make_shared<GeometryPool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
     const PartSet& parts = settings.parts; // a picture that is mirrored shows all of them
-    const bool direct = parts.direct || (parts.reflection && settings.screen_reflections);
+    const bool direct = parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
     if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();

@@ -4,6 +4,7 @@
 #include "common/scene/scene.h"
 #include "raster/irradiance.h"
 #include "raster/render.h"
+#include "raster/texels.h"
 
 #include <cstdint>
 #include <memory>
@@ -15,6 +16,7 @@ namespace duet::raster {
 struct PreparedObject {
     Box3 bounds;        ///< in the world, over all of the object's motion
     std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
+    std::optional<RgbSlot> one_texture; ///< where that is all of it, and there are PreparedData::texels
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
 
@@ -39,9 +41,11 @@ struct PreparedData {
     std::vector<std::uint32_t> spheres;   ///< the others
     std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
                                                                  ///< above (raster/layers.h)
+    std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/glass.h)
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
+    std::vector<Texels> texels{};                      ///< an image each; none for Shading::kLit, which looks up one by one
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;

@@ -20,19 +20,18 @@ public:
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
         constexpr std::size_t kMost = StripSolver<S>::kMost;
-        if (solved_.size() < std::min(places.size(), kMost)) solved_.resize(std::min(places.size(), kMost));
         for (std::size_t first = 0; first < places.size(); first += kMost) {
             const auto some = places.subspan(first, std::min(kMost, places.size() - first));
-            solver_.solve(some, std::span(solved_).first(some.size()), true);
-            for (std::size_t s = 0; s < some.size(); ++s) {
-                seen[first + s] = solved_[s].seen;
+            solver_.solve(some, true, [&](std::size_t s, const SolvedStrip<S>& strip) {
+                const StripSamples& samples = *strip.samples;
+                seen[first + s] = samples.seen;
                 place_ = &some[s];
-                strip_ = &solved_[s];
-                if (strip_->on_mesh == strip_->seen)
-                    shade_together(*place_, *strip_, colors[first + s]);
+                strip_ = &strip;
+                if (samples.on_mesh == samples.seen)
+                    shade_together(*place_, strip, colors[first + s]);
                 else
-                    shade_one_by_one(*place_, *strip_, colors[first + s]);
-            }
+                    shade_one_by_one(*place_, samples, colors[first + s]);
+            });
         }
     }
 
@@ -65,7 +64,7 @@ private:
     }
 
     void shade_together(const StripPlace& place, const SolvedStrip<S>& strip, StripColors& colors) const {
-        if (strip.seen == 0) return;
+        if (strip.samples->seen == 0) return;
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -113,18 +112,25 @@ private:
             return ScreenDerivatives<Many, false>{};
     }
 
+    Vec3 bent_normal(std::size_t sample) const override {
+        if (!(strip_->seen >> sample & 1)) return {0, 0, 1};
+        const Vec2d pixel = place_->position(sample);
+        return hit_normal(data_.scene, view_, find_hit(geometry_, view_, strip_->id(sample), pixel), pixel, samples_per_pixel(*place_, view_));
+    }
+
     /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
     /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
     Rgb base_color(std::size_t sample) const override {
-        if (!(strip_->seen >> sample & 1)) return {};
-        const Mesh& mesh = *strip_->mesh;
+        const StripSamples& samples = *strip_->samples;
+        if (!(samples.seen >> sample & 1)) return {};
+        const Mesh& mesh = *samples.mesh;
         const bool filtered = data_.scene.needs.footprints;
         const auto kept = [&](double b) { return filtered ? static_cast<double>(static_cast<float>(b)) : b; }; // as by a Hit
         const double u = kept(strip_->b1[sample]), v = kept(strip_->b2[sample]);
-        const auto& corners = mesh.triangles[strip_->index(sample)];
+        const auto& corners = mesh.triangles[samples.index(sample)];
         SurfacePoint point;
-        point.object = strip_->object->object;
-        point.primitive = static_cast<std::uint32_t>(strip_->index(sample));
+        point.object = samples.object->object;
+        point.primitive = static_cast<std::uint32_t>(samples.index(sample));
         point.material = material_index(data_.scene, point.object, point.primitive);
         point.time = view_.time;
         const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
@@ -149,13 +155,68 @@ private:
         return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
     }
 
+    /// The same side by side, of an object that one texture colours.
+    RgbT<Floats> base_colors(std::size_t first) const override {
+        const std::optional<RgbSlot>& slot = data_.objects[strip_->samples->object->object].one_texture;
+        if (!slot) return ColorSource::base_colors(first);
+        const auto& texture = std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
+        TexturePlaces places;
+        find_places(first, places);
+        const RgbT<Floats> c = spread<Floats>(slot->value) * data_.texels[texture.image].look_up(texture, places);
+        const Floats zero(0.0f), one(1.0f); // as evaluate_reflectance()
+        return {clamp(c.r, zero, one), clamp(c.g, zero, one), clamp(c.b, zero, one)};
+    }
+
+    void find_places(std::size_t first, TexturePlaces& places) const {
+        std::array<std::array<StripOf<float>, 2>, 3> corners; // axis
+        const std::uint32_t with_area = gather_uvs(first, corners);
+        const Doubles scale(1 / std::sqrt(samples_per_pixel(*place_, view_))), one(1.0), zero(0.0); // as PixelFootprint's
+        for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
+            const Doubles u = rounded(load(strip_->b1, first + k)), v = rounded(load(strip_->b2, first + k)); // as by a Hit
+            const auto has_area = lanes_from<double>(with_area >> k);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                const auto uv = [&](std::size_t corner) { return load_doubles(corners[corner][axis].at(k)); };
+                store_floats(uv(0) * (one - u - v) + uv(1) * u + uv(2) * v, places.uv[axis].at(k));
+                const auto step = [&](std::size_t way) -> Doubles {
+                    const Doubles steps = (uv(1) - uv(0)) * load_doubles(strip_->b1_steps[way].at(first + k)) +
+                                          (uv(2) - uv(0)) * load_doubles(strip_->b2_steps[way].at(first + k));
+                    return xsimd::select(has_area, steps * scale, zero);
+                };
+                store_floats(step(0), places.duv_dx[axis].at(k));
+                store_floats(step(1), places.duv_dy[axis].at(k));
+            }
+        }
+    }
+    /// Texture coordinates at the corners of each sample's triangle, 0 where nothing is seen. A bit for each triangle that has
+    /// an area in the texture.
+    std::uint32_t gather_uvs(std::size_t first, std::array<std::array<StripOf<float>, 2>, 3>& corners) const {
+        const StripSamples& samples = *strip_->samples;
+        const Mesh& mesh = *samples.mesh;
+        std::uint32_t with_area = 0;
+        for (std::size_t i = 0; i < Floats::size; ++i) {
+            if (!(samples.seen >> (first + i) & 1)) continue;
+            std::array<Vec2, 3> uv{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+            if (!mesh.uvs.empty())
+                for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[mesh.triangles[samples.index(first + i)][k]];
+            const Vec2d along_u = Vec2d(uv[1]) - Vec2d(uv[0]), along_v = Vec2d(uv[2]) - Vec2d(uv[0]);
+            const bool area = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0;
+            with_area |= std::uint32_t{area} << i;
+            for (std::size_t k = 0; k < 3; ++k) corners[k][0][i] = uv[k].x, corners[k][1][i] = uv[k].y;
+        }
+        return with_area;
+    }
+    static Doubles rounded(const Doubles& value) {
+        std::array<float, Doubles::size> floats;
+        store_floats(value, floats.data());
+        return load_doubles(floats.data());
+    }
+
     const PreparedData& data_;
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
     StripSolver<S> solver_;
     Linear ways_, eyes_; ///< camera rays
-    std::vector<SolvedStrip<S>> solved_;
     const StripPlace* place_ = nullptr; ///< of the strip at hand
     const SolvedStrip<S>* strip_ = nullptr;
 };

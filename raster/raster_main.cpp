@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
     std::string shading_name = "lit", occlusion_name = "gtao";
     double occlusion_radius = 0;
     bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
-    bool screen_reflections = true, prefiltered = true, transformed_cosines = true;
+    bool screen_reflections = true, screen_refractions = true, prefiltered = true, transformed_cosines = true;
     int multisamples = 0;
     int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
     RenderProgram program;
@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
                      "Light surfaces shine on rough metal with their shape, not as from their centres (default: on)");
         app.add_flag("--screen-reflections,!--no-screen-reflections", screen_reflections,
                      "Smooth and slightly rough metal mirrors what the picture shows (default: on)");
+        app.add_flag("--screen-refractions,!--no-screen-refractions", screen_refractions,
+                     "Glass shows what the picture shows without it (default: on)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
@@ -61,6 +63,7 @@ int main(int argc, char** argv) {
         settings.prefiltered_environment = prefiltered;
         settings.transformed_cosines = transformed_cosines;
         settings.screen_reflections = screen_reflections;
+        settings.screen_refractions = screen_refractions;
         settings.shadows = shadows;
         settings.shadow_map_side = shadow_map_side;
         settings.shadow_cells = shadow_cells;

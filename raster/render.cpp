@@ -4,6 +4,7 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
+#include "raster/glass.h"
 #include "raster/layers.h"
 #include "raster/multisample.h"
 #include "raster/overlay.h"
@@ -69,8 +70,10 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
-/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself.
-void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, Screen& screen) {
+/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
+/// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with before
+/// the screen has Screen::behind.
+void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, const Screen::FirstLook* known, Screen& screen) {
     Settings settings = frame.settings;
     settings.screen_reflections = false;
     settings.parts = {};
@@ -84,10 +87,41 @@ void first_look(const Frame& frame, const View& view, const Geometry& geometry, 
         cover(geometry, pass, pass.samples.front(), rect, i, depths);
         const HitTile tile(depths, geometry, pass);
         for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                picture.set(frame.data.scene, x, y, tile.hit(x, y), shade(frame.data, settings, tile, x, y).radiance);
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                const Hit& hit = tile.hit(x, y);
+                const bool later = screen.behind() == nullptr && hit.valid() && is_glass(frame.data, hit.object);
+                const std::uint32_t key = later ? 0 : FirstLookPicture::key(frame.data.scene, hit);
+                const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
+                picture.set(frame.data.scene, x, y, hit,
+                            same ? known->radiance.finest()(x, y) : shade(frame.data, settings, tile, x, y).radiance, key);
+            }
     });
     screen.set_first_look(std::move(picture).finish());
+}
+
+/// The depths and normals at the pixels' centres.
+std::unique_ptr<Screen> depths_and_normals(const Frame& frame, const View& view, const PassView& central, const Geometry& geometry) {
+    ImageFloat nearness(view.width, view.height);
+    ImageRgb normals(view.width, view.height);
+    const std::unique_ptr<Program> normal = program(Shading::kNormal);
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
+        if (!frame.control.stopped())
+            keep_nearness_and_colors(frame.data, geometry, central, *normal, frame.grid.tile(i), i, nearness, normals);
+    });
+    auto screen = std::make_unique<Screen>(central.pinhole, central.samples.front(), std::move(nearness));
+    screen->set_normals(normals);
+    return screen;
+}
+
+/// What there is without glass, and the back of that.
+void look_behind_glass(const Frame& frame, const View& view, const PassView& central, Screen& screen) {
+    GeometryLoan geometry(*frame.data.geometries);
+    process_without_glass(frame.data, frame.grid, central, frame.settings, *geometry);
+    std::unique_ptr<Screen> behind = depths_and_normals(frame, view, central, *geometry);
+    add_occlusion(frame.data, frame.settings, *behind);
+    first_look(frame, view, *geometry, central, &screen.first_look(), *behind);
+    process_backs_of_glass(frame.data, frame.grid, central, frame.settings, *geometry);
+    screen.set_glass(std::move(behind), depths_and_normals(frame, view, central, *geometry));
 }
 
 /// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
@@ -97,17 +131,13 @@ std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, con
     const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
     GeometryLoan geometry(*frame.data.geometries);
     process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
-    ImageFloat nearness(view.width, view.height);
-    ImageRgb normals(view.width, view.height);
-    const std::unique_ptr<Program> normal = program(Shading::kNormal);
-    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (!frame.control.stopped())
-            keep_nearness_and_colors(frame.data, *geometry, central, *normal, frame.grid.tile(i), i, nearness, normals);
-    });
-    auto screen = std::make_unique<Screen>(central.pinhole, centers.front(), std::move(nearness));
-    screen->set_normals(normals);
+    std::unique_ptr<Screen> screen = depths_and_normals(frame, view, central, *geometry);
     add_occlusion(frame.data, frame.settings, *screen);
-    if (needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, *screen);
+    const bool glass = needs_screen_behind(frame.data, frame.settings);
+    if (glass || needs_screen_radiance(frame.data, frame.settings)) first_look(frame, view, *geometry, central, nullptr, *screen);
+    if (!glass) return screen;
+    look_behind_glass(frame, view, central, *screen);
+    first_look(frame, view, *geometry, central, &screen->first_look(), *screen);
     return screen;
 }
 
@@ -257,7 +287,7 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
 void render_inked(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass, Picture& picture,
                   Overlay& overlay) {
     SeenPicture seen(view.width, view.height);
-    const std::unique_ptr<Program> normals = program(Shading::kNormal);
+    const std::unique_ptr<Program> normals = smooth_normal_program(); // relief is no edge
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
         render_tile(frame, pass_view, i, picture);
         DepthTile depths;

@@ -70,6 +70,7 @@ struct Settings : RenderSettings {
     double occlusion_radius = 0;
     bool prefiltered_environment = true;  ///< Shading::kLit: rough metal mirrors it blurred, not as if it were smooth
     bool screen_reflections = true;  ///< Shading::kLit: smooth and slightly rough metal mirrors what the picture shows
+    bool screen_refractions = true;  ///< Shading::kLit: glass shows what the picture shows without it
     bool transformed_cosines = true; ///< Shading::kLit: of surface lights on rough metal; off: as from their centres
     bool environment =
         true; ///< light surfaces by the environment, and show it; off: surface, point, spot and sun light only

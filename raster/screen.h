@@ -29,6 +29,7 @@ public:
     int width() const { return nearness_.width(); }
     int height() const { return nearness_.height(); }
     Vec3 relative(Vec3 p) const { return Vec3(Vec3d(p) - eye_); }
+    Vec3 absolute(Vec3 relative) const { return Vec3(Vec3d(relative) + eye_); }
 
     /// Where a point is seen: x and y in pixels, depth. Depth is 0 or less, and x and y mean nothing, behind the eye.
     Vec3 project(Vec3 p) const {
@@ -103,6 +104,13 @@ public:
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
     const FirstLook& first_look() const { return first_look_; }
 
+    /// The same view without what is of glass, with a first look, and the nearest back faces of that; else null.
+    void set_glass(std::unique_ptr<const Screen> behind, std::unique_ptr<const Screen> backs) {
+        behind_ = std::move(behind), backs_ = std::move(backs);
+    }
+    const Screen* behind() const { return behind_.get(); }
+    const Screen* backs() const { return backs_.get(); }
+
 private:
     Vec3d eye_;
     Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as Pinhole's, from pixel (0, 0)
@@ -113,6 +121,7 @@ private:
     std::array<ImageFloat, 3> normals_;
     std::shared_ptr<const OcclusionImage> occlusion_;
     FirstLook first_look_;
+    std::unique_ptr<const Screen> behind_, backs_;
 };
 
 } // namespace duet::raster

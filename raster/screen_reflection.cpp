@@ -26,9 +26,15 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
 }
 
+/// What pixel (x, y) shows stands for what is met at a distance.
+ScreenHit guess(const Screen& screen, Vec3 p, Vec3 way, float x, float y, float distance) {
+    const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
+    return {x, y, distance, seen ? length(*seen - p - way * distance) : 0.0f};
+}
+
 } // namespace
 
-std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way) {
+std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
     const Vec3 from = screen.project(p);
     if (!(from.z > 0)) return std::nullopt;
     const auto h = screen.homogeneous_change(way);
@@ -38,7 +44,10 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, V
     const Vec3 to = screen.project(p + way * std::min(reach, 1e3f * from.z));
     const float dx = to.x - from.x, dy = to.y - from.y;
     const float pixels = std::max(std::abs(dx), std::abs(dy));
-    if (!(pixels > 1)) return std::nullopt;
+    if (!(pixels > 1)) { // all the way in one pixel
+        const float beyond = screen.contains(from.x, from.y) ? screen.depth(static_cast<int>(from.x), static_cast<int>(from.y)) - from.z : 0;
+        return !from_picture && deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
+    }
     const float part = std::min({1.0f, part_within(from.x, dx, static_cast<float>(screen.width())),
                                  part_within(from.y, dy, static_cast<float>(screen.height()))});
     const int steps = static_cast<int>(std::floor(part * pixels));
@@ -47,13 +56,17 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, V
     const auto depth_at = [&](float t) {
         return perspective ? 1 / lerp(1 / from.z, 1 / to.z, t) : lerp(from.z, to.z, t);
     };
+    const auto part_at = [&](float depth) { // the other way round; t's end where it keeps its depth
+        const float gained = perspective ? 1 / to.z - 1 / from.z : to.z - from.z;
+        return gained != 0 ? (perspective ? 1 / depth - 1 / from.z : depth - from.z) / gained : 1;
+    };
     const float length_of_all = std::min(reach, 1e3f * from.z);
     const auto distance_at = [&](float t, float depth) { // a ray across the view keeps its depth
         return std::abs(to.z - from.z) > 1e-3f * from.z ? length_of_all * (depth - from.z) / (to.z - from.z) : length_of_all * t;
     };
     float before = from.z, in_front = 0; // the last distance at which it was before what is seen
     float hidden_from = -1;              // and that at which it went behind it; negative: it is not
-    int last_x = -1, last_y = -1;
+    int last_x = -1, last_y = -1, front_x = -1, front_y = -1;
     for (int i = 1; i <= steps; ++i) {
         const float t = static_cast<float>(i) / pixels, depth = depth_at(t);
         const float fx = from.x + dx * t, fy = from.y + dy * t;
@@ -64,30 +77,38 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, V
         const float far = std::max(before, depth), near = std::min(before, depth);
         const float thickness = std::max(2 * (far - near), kThickness * seen_depth);
         before = depth;
-        if (i < 2) continue;
+        if (from_picture && i < 2) continue;
         const float distance = distance_at(t, depth);
         if (far < seen_depth) {
-            hidden_from = -1, in_front = distance;
+            hidden_from = -1, in_front = distance, front_x = x, front_y = y;
             continue;
         }
         if (near > seen_depth + thickness) {
             if (hidden_from < 0) hidden_from = in_front;
             const float crossed = meets_plane(screen, p, way, x, y);
-            if (crossed > hidden_from && crossed <= distance && normal_turn(screen, x, y) < kFlat) return ScreenHit{fx, fy, crossed};
+            if (crossed > hidden_from && crossed <= distance && normal_turn(screen, x, y) < kFlat) return guess(screen, p, way, fx, fy, crossed);
             continue;
         }
         const std::optional<Vec3> seen = screen.seen(x, y);
         if (!seen) continue;
         const Vec3 step = *seen - p;
-        if (dot(n, step) > kSlack * length(step)) return ScreenHit{fx, fy, length(step)};
+        if (!(dot(n, step) > kSlack * length(step))) continue;
+        const float met = clamp(part_at(seen_depth), static_cast<float>(i - 1) / pixels, t);
+        return ScreenHit{from.x + dx * met, from.y + dy * met, length(step)};
     }
     if (last_x < 0) last_x = static_cast<int>(from.x), last_y = static_cast<int>(from.y);
     last_x = std::clamp(last_x, 0, screen.width() - 1), last_y = std::clamp(last_y, 0, screen.height() - 1);
-    if (hidden_from >= 0) return ScreenHit{static_cast<float>(last_x) + 0.5f, static_cast<float>(last_y) + 0.5f, hidden_from};
+    const float last_fx = static_cast<float>(last_x) + 0.5f, last_fy = static_cast<float>(last_y) + 0.5f;
+    if (hidden_from >= 0 && front_x >= 0 && normal_turn(screen, front_x, front_y) < kFlat) {
+        const float crossed = meets_plane(screen, p, way, front_x, front_y);
+        if (crossed > hidden_from && scene.contains(p + way * crossed))
+            return guess(screen, p, way, static_cast<float>(front_x) + 0.5f, static_cast<float>(front_y) + 0.5f, crossed);
+    }
+    if (hidden_from >= 0) return guess(screen, p, way, last_fx, last_fy, hidden_from);
     const float beyond = meets_plane(screen, p, way, last_x, last_y);
     const std::optional<Vec3> edge = screen.seen(last_x, last_y);
     if (beyond == kInfinity || !scene.contains(p + way * beyond) || !edge || dot(n, *edge - p) <= kSlack * length(*edge - p)) return std::nullopt;
-    return ScreenHit{static_cast<float>(last_x) + 0.5f, static_cast<float>(last_y) + 0.5f, beyond};
+    return guess(screen, p, way, last_fx, last_fy, beyond);
 }
 
 float normal_turn(const Screen& screen, int x, int y) {

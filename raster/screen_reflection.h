@@ -12,6 +12,7 @@ namespace duet::raster {
 struct ScreenHit {
     float x, y;     ///< in pixels
     float distance; ///< from the point, metres
+    float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
@@ -20,10 +21,12 @@ struct ScreenHit {
 /// over two pixels, or kThickness of its depth, is taken to be passed.
 ///
 /// What the picture does not show it may still tell of. A flat surface that the ray, when it comes out from behind
-/// something, has already crossed by its plane is what it has met there; what hides the ray up to the picture's edge
-/// stands for what it meets; and surfaces go on beyond the edge as they are there, up to the bounds of the scene (relative
+/// something, has already crossed by its plane is what it has met there; one that it was last seen before goes on behind
+/// what hides the ray up to the picture's edge, which stands for what it meets where there is none; and surfaces go on beyond the edge as they are there, up to the bounds of the scene (relative
 /// to the eye). Empty where the ray meets nothing so.
-std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way);
+///
+/// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
+std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
 
 /// By how much the normal turns from pixel (x, y), seen at p (relative to the eye), to the next one on its surface,
 /// radians at most: twice that is what a mirror's rays spread by.

@@ -29,7 +29,9 @@ public:
     using Many = SetUp<S, StripOf<double>, StripOf<float>>;
 
     SetUps(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
-        : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {}
+        : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {
+        kept_.reserve(kRoom);
+    }
 
     /// The object whose triangles are asked for from now on; its first triangle's number.
     void use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id);

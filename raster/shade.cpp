@@ -2,12 +2,14 @@
 
 #include "raster/direct.h"
 #include "raster/ggx_table.h"
+#include "raster/glass.h"
 #include "raster/occlusion_image.h"
 #include "raster/prefiltered.h"
 #include "raster/screen.h"
 #include "raster/screen_reflection.h"
 #include "raster/shadows.h"
 #include "raster/split.h"
+#include "raster/surroundings.h"
 
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
@@ -132,21 +134,18 @@ struct DirectLight {
 /// Ray number i of kMirrorRays from a rough metal: a (0,2)-net, of which each aligned part is one.
 Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), kMirrorRays); }
 
-/// What a smooth or slightly rough metal mirrors of the picture, or past that of the environment, in directions of its
-/// lobe: the same few for every point, each as wide as the part of the lobe that it stands for.
+/// What a smooth or slightly rough metal mirrors, in directions of its lobe: the same few for every point, each as wide
+/// as the part of the lobe that it stands for.
 class Mirrored {
 public:
     Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf)
-        : data_(data), settings_(settings), screen_(screen), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)),
-          bounds_{screen.relative(data.scene.bounds.low), screen.relative(data.scene.bounds.high)} {
-        const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
-        bounds_ = {bounds_.low - slack, bounds_.high + slack};
+        : around_(data, settings, screen), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)) {
         const Vec3 place = screen.project(p_);
         if (place.z > 0) {
             const auto [x, y] = screen.pixel_at(place);
             spread_ = 2 * normal_turn(screen, x, y);
         }
-        depth_ = max(place.z, screen.near());
+        width_ = screen.pixel_size(max(place.z, screen.near()));
     }
 
     Rgb operator()(TapRange taps) const {
@@ -166,24 +165,14 @@ private:
         const bool smooth = bsdf_.smooth();
         // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
         const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
-        if (const auto hit = trace_screen(screen_, bounds_, p_, point_.ng, way)) {
-            const float there = max(screen_.homogeneous(p_ + way * hit->distance)[2], screen_.near());
-            const float size = screen_.pixel_size(depth_) + hit->distance * (wide + spread_);
-            // What lamps do to rough metal is direct light.
-            const RadiancePyramid& picture = smooth ? screen_.first_look().radiance : screen_.first_look().without_lamps;
-            return picture.at(hit->x, hit->y, size / screen_.pixel_size(there)) * sample->weight;
-        }
-        return shows_environment(data_, settings_) ? radiance(data_.scene.environment, way) * sample->weight : Rgb();
+        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide, .lamps = smooth, .point = &point_}) * sample->weight;
     }
 
-    const PreparedData& data_;
-    const Settings& settings_;
-    const Screen& screen_;
+    Surroundings around_;
     const ShadingPoint& point_;
     const MetalBsdf& bsdf_;
     Vec3 p_;
-    Box3 bounds_;
-    float depth_ = 0, spread_ = 0; ///< radians between a pixel's mirrored ray and the next one's
+    float width_ = 0, spread_ = 0; ///< of a pixel; radians between its mirrored ray and the next one's
 };
 
 LightParts lit(const PreparedData& data, const Settings& settings, const PartSet& asked, const ShadingPoint& point,
@@ -229,6 +218,8 @@ LightParts lit(const PreparedData& data, const Settings& settings, const PartSet
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
         !screen->first_look().radiance.empty() && metal->alpha <= kRoughestMirror)
         parts.reflection = Mirrored(data, settings, *screen, point, *metal)(taps);
+    if (is_glass(data, point.surface.object) && asked.reflection && settings.screen_refractions && screen != nullptr && screen->behind() != nullptr)
+        parts.reflection = std::visit(SeenThrough(data, settings, *screen, point), bsdf);
     return parts;
 }
 
@@ -267,14 +258,14 @@ Rgb background(const PreparedData& data, const Settings& settings, const Ray& ra
 } // namespace
 
 bool needs_occlusion(const PreparedData& data, const Settings& settings) {
-    const bool shown = settings.parts.environment || needs_screen_radiance(data, settings);
+    const bool shown = settings.parts.environment || needs_screen_radiance(data, settings) || needs_screen_behind(data, settings);
     return settings.shading == Shading::kLit && settings.output != Output::kNearness &&
            settings.ambient_occlusion != AmbientOcclusion::kNone && shown && shows_environment(data, settings);
 }
 
 bool needs_screen(const PreparedData& data, const Settings& settings) {
     return needs_occlusion(data, settings) ||
-           (settings.output != Output::kNearness && needs_screen_radiance(data, settings));
+           (settings.output != Output::kNearness && (needs_screen_radiance(data, settings) || needs_screen_behind(data, settings)));
 }
 
 void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen) {
@@ -286,6 +277,10 @@ void add_occlusion(const PreparedData& data, const Settings& settings, Screen& s
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {
     return settings.shading == Shading::kLit && settings.screen_reflections && settings.parts.reflection &&
            any_used_material(data.scene, may_mirror);
+}
+
+bool needs_screen_behind(const PreparedData& data, const Settings& settings) {
+    return settings.shading == Shading::kLit && settings.screen_refractions && settings.parts.reflection && !data.glass.empty();
 }
 
 double occlusion_radius(const PreparedData& data, const Settings& settings) {
@@ -307,9 +302,9 @@ std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
     return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
 }
 
-void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance) {
+void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
     radiance_(x, y) = radiance;
-    keys_(x, y) = key(scene, hit);
+    keys_(x, y) = key;
     lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
 }
 

@@ -25,6 +25,8 @@ Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& 
 bool needs_screen(const PreparedData& data, const Settings& settings);
 /// Whether that must have its radiance, too, shaded by the same settings without reflections of it.
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
+/// Whether that must have what there is without glass (Screen::behind).
+bool needs_screen_behind(const PreparedData& data, const Settings& settings);
 /// Whether that must have its occlusion.
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
 /// Works it out, if so.
@@ -34,7 +36,8 @@ class FirstLookPicture {
 public:
     FirstLookPicture(int width, int height) : radiance_(width, height), keys_(width, height, 0), lamps_(width, height, 0) {}
 
-    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance);
+    /// `key`: of the hit, or 0 where it is to be shaded again.
+    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
     Screen::FirstLook finish() &&;
 
     /// Of what a pixel sees: 0 of what mirrors the picture, and of nothing.

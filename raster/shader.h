@@ -45,6 +45,7 @@ struct ObjectView {
     std::uint32_t object;      ///< index into Scene::objects
     bool identity;             ///< its space is the world's
     bool smooth;               ///< it has normals at its vertices
+    bool bent;                 ///< a material of it has a normal or bump map
     Mat4 to_world, to_object;  ///< at the pass's moment
     std::optional<Rgb> color;  ///< its base colour, if it has but one
     Vec3 eye, forward;         ///< the viewer, and unit, the way the camera looks
@@ -101,11 +102,21 @@ template <typename T> struct VertexInput {
     Vec3T<T> world_ng() const { return unit(object.normal(ng)); }
 };
 
-/// Looks up what has no batches: base colours of the samples of a strip.
+/// Looks up what has no batches: base colours of the samples of a strip, and normals by their materials' maps.
 class ColorSource {
 public:
     virtual ~ColorSource() = default;
     virtual Rgb base_color(std::size_t sample) const = 0;
+    /// Of as many samples from `first` on as a batch has lanes.
+    virtual RgbT<Floats> base_colors(std::size_t first) const {
+        RgbT<StripOf<float>> found;
+        for (std::size_t lane = 0; lane < Floats::size; ++lane) {
+            const Rgb c = base_color(first + lane);
+            found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
+        }
+        return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+    }
+    virtual Vec3 bent_normal(std::size_t sample) const = 0; ///< in the world, unit, on the side that is seen
 };
 
 template <typename V, bool kDerivatives> struct ScreenDerivatives {};
@@ -127,20 +138,21 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
 
     Vec3T<T> p() const { return origin + way * depth; } ///< in the world
     Vec3T<T> wo() const { return -unit(way); }          ///< to the viewer, unit
-    /// The shading normal of an interpolated n of the object's space: unit, in the world, on the side that is seen.
-    Vec3T<T> normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
+    /// The shading normal of an interpolated n of the object's space: unit, in the world, on the side that is seen. Where a
+    /// map bends normals: as that has it.
+    Vec3T<T> normal(Vec3T<T> n) const { return object.bent ? bent_normal() : smooth_normal(n); }
+    /// The same, whatever maps say.
+    Vec3T<T> smooth_normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
     RgbT<T> base_color() const;
+
+private:
+    Vec3T<T> bent_normal() const;
 };
 
 /// A strip's base colours from sample `first` on. Never inlined: so a fragment whose object has one colour need not lie in
 /// memory.
-template <typename T> [[gnu::noinline]] RgbT<T> sampled_colors(const ColorSource& colors, std::size_t first) {
-    RgbT<StripOf<float>> found;
-    for (std::size_t lane = 0; lane < T::size; ++lane) {
-        const Rgb c = colors.base_color(first + lane);
-        found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
-    }
-    return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+[[gnu::noinline]] inline RgbT<Floats> sampled_colors(const ColorSource& colors, std::size_t first) {
+    return colors.base_colors(first);
 }
 
 template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
@@ -148,7 +160,24 @@ template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V,
     if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
     else
-        return sampled_colors<T>(colors, first);
+        return sampled_colors(colors, first);
+}
+
+/// And its normals, likewise.
+template <typename T> [[gnu::noinline]] Vec3T<T> sampled_normals(const ColorSource& colors, std::size_t first) {
+    Vec3T<StripOf<float>> found;
+    for (std::size_t lane = 0; lane < T::size; ++lane) {
+        const Vec3 n = colors.bent_normal(first + lane);
+        found.x[lane] = n.x, found.y[lane] = n.y, found.z[lane] = n.z;
+    }
+    return {load(found.x, 0), load(found.y, 0), load(found.z, 0)};
+}
+
+template <typename T, typename V, bool kDerivatives> Vec3T<T> FragmentInput<T, V, kDerivatives>::bent_normal() const {
+    if constexpr (std::same_as<T, float>)
+        return colors.bent_normal(first);
+    else
+        return sampled_normals<T>(colors, first);
 }
 
 /// Whether a shader asks for derivatives: `static constexpr bool kDerivatives = true;`

@@ -10,10 +10,11 @@
 namespace duet::raster {
 
 /// Where the samples of a strip that see a mesh's triangle lie on it.
-template <VertexShader S> struct SolvedStrip : StripSamples {
+template <VertexShader S> struct SolvedStrip {
     static constexpr std::size_t kCount = kVaryings<S>;
     static constexpr bool kDerivatives = wants_derivatives<S>();
 
+    const StripSamples* samples = nullptr;
     const ObjectView* object_view = nullptr;
     std::array<StripOf<float>, kCount> at;                        ///< varyings
     std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
@@ -23,7 +24,6 @@ template <VertexShader S> struct SolvedStrip : StripSamples {
     std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
     /// A bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
     std::uint32_t inside = 0;
-    std::array<std::uint32_t, kFew> few_kept{}; ///< where the few triangles' set-ups are
 };
 
 /// Solves for the samples that see a mesh's triangle; S's vertex function is asked for what is interpolated.
@@ -37,16 +37,22 @@ public:
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
-    /// For up to kMost strips, of which those that see no mesh are only read. `mend`: solve otherwise where the solution does
-    /// not hold as it is.
-    void solve(std::span<const StripPlace> places, std::span<Solved> strips, bool mend);
+    /// For up to kMost strips: use(i, strip) for each of them, in any order; `strip` is there until use() returns, solved if
+    /// it sees a mesh. `mend`: solve otherwise where the solution does not hold as it is.
+    template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
 private:
-    static constexpr std::size_t kCount = Solved::kCount, kFew = Solved::kFew;
+    static constexpr std::size_t kCount = Solved::kCount, kFew = 8;
     static constexpr bool kDerivatives = Solved::kDerivatives;
     using One = typename SetUps<S>::One;
     using Many = typename SetUps<S>::Many;
+
+    struct ReadStrip : StripSamples {
+        bool each = false;   ///< so many triangles that each sample's is worked on by itself, side by side
+        std::size_t few = 0; ///< else: how many there are
+        std::array<std::uint32_t, kFew> few_lanes{}, few_kept{}; ///< a bit for each of their samples; where their set-ups are
+    };
 
     /// The set-ups of a strip's samples: each its own, or some, each for several samples. for_each<T>() calls
     /// body(set-up, merge) for each of them; merge(to, value) is for the samples from k on that it is of, as many as a batch
@@ -59,7 +65,7 @@ private:
     };
     struct OfFew {
         const SetUps<S>& set_ups;
-        const Solved& strip;
+        const ReadStrip& strip;
         template <typename T, typename Body> void for_each(std::size_t k, const Body& body) const {
             body(set_ups.kept(strip.few_kept[0]), [](auto& to, const auto& value) { to = value; });
             for (std::size_t i = 1; i < strip.few; ++i) {
@@ -68,12 +74,12 @@ private:
             }
         }
     };
-    void read(std::span<const StripPlace> places, std::span<Solved> strips);
-    void solve_one(const StripPlace& place, Solved& strip, bool mend);
+    void read(std::span<const StripPlace> places);
+    void solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend);
     template <typename SetUpsOf> void solve_at(const SetUpsOf& set_ups, const StripPlace& place, Solved& strip) const;
     template <typename SetUpsOf, typename Positions>
     void solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const;
-    void mend_strip(const Many* many, const StripPlace& place, Solved& strip) const;
+    void mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples, Solved& strip) const;
 
     const Triangles& triangles_;
     const PassView& view_;
@@ -81,6 +87,9 @@ private:
     SetUps<S> set_ups_;
     int origin_x_, origin_y_;
     bool steps_;
+    std::array<ReadStrip, kMost> read_;
+    static constexpr std::size_t kTogether = 8; ///< enough for one's work to overlap with the next's, few enough for the first cache
+    std::array<Solved, kTogether> solved_;
 };
 
 /// What has nothing to interpolate: for who wants barycentrics and depths alone.
@@ -130,7 +139,7 @@ template <typename SetUpsOf, typename Positions>
 void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& positions, Solved& strip) const {
     using strips::lanes_of;
     const Doubles zero(0.0);
-    strip.inside = 0;
+    std::uint32_t inside = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
         std::array<Doubles, 2> first_b, second_b, d1_dx{zero, zero}, d1_dy{zero, zero}, d2_dx{zero, zero}, d2_dy{zero, zero};
         for (std::size_t half = 0; half < 2; ++half) {
@@ -148,7 +157,7 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
                 merge(depth_sum, view_.viewport.orthographic ? value(one.depth_sum) : lanes_of(one.depth_sum[2], k));
             });
             const Doubles inverse = Doubles(1.0) / sum;
-            strip.inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
+            inside |= lane_bits(e1 >= zero && e2 >= zero && sum - e1 - e2 >= zero && sum > zero) << k;
             first_b[half] = e1 * inverse;
             second_b[half] = e2 * inverse;
             if (kDerivatives || steps_)
@@ -200,6 +209,7 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
             }
         }
     }
+    strip.inside = inside;
 }
 
 template <VertexShader S>
@@ -218,47 +228,58 @@ void StripSolver<S>::solve_at(const SetUpsOf& set_ups, const StripPlace& place, 
     solve_lanes(set_ups, positions, strip);
 }
 
-template <VertexShader S> void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, Solved& strip) const {
-    for (std::uint32_t left = strip.on_mesh & ~strip.inside; left != 0; left &= left - 1) {
+template <VertexShader S>
+void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, const ReadStrip& samples, Solved& strip) const {
+    for (std::uint32_t left = samples.on_mesh & ~strip.inside; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        const Run& run = run_of(strip.id(i));
-        const WholeTriangle whole = triangles_.whole(run, Triangles::index(run, strip.id(i)));
+        const Run& run = run_of(samples.id(i));
+        const WholeTriangle whole = triangles_.whole(run, Triangles::index(run, samples.id(i)));
         const Interpolated here = interpolate(whole, place.position(i));
         strip.b1[i] = here.b1 / here.sum;
         strip.b2[i] = here.b2 / here.sum;
         strip.depth[i] = here.depth_sum / here.sum;
         const auto u = static_cast<float>(strip.b1[i]), v = static_cast<float>(strip.b2[i]);
         const One* one = nullptr;
-        for (std::size_t k = 0; k < strip.few && many == nullptr; ++k)
-            if (strip.few_lanes[k] >> i & 1) one = &set_ups_.kept(strip.few_kept[k]);
+        for (std::size_t k = 0; k < samples.few && many == nullptr; ++k)
+            if (samples.few_lanes[k] >> i & 1) one = &set_ups_.kept(samples.few_kept[k]);
         for (std::size_t c = 0; c < kCount; ++c)
             strip.at[c][i] = one != nullptr ? one->n[c] + one->n1[c] * u + one->n2[c] * v
                                             : many->n[c][i] + many->n1[c][i] * u + many->n2[c][i] * v;
     }
 }
 
-template <VertexShader S> void StripSolver<S>::solve_one(const StripPlace& place, Solved& strip, bool mend) {
-    set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
+template <VertexShader S>
+void StripSolver<S>::solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend) {
+    strip.samples = &samples;
+    if (samples.on_mesh == 0) return;
+    set_ups_.use(*samples.object, *samples.mesh, samples.first_id);
     strip.object_view = &set_ups_.object();
-    const Many* many = strip.each ? &set_ups_.set_up(strip.ids) : nullptr;
+    const Many* many = samples.each ? &set_ups_.set_up(samples.ids) : nullptr;
     if (many != nullptr)
         solve_at(OfEach{*many}, place, strip);
     else
-        solve_at(OfFew{set_ups_, strip}, place, strip);
-    strip.inside &= sabotaged(Guard::kPerspective) ? 0 : strip.on_mesh;
-    if (mend) mend_strip(many, place, strip);
+        solve_at(OfFew{set_ups_, samples}, place, strip);
+    strip.inside &= sabotaged(Guard::kPerspective) ? 0 : samples.on_mesh;
+    if (mend) mend_strip(many, place, samples, strip);
 }
 
 /// Reads all, and sets up what they see, side by side across strips.
-template <VertexShader S>
-void StripSolver<S>::read(std::span<const StripPlace> places, std::span<Solved> strips) {
+template <VertexShader S> void StripSolver<S>::read(std::span<const StripPlace> places) {
     set_ups_.make_room(places.size() * kFew);
     for (std::size_t s = 0; s < places.size(); ++s) {
-        Solved& strip = strips[s];
+        ReadStrip& strip = read_[s];
         reader_.read(places[s].ids, strip);
-        if (strip.on_mesh == 0 || strip.each) continue;
+        if (strip.on_mesh == 0) continue;
+        std::uint32_t firsts = first_of_each(strip.ids);
+        strip.few = static_cast<std::size_t>(std::popcount(firsts));
+        strip.each = strip.few > kFew;
+        if (strip.each) continue;
         set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
-        for (std::size_t k = 0; k < strip.few; ++k) strip.few_kept[k] = set_ups_.keep(strip.few_id(k));
+        for (std::size_t k = 0; k < strip.few; ++k, firsts &= firsts - 1) {
+            const std::int32_t id = strip.ids[static_cast<std::size_t>(std::countr_zero(firsts))];
+            strip.few_lanes[k] = lanes_of_number(strip.ids, id);
+            strip.few_kept[k] = set_ups_.keep(static_cast<std::uint32_t>(id));
+        }
     }
     set_ups_.finish();
 }
@@ -266,18 +287,22 @@ void StripSolver<S>::read(std::span<const StripPlace> places, std::span<Solved> 
 // By the number of triangles they see: so many branches go the same way, one strip after the other, and one's work overlaps
 // with the next's.
 template <VertexShader S>
-void StripSolver<S>::solve(std::span<const StripPlace> places, std::span<Solved> strips, bool mend) {
+template <typename Use>
+void StripSolver<S>::solve(std::span<const StripPlace> places, bool mend, const Use& use) {
     static_assert(kMost * kFew <= SetUps<S>::kRoom);
-    read(places, strips);
+    read(places);
     constexpr std::size_t kKinds = kFew + 2; // none, 1 to kFew, each
-    const auto kind = [&](std::size_t s) { return strips[s].on_mesh == 0 ? 0 : strips[s].each ? kFew + 1 : strips[s].few; };
+    const auto kind = [&](std::size_t s) { return read_[s].on_mesh == 0 ? 0 : read_[s].each ? kFew + 1 : read_[s].few; };
     std::array<std::size_t, kKinds + 1> first{};
     for (std::size_t s = 0; s < places.size(); ++s) ++first[kind(s) + 1];
     for (std::size_t k = 1; k < kKinds; ++k) first[k] += first[k - 1];
-    const std::size_t begin = first[1];
     std::array<std::size_t, kMost> order;
     for (std::size_t s = 0; s < places.size(); ++s) order[first[kind(s)]++] = s;
-    for (std::size_t i = begin; i < places.size(); ++i) solve_one(places[order[i]], strips[order[i]], mend);
+    for (std::size_t i = 0; i < places.size(); i += kTogether) {
+        const auto some = std::span<const std::size_t>(order).subspan(i, std::min(kTogether, places.size() - i));
+        for (std::size_t k = 0; k < some.size(); ++k) solve_one(places[some[k]], read_[some[k]], solved_[k], mend);
+        for (std::size_t k = 0; k < some.size(); ++k) use(some[k], solved_[k]);
+    }
 }
 
 } // namespace duet::raster

@@ -15,7 +15,7 @@ struct LightParts {
     Rgb emission;    ///< seen directly: emissive surfaces, and the environment behind all
     Rgb direct;      ///< from Scene::lights by diffuse surfaces and rough metal
     Rgb environment; ///< from the environment by diffuse surfaces, its occlusion guessed where there is a screen
-    Rgb reflection;  ///< the environment alone, by way of metal and glass
+    Rgb reflection;  ///< by way of metal and glass: of what the picture shows where there is a screen, of lamps, of the environment
     Rgb shadowed;    ///< no part of the sum: what `direct` lacks by the shadow maps
 
     Rgb sum() const { return emission + direct + environment + reflection; }

@@ -47,16 +47,6 @@ void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
     samples.on_mesh = samples.seen;
     samples.mesh = mesh_;
     samples.first_id = first_id_;
-    samples.few = 0;
-    std::uint32_t left = (1u << kStrip) - 1;
-    while (left != 0 && samples.few < StripSamples::kFew) {
-        const Ints id(samples.ids[static_cast<std::size_t>(std::countr_zero(left))]);
-        std::uint32_t lanes = 0;
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(load(samples.ids, i) == id) << i;
-        samples.few_lanes[samples.few++] = lanes;
-        left &= ~lanes;
-    }
-    samples.each = left != 0;
 }
 
 } // namespace duet::raster

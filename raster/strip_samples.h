@@ -4,7 +4,6 @@
 #include "raster/depth_tile.h"
 #include "raster/strip_shader.h"
 
-#include <bit>
 #include <cstdint>
 
 namespace duet::raster {
@@ -25,23 +24,16 @@ inline StripPlace strip_place(const DepthTile& tile, int x, int y) {
 
 /// What the samples of a strip see.
 struct StripSamples {
-    static constexpr std::size_t kFew = 8;
-
     StripOf<std::int32_t> ids; ///< where nothing is seen: another's
     std::uint32_t seen = 0;    ///< a bit for each sample that sees something
     std::uint32_t on_mesh = 0; ///< and for each that sees a mesh's triangle, where only one object's are seen
     const TransformedObject* object = nullptr; ///< that one, or null
     const Mesh* mesh = nullptr;
     std::size_t first_id = 0; ///< number of the mesh's first triangle
-    bool each = false;        ///< so many triangles that each sample's is worked on by itself, side by side
-    std::size_t few = 0;      ///< else: how many there are
-    std::array<std::uint32_t, kFew> few_lanes{}; ///< and a bit for each of their samples
 
     std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids[i]); }
     /// Triangle of the one mesh.
     std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids[i]) - first_id; }
-    /// Number of one of the few.
-    std::uint32_t few_id(std::size_t k) const { return id(static_cast<std::size_t>(std::countr_zero(few_lanes[k]))); }
 };
 
 /// Walks from strip to strip: the object that two of them have in common is not looked up again.

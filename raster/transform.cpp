@@ -48,45 +48,61 @@ template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewp
            bit(!(v.depth >= T(viewport.near)), kNear) + bit(!within, kGuard);
 }
 
-/// A run of vertices, as many as a batch of doubles has lanes.
-void transform_batch(const std::array<std::array<double, Doubles::size>, 3>& p, const Mat4d& m,
-                     const Viewport& viewport, SnappedVertex* out, std::size_t count) {
-    const auto axis = [&](std::size_t i) { return Doubles::load_unaligned(p[i].data()); };
-    const HomogeneousPoint<Doubles> v = to_pixel(m, axis(0), axis(1), axis(2));
-    const Doubles code = outcode_number(v, viewport);
-    // What must be clipped is not snapped: it may be anywhere, and its w zero.
-    const auto snap_lanes = [&](Doubles coordinate) {
+/// Sixteen vertices, axis by axis.
+using VertexStrip = std::array<StripOf<float>, 3>;
+/// The same, in the picture.
+struct SnappedStrip {
+    StripOf<std::int32_t> x, y, outcode;
+};
+
+/// Those from `first` on; where there are fewer than sixteen, up to `end`, the last one again.
+void gather(const Shape& shape, std::size_t first, std::size_t end, VertexStrip& p) {
+    const std::size_t last = std::min(kStrip, end - first) - 1;
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
+        static_assert(sizeof(Vec3) == 3 * sizeof(float));
+        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+            const Ints place = min(load(kLanes, i), Ints(static_cast<std::int32_t>(last))) * Ints(3);
+            for (std::size_t axis = 0; axis < 3; ++axis) store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, place));
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < kStrip; ++i) {
+        const Vec3 vertex = vertex_position(shape, first + std::min(i, last));
+        for (std::size_t axis = 0; axis < 3; ++axis) p[axis][i] = vertex[axis];
+    }
+}
+
+void transform_strip(const VertexStrip& p, const Mat4d& m, const Viewport& viewport, SnappedStrip& out) {
+    for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
+        const HomogeneousPoint<Doubles> v =
+            to_pixel(m, load_doubles(p[0].at(i)), load_doubles(p[1].at(i)), load_doubles(p[2].at(i)));
+        const Doubles code = outcode_number(v, viewport);
+        // What must be clipped is not snapped: it may be anywhere, and its w zero.
         const auto usable = code < Doubles(kNear); // the bits from kNear on are those of kMustClip
-        return xsimd::select(usable, xsimd::nearbyint(coordinate / v.w * Doubles(kSubPixels)), Doubles(0.0));
-    };
-    alignas(64) std::array<double, Doubles::size> xs, ys, codes;
-    snap_lanes(v.xw).store_aligned(xs.data());
-    snap_lanes(v.yw).store_aligned(ys.data());
-    code.store_aligned(codes.data());
-    for (std::size_t i = 0; i < count; ++i) {
-        out[i] = {{static_cast<std::int32_t>(xs[i]), static_cast<std::int32_t>(ys[i])},
-                  static_cast<std::uint32_t>(codes[i])};
+        const auto snapped = [&](Doubles coordinate) {
+            return xsimd::select(usable, xsimd::nearbyint(coordinate / v.w * Doubles(kSubPixels)), Doubles(0.0));
+        };
+        store_ints(snapped(v.xw), out.x.at(i));
+        store_ints(snapped(v.yw), out.y.at(i));
+        store_ints(code, out.outcode.at(i));
     }
 }
 static_assert(kNear == 16 && kGuard == 32 && (kLeft | kRight | kTop | kBottom) < kNear);
 
 /// Returns the outcodes or-ed.
 unsigned transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& chunk, TransformedObject& out) {
-    constexpr std::size_t kLanes = Doubles::size;
-    const Mesh* mesh = std::get_if<Mesh>(&shape);
-    for (std::size_t first = chunk.first; first < chunk.last; first += kLanes) {
-        const std::size_t count = std::min(kLanes, chunk.last - first);
-        std::array<std::array<double, kLanes>, 3> p{};
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vec3 vertex = mesh != nullptr ? mesh->positions[first + i] : vertex_position(shape, first + i);
-            p[0][i] = static_cast<double>(vertex.x);
-            p[1][i] = static_cast<double>(vertex.y);
-            p[2][i] = static_cast<double>(vertex.z);
-        }
-        transform_batch(p, out.to_pixel, viewport, &out.vertices[first], count);
-    }
+    VertexStrip p;
+    SnappedStrip snapped;
     unsigned any = 0;
-    for (std::size_t i = chunk.first; i < chunk.last; ++i) any |= out.vertices[i].outcode;
+    for (std::size_t first = chunk.first; first < chunk.last; first += kStrip) {
+        gather(shape, first, chunk.last, p);
+        transform_strip(p, out.to_pixel, viewport, snapped);
+        for (std::size_t i = 0; i < std::min(kStrip, chunk.last - first); ++i) {
+            const auto outcode = static_cast<std::uint32_t>(snapped.outcode[i]);
+            out.vertices[first + i] = {{snapped.x[i], snapped.y[i]}, outcode};
+            any |= outcode;
+        }
+    }
     return any;
 }
 

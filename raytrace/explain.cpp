@@ -50,7 +50,7 @@ std::string explain(const Prepared& prepared, const View& view, const Settings& 
         throw Error(message("--pixel: found ", x, ',', y, ", expected a pixel of the picture of ", view.width, " x ",
                             view.height));
     const RenderPlan plan(prepared.data(), view, settings);
-    Sampler sampler(settings.sampler, settings.seed, settings.samples_per_pixel);
+    Sampler sampler = settings.make_sampler();
     sampler.start(x, y, index);
     const Ray ray = camera_ray(plan, CameraModel(view), x, y, sampler);
     const Hit hit = plan.prepared.accelerator.closest(ray);

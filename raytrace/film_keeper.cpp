@@ -61,6 +61,7 @@ std::vector<KeptFilm::Setting> film_settings(const Scene& scene, const View& vie
         {"filter", std::string(filter_name(settings.filter))},
         {"seed", std::to_string(settings.seed)},
         {"adaptive", settings.adaptive ? "yes" : "no"},
+        {"replicates", std::to_string(settings.replicates())},
     };
     if (depends_on_count(settings.sampler))
         all.push_back({"samples", std::to_string(settings.samples_per_pixel)});

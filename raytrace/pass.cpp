@@ -62,7 +62,7 @@ class CameraBatch {
 public:
     CameraBatch(const PassTarget& target, const CameraModel& camera)
         : target_(target), camera_(camera),
-          samplers_(kSize, Sampler(target.settings.sampler, target.settings.seed, target.settings.samples_per_pixel)) {
+          replicates_(target.settings.replicates()), samplers_(kSize, target.settings.make_sampler()) {
         samples_.reserve(kSize);
     }
 
@@ -86,7 +86,7 @@ public:
                   std::span(radiances_).first(size), counts_);
         for (std::size_t i = 0; i < size; ++i) {
             const auto [x, y, index] = samples_[i];
-            if (!target_.keeper.film().add(x, y, index & 1u, radiances_[i]))
+            if (!target_.keeper.film().add(x, y, index % replicates_, radiances_[i]))
                 first_invalid_ = first_of(first_invalid_, InvalidSample{index, y, x});
         }
         counts_.camera += static_cast<std::int64_t>(size);
@@ -97,7 +97,7 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    static constexpr std::size_t kSize = 64;
+    static constexpr std::size_t kSize = 512;
     struct Sample {
         int x, y;
         std::uint32_t index;
@@ -108,14 +108,19 @@ private:
         const auto set = [&](std::size_t i, const CameraNumbers& u) {
             points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, u);
         };
-        std::size_t i = 0;
-        if (uses_all(target_.plan))
+        if (uses_all(target_.plan)) {
+            std::size_t i = 0;
             for (; i + 1 < rays.size(); i += 2) {
                 const auto [first, second] = Sampler::get_blocks(samplers_[i], samplers_[i + 1]);
                 set(i, samplers_[i].camera_numbers(first));
                 set(i + 1, samplers_[i + 1].camera_numbers(second));
             }
-        for (; i < rays.size(); ++i) set(i, camera_numbers(target_.plan, samplers_[i]));
+            if (i < rays.size()) set(i, samplers_[i].camera_numbers());
+        } else {
+            std::array<Vec2, kSize> numbers;
+            Sampler::pixel_numbers(std::span(samplers_).first(rays.size()), numbers);
+            for (std::size_t i = 0; i < rays.size(); ++i) set(i, CameraNumbers{numbers[i]});
+        }
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 
@@ -123,6 +128,7 @@ private:
     const CameraModel& camera_;
     RayCounts counts_;
     std::optional<InvalidSample> first_invalid_;
+    std::uint32_t replicates_;
     std::vector<Sample> samples_; // so many of those below
     std::vector<Sampler> samplers_;
     std::array<CameraModel::Point, kSize> points_;

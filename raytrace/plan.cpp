@@ -1,6 +1,7 @@
 #include "raytrace/plan.h"
 
 #include "common/system/error.h"
+#include "common/vec/simd.h"
 
 #include <algorithm>
 
@@ -59,6 +60,8 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
                                                      : prepared.finite_lights;
     const bool any_use = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
+    // Nothing that paths keep besides, or that tests ask for; and some lanes.
+    if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays) matt = MattSurfaces(scene, *bsdfs);
 }
 
 std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {

@@ -51,6 +51,13 @@ struct Settings : RenderSettings {
     double film_interval = 60;      ///< seconds between two writings of it
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
     double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
+
+    /// Whether the film has to tell its error: then samples fall into two replicates (common/sampling/sampler.h). Else
+    /// all of a pixel's are spread together, which leaves less of it.
+    bool knows_error() const { return adaptive || error_limit > 0 || aovs.variance; }
+    std::uint32_t replicates() const { return knows_error() ? 2 : 1; }
+    /// Of the samples of such a render.
+    Sampler make_sampler() const { return {sampler, seed, samples_per_pixel, replicates()}; }
 };
 
 struct PreparedData; // raytrace/prepare.h

@@ -13,7 +13,7 @@ SplitTracer::SplitTracer(const Prepared& prepared, const View& view, const Setti
 }
 
 CameraSample SplitTracer::sample(int x, int y, std::uint32_t index) const {
-    Sampler sampler(settings_.sampler, settings_.seed, settings_.samples_per_pixel);
+    Sampler sampler = settings_.make_sampler();
     sampler.start(x, y, index);
     CameraSample result;
     result.ray = camera_ray(plan_, camera_, x, y, sampler);

@@ -8,7 +8,7 @@
 
 namespace duet {
 
-/// Each pixel keeps its samples' sums by replicate (see Sampler): the two are scrambled independently, so
+/// Each pixel keeps its samples' sums by replicate (see Sampler): where there are two, scrambled independently,
 /// half the difference of their means, squared, estimates the variance of the pixel's mean without bias, whatever the
 /// sampler. 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
 class Film {

@@ -118,9 +118,7 @@ Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
 } // namespace
 
 Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
-    if (sabotaged(Guard::kOffsetOrigin)) return point.p;
-    const float distance = dot(abs(point.ng), point.p_error);
-    Vec3 offset = point.ng * distance, start = point.p;
+    Vec3 start = point.p;
     bool below = dot(w, point.ng) < 0;
     if (point.lift != Vec3()) {
         const float seen = dot(point.lift, point.ng);
@@ -129,15 +127,8 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
             below = seen < 0;
         }
     }
-    if (below) offset = -offset;
-    Vec3 origin = start + offset;
-    for (std::size_t axis = 0; axis < 3; ++axis) { // the sum's own rounding, away from the surface
-        if (offset[axis] > 0)
-            origin[axis] = next_up(origin[axis]);
-        else if (offset[axis] < 0)
-            origin[axis] = next_down(origin[axis]);
-    }
-    return origin;
+    if (sabotaged(Guard::kOffsetOrigin)) return point.p;
+    return offset_origin(start, point.p_error, select(below, -point.ng, point.ng));
 }
 
 SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, const Mat4& to_world,

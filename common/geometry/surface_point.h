@@ -4,6 +4,7 @@
 #include "common/geometry/hit.h"
 #include "common/geometry/shape.h"
 #include "common/vec/ray.h"
+#include "common/vec/robust.h"
 
 namespace duet {
 
@@ -29,6 +30,12 @@ struct SurfacePoint {
 /// instead (p + lift), so that the facets near the terminator do not shade each other in steps (Hanika 2021, «Hacking the
 /// Shadow Terminator»).
 Vec3 offset_origin(const SurfacePoint& point, Vec3 w);
+
+/// Of a point with that error bound, to the side that the unit normal n points to. T is float or a batch of floats.
+template <typename T> Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
+    const Vec3T<T> offset = n * dot(abs(n), p_error);
+    return rounded_away(p + offset, offset);
+}
 
 /// What of a surface point is asked for: only textures look at uv, its derivatives and p_object, which cost more than
 /// all the rest.

@@ -13,6 +13,9 @@ struct SolidAngleSample {
     double pdf;      ///< by solid angle
 };
 
+/// Right angles but for rounding. Other parallelograms are sampled as two triangles where they are near.
+bool is_rectangle(const Quad& quad);
+
 // For each shape: a direction from p to it, and the density with which sample_solid_angle returns the direction to its
 // point q. Empty, and 0, where p lies in the plane of a flat shape. u in [0, 1)².
 

@@ -40,13 +40,15 @@ template <typename BsdfType> BsdfSample sample_of(const BsdfType& bsdf, Vec3 wo,
 /// surfaces near their silhouette face away though they are seen: there wo is lifted just above the shading horizon, or
 /// the material would show its other side, as a dark rim. `side` is the sign of the geometric normal's cosine with the
 /// viewer.
-inline Vec3 lifted_above_horizon(Vec3 wo, float side) {
+template <typename T> Vec3T<T> lifted_above_horizon(Vec3T<T> wo, T side) {
     constexpr float kLowest = 1e-4f;
-    if (wo.z * side >= kLowest) return wo;
-    const float flat = std::sqrt(wo.x * wo.x + wo.y * wo.y);
-    if (flat == 0) return {0, 0, side};
-    const float scale = std::sqrt(1 - kLowest * kLowest) / flat;
-    return {wo.x * scale, wo.y * scale, kLowest * side};
+    const auto seen = wo.z * side >= T(kLowest);
+    if constexpr (Arithmetic<T>)
+        if (seen) return wo; // nearly always
+    const T zero(0.0f), flat = sqrt(wo.x * wo.x + wo.y * wo.y), scale = T(std::sqrt(1 - kLowest * kLowest)) / flat;
+    const Vec3T<T> along = select(flat == zero, Vec3T<T>(zero, zero, side),
+                                  Vec3T<T>(wo.x * scale, wo.y * scale, T(kLowest) * side));
+    return select(seen, wo, along);
 }
 
 } // namespace duet

@@ -48,10 +48,14 @@ float sobol_1d(std::uint32_t reversed_index, std::uint32_t seed) {
     return unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u))));
 }
 
+template <typename U> Vec2T<U> sobol_2d_digits(U reversed_index, U seed) {
+    const U point = sobol_point(reversed_index, seed);
+    return {reverse_bits(owen_scramble(point, scramble_seed(seed, U(0u)))),
+            reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, U(1u))))};
+}
 Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
-    const std::uint32_t point = sobol_point(reversed_index, seed);
-    return {unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u)))),
-            unit_float(reverse_bits(owen_scramble(sobol_second(point), scramble_seed(seed, 1u))))};
+    const Vec2T<std::uint32_t> digits = sobol_2d_digits(reversed_index, seed);
+    return {unit_float(digits.x), unit_float(digits.y)};
 }
 
 /// Pairs of dimensions from `first` on, a number a lane: of one sample of a pixel, or of two one after the other.
@@ -149,13 +153,14 @@ std::string_view sampler_name(SamplerKind kind) {
     return {};
 }
 
-Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel)
+Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)
     : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
-      samples_per_pixel_(static_cast<std::uint32_t>(std::max(samples_per_pixel, 1))) {}
+      samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) / replicates),
+      replicates_(replicates) {}
 
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
-    replicate_ = index & 1u;
-    index_ = index >> 1;
+    replicate_ = index % replicates_;
+    index_ = index / replicates_;
     dimension_ = 0;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
@@ -171,8 +176,7 @@ void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
 // §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
 // sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    const std::uint32_t samples = (samples_per_pixel_ + 1) / 2;
-    const int digits = std::bit_width(samples - 1);       // of the index within a pixel
+    const int digits = std::bit_width(samples_per_replicate_ - 1); // of the index within a pixel
     const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
     const std::uint32_t mask = (1u << side) - 1;
     const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;
@@ -187,7 +191,7 @@ float Sampler::get_1d() {
     const std::uint32_t dimension = dimension_++;
     if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
-    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, (samples_per_pixel_ + 1) / 2, key);
+    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, samples_per_replicate_, key);
     return unit_float(high_bits(stream_number(key, index_)));
 }
 
@@ -196,7 +200,7 @@ Vec2 Sampler::get_2d() {
     dimension_ += 2;
     if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
-    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, (samples_per_pixel_ + 1) / 2, key);
+    if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, samples_per_replicate_, key);
     const std::uint64_t bits = stream_number(key, index_);
     return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
 }
@@ -227,9 +231,36 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
     return numbers;
 }
 
+void Sampler::get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers) {
+    using Batch = WholeBatch<kMaxSimdLanes>;
+    std::size_t done = 0;
+    for (; samplers[0].is_sobol() && samplers.size() - done >= kMaxSimdLanes; done += kMaxSimdLanes) {
+        alignas(Batch) std::array<std::uint32_t, kMaxSimdLanes> index, low, high, x, y;
+        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) {
+            Sampler& s = samplers[done + i];
+            index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
+            s.dimension_ += 2;
+        }
+        const auto load = [](const auto& lanes) { return Batch::load_aligned(lanes.data()); };
+        const Batch seed = dimension_seed(load(low), load(high), Batch(samplers[done].dimension_ - 2));
+        const Vec2T<Batch> digits = sobol_2d_digits(load(index), seed);
+        digits.x.store_aligned(x.data());
+        digits.y.store_aligned(y.data());
+        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) numbers[done + i] = {unit_float(x[i]), unit_float(y[i])};
+    }
+    for (; done < samplers.size(); ++done) numbers[done] = samplers[done].get_2d();
+}
+
 Vec2 Sampler::pixel_numbers() {
     dimension_ = 0;
     return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
+}
+
+void Sampler::pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers) {
+    if (samplers.empty()) return;
+    for (Sampler& s : samplers) s.dimension_ = 0;
+    if (samplers[0].kind_ != SamplerKind::kCenter) return get_2d(samplers, numbers);
+    std::fill(numbers.begin(), numbers.end(), Vec2(0.5f, 0.5f));
 }
 
 CameraNumbers Sampler::camera_numbers() {

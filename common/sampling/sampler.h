@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -30,13 +31,14 @@ struct CameraNumbers {
     float time = 0;
 };
 
-/// The numbers of one sample of one pixel, drawn in order of dimension. Samples of one pixel fall into two
-/// replicates, scrambled independently of each other: sample i is point i/2 of replicate i mod 2. Their spread is what
-/// the film estimates its variance from.
+/// The numbers of one sample of one pixel, drawn in order of dimension. All samples of a pixel are points of one
+/// sequence, well spread together; or they fall into two replicates, scrambled independently of each other: sample i is
+/// point i/2 of replicate i mod 2. Their difference is what the film estimates its variance from, and costs as much as
+/// spreading all together gains: up to half of the squared error.
 class Sampler {
 public:
-    /// samples_per_pixel: how many samples the pixel will get (stratified and blue-noise need it).
-    Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel);
+    /// samples_per_pixel: how many samples the pixel will get (stratified and blue-noise need it). replicates: 1 or 2.
+    Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates = 1);
 
     /// To dimension 0 of sample `index` of a pixel.
     void start(int pixel_x, int pixel_y, std::uint32_t index);
@@ -54,10 +56,13 @@ public:
     /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
     /// machine has room for both at once.
     static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
+    /// get_2d of each of several of one kind that stand at the same dimension, some at a time.
+    static void get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers);
     /// The first block, or only its first pair, for the camera; of kCenter (½, ½), (½, ½) and 0.
     CameraNumbers camera_numbers();
     CameraNumbers camera_numbers(const Block& first) const; ///< that block given
     Vec2 pixel_numbers();
+    static void pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers);
 
 private:
     bool is_sobol() const {
@@ -67,7 +72,7 @@ private:
 
     SamplerKind kind_;
     std::uint64_t seed_;
-    std::uint32_t samples_per_pixel_;
+    std::uint32_t samples_per_replicate_, replicates_;
     std::uint64_t pixel_hash_ = 0;
     std::uint32_t index_ = 0, reversed_index_ = 0, replicate_ = 0, dimension_ = 0;
 };

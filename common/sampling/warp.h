@@ -49,15 +49,15 @@ template <typename T> Vec2T<T> concentric_disk(Vec2T<T> u) {
 
 /// Unit directions about +z with density cos θ / π (Malley's method). z > 0 always: the rim of the disk is moved
 /// inwards by half the spacing of 24-bit numbers.
-inline Vec3 cosine_hemisphere(Vec2 u) {
-    const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-    const float r = max(std::abs(a), std::abs(b));
-    const Vec2 disk = concentric_disk(u);
+template <typename T> Vec3T<T> cosine_hemisphere(Vec2T<T> u) {
+    const T one(1.0f), a = T(2.0f) * u.x - one, b = T(2.0f) * u.y - one;
+    const T r = max(abs(a), abs(b));
+    const Vec2T<T> disk = concentric_disk(u);
     // 1 − r² as a product: the difference 1 − r is exact for 24-bit numbers.
-    const float gap = max(1 - r, 0x1p-24f);
-    return {disk.x, disk.y, std::sqrt(gap * (1 + r))};
+    const T gap = max(one - r, T(0x1p-24f));
+    return {disk.x, disk.y, sqrt(gap * (one + r))};
 }
-inline float cosine_hemisphere_pdf(float cos_theta) { return max(cos_theta, 0.0f) * kInvPi; }
+template <typename T> T cosine_hemisphere_pdf(T cos_theta) { return max(cos_theta, T(0.0f)) * T(kInvPi); }
 
 /// Unit directions of the whole sphere, density 1/4π.
 inline Vec3 uniform_sphere(Vec2 u) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/system/sabotage.h"
+#include "common/vec/vec.h"
 
 #include <bit>
 #include <cmath>
@@ -42,5 +43,11 @@ inline float next_up(float x) {
 }
 /// The next float below x; −infinity stays. NaN stays NaN.
 inline float next_down(float x) { return -next_up(-x); }
+
+/// The next float of each component on the side that `by` points to: what covers the rounding of a sum with `by`.
+inline Vec3 rounded_away(Vec3 sum, Vec3 by) {
+    const auto one = [](float x, float d) { return d > 0 ? next_up(x) : d < 0 ? next_down(x) : x; };
+    return {one(sum.x, by.x), one(sum.y, by.y), one(sum.z, by.z)};
+}
 
 } // namespace duet

@@ -7,8 +7,10 @@ namespace {
 
 /// (n + 1)/2, see direction_color.
 struct NormalShader : NormalVaryings {
+    bool maps = true;
+
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        const Vec3T<T> n = f.normal(f.at.n);
+        const Vec3T<T> n = maps ? f.normal(f.at.n) : f.smooth_normal(f.at.n);
         const auto channel = [](T component) { return max((component + T(1)) * T(0.5f), T(0)); };
         return {channel(n.x), channel(n.y), channel(n.z)};
     }
@@ -26,6 +28,11 @@ struct DepthShader : NoVaryings {
 } // namespace
 
 std::unique_ptr<Program> normal_program() { return std::make_unique<ProgramOf<NormalShader>>(NormalShader{}); }
+std::unique_ptr<Program> smooth_normal_program() {
+    NormalShader shader;
+    shader.maps = false;
+    return std::make_unique<ProgramOf<NormalShader>>(shader);
+}
 std::unique_ptr<Program> albedo_program() { return std::make_unique<ProgramOf<AlbedoShader>>(AlbedoShader{}); }
 std::unique_ptr<Program> depth_program() { return std::make_unique<ProgramOf<DepthShader>>(DepthShader{}); }
 

@@ -359,6 +359,60 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
         for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = beyond_holes(rays[i], hits[i]);
 }
 
+namespace {
+
+// Rays that are sheared along the same axes: the main one, and which way they run along it. Of others 6.
+std::size_t shear_class(const Ray& ray) {
+    if (!traceable(ray)) return 6;
+    const Vec3 size = abs(ray.direction); // as longest_axis, without a branch
+    const bool x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
+    const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
+    const std::size_t axis = x ? 0 : 2 - std::size_t{y};
+    return axis + (d[axis] < 0 ? 3 : 0);
+}
+
+// The indices of rays, class after class; `ends`: of each class there.
+std::vector<std::uint32_t> by_class(std::span<const Ray> rays, std::array<std::size_t, 7>& ends) {
+    std::vector<std::uint8_t> classes(rays.size());
+    std::array<std::size_t, 7> next{};
+    for (std::size_t i = 0; i < rays.size(); ++i) ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[i]))];
+    std::size_t begin = 0;
+    for (std::size_t& count : next) begin += std::exchange(count, begin);
+    std::vector<std::uint32_t> order(rays.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i) order[next[classes[i]]++] = i;
+    ends = next;
+    return order;
+}
+
+} // namespace
+
+// Those sheared alike go as packets, however they run otherwise: all primitives are tested.
+void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const {
+    constexpr std::size_t kSize = RayPacket::kSize, kFewest = kSize / 4;
+    if (!few_primitives()) {
+        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest(rays[i]);
+        return;
+    }
+    std::array<std::size_t, 7> ends;
+    const std::vector<std::uint32_t> order = by_class(rays, ends);
+    std::size_t done = 0;
+    for (std::size_t c = 0; c < 7; ++c) {
+        for (; c < 6 && ends[c] - done >= kFewest; done += std::min(kSize, ends[c] - done)) {
+            const auto which = std::span(order).subspan(done, std::min(kSize, ends[c] - done));
+            std::array<Ray, kSize> some;
+            for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[which[k < which.size() ? k : 0]];
+            const RayPacket packet{std::span<const Ray, kSize>(some)};
+            PacketHits best(xsimd::min(packet.t_max(), RayPacket::Batch(std::numeric_limits<float>::max())));
+            const PacketInstances none{*this, some};
+            PacketTraversal(world_, packet, some, (1u << which.size()) - 1, kNoObject, none, best).run_list();
+            std::array<Hit, kSize> found;
+            best.store(found);
+            for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
+        }
+        for (; done < ends[c]; ++done) hits[order[done]] = closest(rays[order[done]]);
+    }
+}
+
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
     clamped.t = min(end.t, std::numeric_limits<float>::max()); // as above

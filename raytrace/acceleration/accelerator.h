@@ -24,6 +24,10 @@ public:
     /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
     /// neighbouring pixels do. As many hits as rays.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
+    /// The same of rays that run anywhere: faster where there are few primitives, and many rays.
+    void closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const;
+    /// Whether they are: then the nearest hit of many rays costs less than a look for any hit of each.
+    bool few_primitives() const { return !world_.use_tree() && !holes_; }
     /// Whether anything is hit before `end`, other than end's own primitive: where a light is the end of a shadow
     /// ray, it does not shade itself. An end without object is a mere distance.
     bool occluded(const Ray& ray, const Hit& end) const;

@@ -59,8 +59,6 @@ public:
     Batch t() const { return t_; }
     Batch u() const { return u_; }
     Batch v() const { return v_; }
-
-protected:
     using Lanes = typename Batch::batch_bool_type;
     /// The lanes whose quads are hit in the first of their halves.
     Lanes first_half() const { return first_half_; }

@@ -15,26 +15,13 @@ public:
     using Batch = FloatBatch<kSize>;
     using Values = std::array<float, kSize>;
 
-    RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) {
-        const auto columns = [&](std::size_t first) {
-            return load_columns<kSize>([&](std::size_t i) { return reinterpret_cast<const float*>(&rays[i]) + first; });
-        };
-        const auto [ox, oy, oz, dx] = columns(0);
-        const auto [dy, dz, t_min, t_max] = columns(4);
-        const Vec3T<Batch> origin(ox, oy, oz), direction(dx, dy, dz);
-        t_min_ = t_min;
-        t_max_ = t_max;
-        coherent_ = set_axes(rays, origin, direction);
-        if (!coherent_) return;
-        shear_ = sheared(origin, direction);
-        const Vec3 first = rays[0].origin;
-        const auto same = (ox == Batch(first.x)) & (oy == Batch(first.y)) & (oz == Batch(first.z));
-        if (lane_bits(same) == kAllRays) origin_ = first;
-        set_slabs(origin, direction, bounds);
-    }
+    /// Of rays for a tree over those bounds.
+    RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) : RayPacket(rays, &bounds) {}
+    /// For a list of primitives: nothing that only boxes are asked for.
+    explicit RayPacket(std::span<const Ray, kSize> rays) : RayPacket(rays, nullptr) {}
 
-    /// Whether all rays run into the same octant along the same main axis, and can be traced. Nothing else may be asked
-    /// of others.
+    /// Whether all rays run into the same octant (for a list: the same way) along the same main axis, and can be traced.
+    /// Nothing else may be asked of others.
     bool coherent() const { return coherent_; }
     Batch t_min() const { return t_min_; }
     Batch t_max() const { return t_max_; }
@@ -86,6 +73,24 @@ public:
     }
 
 private:
+    RayPacket(std::span<const Ray, kSize> rays, const Box3* bounds) {
+        const auto columns = [&](std::size_t first) {
+            return load_columns<kSize>([&](std::size_t i) { return reinterpret_cast<const float*>(&rays[i]) + first; });
+        };
+        const auto [ox, oy, oz, dx] = columns(0);
+        const auto [dy, dz, t_min, t_max] = columns(4);
+        const Vec3T<Batch> origin(ox, oy, oz), direction(dx, dy, dz);
+        t_min_ = t_min;
+        t_max_ = t_max;
+        coherent_ = set_axes(rays, origin, direction, bounds != nullptr);
+        if (!coherent_) return;
+        shear_ = sheared(origin, direction);
+        const Vec3 first = rays[0].origin;
+        const auto same = (ox == Batch(first.x)) & (oy == Batch(first.y)) & (oz == Batch(first.z));
+        if (lane_bits(same) == kAllRays) origin_ = first;
+        if (bounds != nullptr) set_slabs(origin, direction, *bounds);
+    }
+
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
     // A range of reciprocals of directions, and the end of the range of origins that makes the bound hold.
@@ -93,21 +98,23 @@ private:
         float low, high, origin;
     };
 
-    bool set_axes(std::span<const Ray, kSize> rays, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
+    bool set_axes(std::span<const Ray, kSize> rays, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction,
+                  bool one_octant) {
+        const std::size_t z_axis = longest_axis(abs(rays[0].direction));
         const Batch largest(kLargestNumber), zero(0.0f);
         constexpr unsigned kAll = kAllRays;
         if (lane_bits((t_min_ == t_min_) & (t_max_ == t_max_)) != kAll) return false; // some are NaN
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto in_range = (xsimd::abs(origin[axis]) <= largest) & (xsimd::abs(direction[axis]) <= largest);
             const unsigned negative = lane_bits(direction[axis] < zero);
-            if (lane_bits(in_range) != kAll || (negative != 0 && negative != kAll)) return false;
+            const bool mixed = negative != 0 && negative != kAll;
+            if (lane_bits(in_range) != kAll || (mixed && (one_octant || axis == z_axis))) return false;
             backwards_[axis] = negative != 0;
             near_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * backwards_[axis]);
             far_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * !backwards_[axis]);
         }
         const Vec3T<Batch> size(xsimd::abs(direction.x), xsimd::abs(direction.y), xsimd::abs(direction.z));
         const unsigned x = lane_bits((size.x >= size.y) & (size.x >= size.z)), y = lane_bits(size.y >= size.z) & ~x;
-        const std::size_t z_axis = longest_axis(abs(rays[0].direction));
         if ((z_axis == 0 ? x : z_axis == 1 ? y : kAll & ~x & ~y) != kAll) return false;
         shear_.kz = z_axis;
         return lane_bits(size[z_axis] >= Batch(1 / kLargestNumber)) == kAll;
@@ -278,9 +285,13 @@ public:
 
     void run() {
         if (bvh_.nodes.empty())
-            for (const BvhRef leaf : bvh_.list) test_leaf(leaf, active_);
+            run_list();
         else
             traverse();
+    }
+    /// Of a list, for a packet that was made for one.
+    void run_list() {
+        for (const BvhRef leaf : bvh_.list) test_leaf(leaf, active_);
     }
 
 private:
@@ -424,7 +435,9 @@ private:
             const unsigned certain = test.certain() & candidates;
             if ((certain & nearer) != 0) take(certain & nearer, test, block.object[lane], block.primitive[lane]);
             if ((certain & ties) != 0) consider_each(certain & ties, block, lane, test);
-            for (unsigned rays = candidates & ~certain; rays != 0; rays &= rays - 1)
+            const unsigned touched = test.touched();
+            if ((touched & candidates) != 0) consider_touched(touched & candidates, block, lane, test);
+            for (unsigned rays = candidates & ~certain & ~touched; rays != 0; rays &= rays - 1)
                 consider_exactly(block, lane, static_cast<std::size_t>(std::countr_zero(rays)));
         }
     }
@@ -444,6 +457,22 @@ private:
         for (; rays != 0; rays &= rays - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
             consider(block, lane, ray, {t[ray], u[ray], v[ray]});
+        }
+    }
+    // The rays that may be leaving a polygon: what is left to find is how far it is.
+    template <std::size_t kCorners>
+    [[gnu::noinline]] void consider_touched(unsigned rays, const PolygonBlock<kCorners>& block, std::size_t lane,
+                                            const CandidateTest<Batch>& test) {
+        const Lanes u(test.u()), v(test.v());
+        const unsigned first_half = kCorners == 3 ? ~0u : lane_bits(test.first_half());
+        const auto corners = block.corners(lane);
+        for (; rays != 0; rays &= rays - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
+            const std::size_t second = (first_half >> ray & 1u) != 0 ? 1 : 2;
+            const float t = static_cast<float>(plane_distance(Vec3d(rays_[ray].origin), Vec3d(rays_[ray].direction),
+                                                              Vec3d(corners[0]), Vec3d(corners[second]),
+                                                              Vec3d(corners[second + 1])));
+            if (t > rays_[ray].t_min && t <= best_.t[ray]) consider(block, lane, ray, {t, u[ray], v[ray]});
         }
     }
     template <typename Block> void consider_exactly(const Block& block, std::size_t lane, std::size_t ray) {

@@ -9,20 +9,24 @@ namespace duet::raytrace {
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                                       float choice, Vec2 u) {
     const std::optional<LightChoice> chosen = lights.sample(receiver, choice);
-    if (!chosen) return std::nullopt;
-    if (chosen->index == lights.environment_index()) {
+    return chosen ? sample_arrival(scene, lights, receiver, *chosen, u) : std::nullopt;
+}
+
+std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
+                                      const LightChoice& chosen, Vec2 u) {
+    if (chosen.index == lights.environment_index()) {
         const std::optional<EnvironmentSample> s = sample(scene.environment, u);
         if (!s) return std::nullopt;
-        return Arrival{s->wi, s->radiance, s->pdf * chosen->probability, false, kInfinity, -1};
+        return Arrival{s->wi, s->radiance, s->pdf * chosen.probability, false, kInfinity, -1};
     }
-    const std::optional<LightSample> s = sample_light(scene.lights[chosen->index], receiver.p, u);
+    const std::optional<LightSample> s = sample_light(scene.lights[chosen.index], receiver.p, u);
     if (!s) return std::nullopt;
     Rgb radiance = s->radiance;
     if (scene.needs.lamp_textures)
-        if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen->index]))
+        if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen.index]))
             radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
-    return Arrival{s->wi,    radiance,    s->pdf * chosen->probability,
-                   s->delta, s->distance, static_cast<std::int64_t>(chosen->index)};
+    return Arrival{s->wi,    radiance,    s->pdf * chosen.probability,
+                   s->delta, s->distance, static_cast<std::int64_t>(chosen.index)};
 }
 
 namespace {
@@ -41,24 +45,29 @@ float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
 
 } // namespace
 
-bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
-    const Ray ray = spawn_ray(vertex, arrival.wi);
-    Hit end;
-    // A lamp at a point may lie in a surface, which then does not hide it: the way ends a rounding error before it.
-    end.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - vertex.point.p)
-                          : arrival.distance;
-    if (arrival.light >= 0) {
-        if (const auto* light =
-                std::get_if<SurfaceLight>(&plan.scene.lights[static_cast<std::size_t>(arrival.light)])) {
-            end.object = light->object;
-            end.primitive = light->primitive;
-            // Mostly nothing lies between, nor just behind the light: then its exact distance does not matter.
-            end.t = arrival.distance * 1.001f;
-            if (!plan.prepared.accelerator.occluded(ray, end)) return true;
-            end.t = distance_along(ray, *light, arrival.distance);
-        }
+ShadowEnd::ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& arrival) : sampled_(arrival.distance) {
+    if (arrival.light >= 0)
+        light_ = std::get_if<SurfaceLight>(&scene.lights[static_cast<std::size_t>(arrival.light)]);
+    if (light_ == nullptr) {
+        // A lamp at a point may lie in a surface, which then does not hide it: the way ends a rounding error before it.
+        end_.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - p) : arrival.distance;
+        return;
     }
-    return !plan.prepared.accelerator.occluded(ray, end);
+    end_.object = light_->object;
+    end_.primitive = light_->primitive;
+    // Mostly nothing lies between, nor just behind the light: then its exact distance does not matter.
+    end_.t = arrival.distance * 1.001f;
+}
+
+Hit ShadowEnd::exact(const Ray& ray) const {
+    Hit end = end_;
+    if (light_ != nullptr) end.t = distance_along(ray, *light_, sampled_);
+    return end;
+}
+
+bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end) {
+    if (!plan.prepared.accelerator.occluded(ray, end.about())) return true;
+    return end.is_surface() && !plan.prepared.accelerator.occluded(ray, end.exact(ray));
 }
 
 float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,

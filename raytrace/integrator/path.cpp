@@ -4,6 +4,7 @@
 #include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/matt_vertices.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_log.h"
 
@@ -14,13 +15,6 @@
 namespace duet::raytrace {
 
 namespace {
-
-// How the ray left the vertex before: what its chance to find a light is weighed against.
-struct Departure {
-    LightReceiver receiver;
-    float pdf = 0;
-    bool certain = true; // no light sample competes: a camera ray, or a delta lobe
-};
 
 // What becomes of the light that a path finds: in a picture it is added up, whatever way it came.
 class Sum {
@@ -121,16 +115,20 @@ public:
     }
     auto result() const { return sink_.result(); }
 
+    /// What a vertex that others scatter it at changes.
+    PathState& state() { return state_; }
+    void add(Rgb light) { sink_.add(light, LightSource::kLight, 0); }
+
 private:
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
         float weight = 1;
-        if (!departure_.certain)
-            weight = mis_weight(departure_.pdf,
-                                arrival_pdf(*plan_.environment, *plan_.lights, departure_.receiver, w));
+        if (!state_.departure.certain)
+            weight = mis_weight(state_.departure.pdf,
+                                arrival_pdf(*plan_.environment, *plan_.lights, state_.departure.receiver, w));
         const Rgb emission = radiance(*plan_.environment, w);
-        if constexpr (Sink::kTold) sink_.log().found(emission, weight, throughput_ * emission * weight);
-        sink_.add(throughput_ * emission * weight, LightSource::kEnvironment, bounces);
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
+        sink_.add(state_.throughput * emission * weight, LightSource::kEnvironment, bounces);
     }
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
@@ -138,11 +136,11 @@ private:
         const Rgb emission = emitted(vertex.material, plan_.scene.textures, vertex.point, -direction);
         if (is_black(emission)) return;
         float weight = 1;
-        if (!departure_.certain)
-            weight = mis_weight(departure_.pdf,
-                                arrival_pdf(plan_.scene, *plan_.lights, departure_.receiver, vertex.point));
-        if constexpr (Sink::kTold) sink_.log().found(emission, weight, throughput_ * emission * weight);
-        sink_.add(throughput_ * emission * weight, source_of(vertex.point), bounces);
+        if (!state_.departure.certain)
+            weight = mis_weight(state_.departure.pdf,
+                                arrival_pdf(plan_.scene, *plan_.lights, state_.departure.receiver, vertex.point));
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
+        sink_.add(state_.throughput * emission * weight, source_of(vertex.point), bounces);
     }
 
     void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
@@ -156,13 +154,13 @@ private:
         ++counts_.shadow;
         if (!reaches(plan_, vertex, *arrival)) {
             if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, false, 0, Rgb());
-            sink_.add_shadowed(throughput_ * scattered / arrival->pdf, source, bounces + 1);
+            sink_.add_shadowed(state_.throughput * scattered / arrival->pdf, source, bounces + 1);
             return;
         }
         // The environment and all still emitters are found by BSDF samples, too.
         const float bsdf_pdf = arrival->delta ? 0 : pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi));
         const float weight = mis_weight(arrival->pdf, bsdf_pdf);
-        const Rgb light = throughput_ * scattered * (weight / arrival->pdf);
+        const Rgb light = state_.throughput * scattered * (weight / arrival->pdf);
         if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, true, weight, light);
         sink_.add(light, source, bounces + 1);
     }
@@ -180,16 +178,16 @@ private:
         if (!s || is_black(s->weight)) return tell_end("the surface absorbs it");
         const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
         if (!vertex.consistent(wi, s->wi)) return tell_end("its direction lies between the horizons of both normals");
-        throughput_ *= s->weight;
-        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, throughput_);
+        state_.throughput *= s->weight;
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_.throughput);
         if (s->transmitted) note_refraction(vertex);
         footprint_.scatter(s->pdf, s->specular);
         // Each number is written where it is read from next: a whole ray copied right after it was put together would
         // wait for its parts.
-        departure_.certain = s->specular || plan_.lights == nullptr;
-        if (!departure_.certain) {
-            departure_.receiver = vertex.receiver();
-            departure_.pdf = s->pdf;
+        state_.departure.certain = s->specular || plan_.lights == nullptr;
+        if (!state_.departure.certain) {
+            state_.departure.receiver = vertex.receiver();
+            state_.departure.pdf = s->pdf;
         }
         ray.origin = offset_origin(vertex.point, wi);
         ray.direction = wi;
@@ -200,7 +198,7 @@ private:
     // Entering glass scales the throughput by 1/η², leaving it by η²: no reason to end or to favour a path.
     void note_refraction(const Vertex& vertex) {
         const float eta = refraction_index(vertex.bsdf);
-        refraction_ *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
+        state_.refraction *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
         if constexpr (kInsides)
             if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
     }
@@ -208,9 +206,9 @@ private:
     // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
     Hit arrive(Ray& ray, const Hit& found) {
         int passed = 0;
-        const Hit hit = insides_.arrive(ray, found, throughput_, passed);
+        const Hit hit = insides_.arrive(ray, found, state_.throughput, passed);
         counts_.indirect += passed;
-        if (passed > 0) departure_.certain = true; // shadow rays end at any boundary
+        if (passed > 0) state_.departure.certain = true; // shadow rays end at any boundary
         return hit;
     }
 
@@ -228,16 +226,12 @@ private:
         return beyond.transmittance(arrival.distance);
     }
 
-    // Russian roulette: ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier,
-    // and well placed samples suffer most: a path of half its throughput is still worth its rays (README.md has what
-    // other thresholds cost).
     bool survives(float u) {
-        constexpr float kDim = 0.25f;
-        const float probability = max_component(throughput_) / (refraction_ * kDim);
+        const float probability = max_component(state_.throughput) / (state_.refraction * kDim);
         if (probability >= 1) return true;
         if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
         if (!(u < probability)) return false;
-        throughput_ *= 1 / probability;
+        state_.throughput *= 1 / probability;
         return true;
     }
 
@@ -252,9 +246,7 @@ private:
     const RenderPlan& plan_;
     RayCounts& counts_;
     Sink sink_;
-    Rgb throughput_{1.0f};
-    float refraction_ = 1; // what the path's refractions have scaled its throughput by
-    Departure departure_;
+    PathState state_;
     std::conditional_t<kInsides, Insides, NoInsides> insides_;
     PathFootprint footprint_;
 };
@@ -279,25 +271,85 @@ void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const 
     if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
 }
 
-template <bool kInsides>
-void trace_all(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
-               std::span<Rgb> radiances, RayCounts& counts) {
-    std::vector<Path<Sum, kInsides>> paths;
-    std::vector<std::uint32_t> going;
-    std::vector<VertexNumbers> numbers(rays.size());
-    paths.reserve(rays.size());
-    going.reserve(rays.size());
-    for (std::uint32_t i = 0; i < rays.size(); ++i) {
-        paths.emplace_back(plan, counts);
-        going.push_back(i);
+// Paths side by side. Those that stand at matt surfaces advance several at once.
+template <bool kInsides> class Paths {
+public:
+    Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
+        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()), shadows_(plan) {
+        paths_.reserve(rays.size());
+        for (std::uint32_t i = 0; i < rays.size(); ++i) {
+            paths_.emplace_back(plan, counts);
+            going_.push_back(i);
+        }
     }
-    for (int depth = 0; !going.empty(); ++depth) {
-        if (depth < plan.max_depth) draw_numbers(samplers, hits, going, depth, numbers);
-        std::erase_if(going, [&](std::uint32_t i) { return !paths[i].advance(rays[i], hits[i], depth, numbers[i]); });
-        for (const std::uint32_t i : going) hits[i] = plan.prepared.accelerator.closest(rays[i]);
+
+    void trace(std::span<Rgb> radiances) {
+        for (int depth = 0; !going_.empty(); ++depth) {
+            if (depth < plan_.max_depth) draw_numbers(samplers_, hits_, going_, depth, numbers_);
+            advance(depth);
+            shadows_.send([&](std::uint32_t i, Rgb light) { paths_[i].add(light); });
+            find_hits();
+        }
+        for (std::size_t i = 0; i < paths_.size(); ++i) radiances[i] = paths_[i].result();
     }
-    for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].result();
-}
+
+private:
+    using Kind = MattSurfaces::Kind;
+    static constexpr std::size_t kFewest = 3; // to go side by side
+
+    void find_hits() {
+        const Accelerator& accelerator = plan_.prepared.accelerator;
+        if (!accelerator.few_primitives()) {
+            for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
+            return;
+        }
+        some_rays_.clear();
+        for (const std::uint32_t i : going_) some_rays_.push_back(rays_[i]);
+        some_hits_.resize(going_.size());
+        accelerator.closest_of_scattered(some_rays_, some_hits_);
+        for (std::size_t k = 0; k < going_.size(); ++k) hits_[going_[k]] = some_hits_[k];
+    }
+
+    void advance(int depth) {
+        std::array<std::vector<std::uint32_t>, 2> matt;
+        std::erase_if(going_, [&](std::uint32_t i) {
+            const Kind kind = hits_[i].valid() && depth < plan_.max_depth ? plan_.matt.kind(hits_[i]) : Kind::kNone;
+            if (kind == Kind::kNone) return !paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i]);
+            matt[kind == Kind::kRound].push_back(i);
+            return true;
+        });
+        scatter(Kind::kFlat, matt[0], depth);
+        scatter(Kind::kRound, matt[1], depth);
+    }
+
+    void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
+        for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kMattLanes))) {
+            std::array<MattPath, kMattLanes> some;
+            const std::size_t size = std::min(which.size(), kMattLanes);
+            for (std::size_t k = 0; k < size; ++k) {
+                const std::uint32_t i = which[k];
+                some[k] = {i, &rays_[i], &hits_[i], &numbers_[i], &paths_[i].state()};
+            }
+            scatter_matt(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+            for (std::size_t k = 0; k < size; ++k)
+                if (some[k].goes_on) going_.push_back(which[k]);
+        }
+        for (const std::uint32_t i : which)
+            if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
+    }
+
+    const RenderPlan& plan_;
+    const std::span<Ray> rays_;
+    const std::span<Hit> hits_;
+    const std::span<Sampler> samplers_;
+    RayCounts& counts_;
+    std::vector<Path<Sum, kInsides>> paths_;
+    std::vector<std::uint32_t> going_;
+    std::vector<VertexNumbers> numbers_;
+    ShadowRays shadows_;
+    std::vector<Ray> some_rays_;
+    std::vector<Hit> some_hits_;
+};
 
 template <typename Sink>
 auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
@@ -309,8 +361,8 @@ auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sam
 
 void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
                     std::span<Rgb> radiances, RayCounts& counts) {
-    if (plan.insides) return trace_all<true>(plan, rays, hits, samplers, radiances, counts);
-    trace_all<false>(plan, rays, hits, samplers, radiances, counts);
+    if (plan.insides) return Paths<true>(plan, rays, hits, samplers, counts).trace(radiances);
+    Paths<false>(plan, rays, hits, samplers, counts).trace(radiances);
 }
 
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {

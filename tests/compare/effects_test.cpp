@@ -105,6 +105,22 @@ TEST_SUITE("statistical") {
         CHECK(all < prefiltered * 2 / 3);
     }
 
+    TEST_CASE("what glass in a room shows: a quarter of the error with the picture behind it, at most") {
+        const Scene scene = model("glass");
+        const View view = small(scene, 96);
+        const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
+        raster::Settings settings = sixteen(kReflection);
+        const auto trimmed = [&] {
+            Control control;
+            return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth).relmse_trimmed;
+        };
+        const double with = trimmed();
+        settings.screen_refractions = false;
+        const double without = trimmed();
+        MESSAGE("relmse of all but the worst pixels ", with, ", the environment alone ", without);
+        CHECK(with < without / 4);
+    }
+
     TEST_CASE("lamps over rough metal: transformed cosines have a third of the error of light from centres at most") {
         Scene scene;
         const auto add = [&](Shape shape, Material material) {

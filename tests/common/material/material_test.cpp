@@ -94,9 +94,9 @@ template <typename F> void for_numbers(int n, F f) {
     for (const float x : {0.0f, kOneMinusEpsilon})
         for (const float y : {0.0f, kOneMinusEpsilon})
             for (const float z : {0.0f, kOneMinusEpsilon}) f(x, Vec2{y, z});
-    Sampler sampler(SamplerKind::kSobol, 17, 2 * n);
+    Sampler sampler(SamplerKind::kSobol, 17, n);
     for (int i = 0; i < n; ++i) {
-        sampler.start(0, 0, static_cast<std::uint32_t>(2 * i));
+        sampler.start(0, 0, static_cast<std::uint32_t>(i));
         const float lobe = sampler.get_1d();
         f(lobe, sampler.get_2d());
     }
@@ -105,9 +105,9 @@ template <typename F> void for_numbers(int n, F f) {
 /// Share of uniform incoming light of radiance 1 that is sent to wo: the mean weight.
 Rgbd albedo(const Bsdf& bsdf, Vec3 wo, TransportMode mode, int n) {
     Rgbd sum;
-    Sampler sampler(SamplerKind::kSobol, 23, 2 * n);
+    Sampler sampler(SamplerKind::kSobol, 23, n);
     for (int i = 0; i < n; ++i) {
-        sampler.start(0, 0, static_cast<std::uint32_t>(2 * i));
+        sampler.start(0, 0, static_cast<std::uint32_t>(i));
         const float lobe = sampler.get_1d();
         if (const auto s = sample(bsdf, wo, lobe, sampler.get_2d(), mode)) sum += Rgbd(s->weight);
     }

@@ -29,7 +29,7 @@ std::uint32_t sobol_by_directions(std::uint32_t index) {
 /// Points 0 … n−1 of one replicate.
 std::vector<Vec2> replicate_points(SamplerKind kind, std::uint64_t seed, int replicate, int n,
                                    std::uint32_t dimension) {
-    Sampler sampler(kind, seed, 2 * n);
+    Sampler sampler(kind, seed, 2 * n, 2);
     std::vector<Vec2> points;
     for (int i = 0; i < n; ++i) {
         sampler.start(3, 5, static_cast<std::uint32_t>(2 * i + replicate));
@@ -92,6 +92,17 @@ TEST_SUITE("unit") {
                 }
     }
 
+    TEST_CASE("without replicates all samples of a pixel are points of the first one's sequence") {
+        for (const SamplerKind kind : kAll)
+            for (std::uint32_t index = 0; index < 16; ++index) {
+                Sampler together(kind, 9, 16), replicates(kind, 9, 32, 2);
+                together.start(3, 5, index);
+                replicates.start(3, 5, 2 * index);
+                CHECK(together.get_2d() == replicates.get_2d());
+                CHECK(together.get_1d() == replicates.get_1d());
+            }
+    }
+
     TEST_CASE("blue noise: aligned squares of pixels are nets together, one sample each or many") {
         for (const int spp : {2, 8, 6})
             for (const int size : {1, 2, 4, 16})
@@ -103,7 +114,7 @@ TEST_SUITE("unit") {
                         const int samples = spp == 6 ? 2 : spp / 2;
                         if (spp == 6 && size > 1) continue;
                         std::vector<Vec2> points;
-                        Sampler s(SamplerKind::kBlueNoise, 4, spp);
+                        Sampler s(SamplerKind::kBlueNoise, 4, spp, 2);
                         for (int y = 0; y < size; ++y)
                             for (int x = 0; x < size; ++x)
                                 for (int i = 0; i < samples; ++i) {
@@ -120,7 +131,7 @@ TEST_SUITE("unit") {
         for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise, SamplerKind::kStratified})
             for (int replicate = 0; replicate < 2; ++replicate)
                 for (int n = 1; n <= 1024; n *= 2) {
-                    Sampler sampler(kind, 1, 2 * n);
+                    Sampler sampler(kind, 1, 2 * n, 2);
                     std::set<int> cells;
                     for (int i = 0; i < n; ++i) {
                         sampler.start(0, 0, static_cast<std::uint32_t>(2 * i + replicate));
@@ -166,7 +177,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("numbers are a function of seed, pixel, sample and dimension, whatever was drawn before") {
         for (const SamplerKind kind : kAll) {
-            Sampler a(kind, 7, 64), b(kind, 7, 64);
+            Sampler a(kind, 7, 64, 2), b(kind, 7, 64, 2);
             a.start(10, 20, 33);
             for (int i = 0; i < 9; ++i) a.get_1d();
             a.start(1, 2, 3);
@@ -179,7 +190,7 @@ TEST_SUITE("unit") {
 
             // … and of each of them
             const auto draw = [&](std::uint64_t seed, int x, int y, std::uint32_t index, std::uint32_t dimension) {
-                Sampler s(kind, seed, 64);
+                Sampler s(kind, seed, 64, 2);
                 s.start(x, y, index);
                 s.set_dimension(dimension);
                 return s.get_2d();
@@ -278,7 +289,7 @@ TEST_SUITE("statistical") {
                 std::vector<double> count(kBins * kBins), expected(kBins * kBins, 65536.0 / (kBins * kBins));
                 for (int y = 0; y < 256; ++y)
                     for (int x = 0; x < 256; ++x) {
-                        Sampler s(kind, static_cast<std::uint64_t>(test), 14);
+                        Sampler s(kind, static_cast<std::uint64_t>(test), 14, 2);
                         s.start(x, y, static_cast<std::uint32_t>(variant * 3));
                         s.set_dimension(static_cast<std::uint32_t>(variant * 7));
                         const Vec2 u = s.get_2d();
@@ -305,7 +316,7 @@ TEST_SUITE("statistical") {
                 for (int y = 0; y < 256; ++y)
                     for (int x = 0; x < 256; ++x) {
                         const auto draw = [&](const Key& k) {
-                            Sampler s(kind, 100 + k.seed, 16);
+                            Sampler s(kind, 100 + k.seed, 16, 2);
                             s.start(2 * x + k.x, y, k.index);
                             s.set_dimension(20 + k.dimension);
                             return s.get_1d();
@@ -364,7 +375,7 @@ TEST_SUITE("statistical") {
         const SamplerKind kinds[] = {SamplerKind::kSobol, SamplerKind::kStratified, SamplerKind::kIndependent};
         for (int k = 0; k < 3; ++k)
             for (int pixel = 0; pixel < kPixels; ++pixel) {
-                Sampler s(kinds[k], 11, 2 * kPoints);
+                Sampler s(kinds[k], 11, 2 * kPoints, 2);
                 double sum = 0;
                 for (std::uint32_t i = 0; i < kPoints; ++i) {
                     s.start(pixel, 0, 2 * i);

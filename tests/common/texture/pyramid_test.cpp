@@ -38,7 +38,7 @@ struct Covariance {
 };
 Covariance covariance(const ProbeLine& line) {
     const double places = (line.count * line.count - 1) / 12.0;
-    const double finer = std::ldexp(1.0, 2 * line.level), probe = finer * (1 + 3 * static_cast<double>(line.blend)) / 4;
+    const double finer = std::exp2(2 * line.level), probe = finer * (1 + 3 * line.blend) / 4;
     return {places * line.step.x * line.step.x + probe, places * line.step.x * line.step.y,
             places * line.step.y * line.step.y + probe};
 }

@@ -1,0 +1,111 @@
+#include "raster/surroundings.h"
+
+#include "raster/prefiltered.h"
+#include "raster/screen_reflection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr float kGuessBlur = 0.25f;
+
+/// A lamp that a ray meets: how far off, and how much of a look of some width about the ray it fills.
+struct LampSeen {
+    float distance = kInfinity, part = 0;
+};
+
+/// Of a stretch of some length, looked at over `width` metres about the fraction x of it.
+float part_within(float x, float length, float width) {
+    const auto side = [&](float to_edge) { return clamp(to_edge * length / width + 0.5f, 0.0f, 1.0f); };
+    return side(x) * side(1 - x);
+}
+
+struct LampFinder {
+    Vec3 p, way;
+    const Look& look;
+
+    LampSeen operator()(const Quad& quad) const {
+        float distance, a, b;
+        if (!meet(quad.corner, quad.u, quad.v, distance, a, b)) return {};
+        const float wide = max(look.size(distance), 1e-6f * distance);
+        return {distance, part_within(a, length(quad.u), wide) * part_within(b, length(quad.v), wide)};
+    }
+    /// Others may go on beyond its edges.
+    LampSeen operator()(const SurfaceLight::Triangle& t) const {
+        float distance, a, b;
+        if (!meet(t.a, t.b - t.a, t.c - t.a, distance, a, b) || a < 0 || b < 0 || a + b > 1) return {};
+        return {distance, 1};
+    }
+    LampSeen operator()(const Sphere& sphere) const {
+        const Vec3 to = sphere.center - p;
+        const float along = dot(to, way), beside = length(to - way * along);
+        if (!(along > 0) || dot(to, to) < sqr(sphere.radius)) return {};
+        const float wide = max(look.size(along), 1e-6f * along);
+        return {along - std::sqrt(max(sqr(sphere.radius) - sqr(beside), 0.0f)),
+                clamp((sphere.radius - beside) / wide + 0.5f, 0.0f, 1.0f)};
+    }
+
+private:
+    /// Where the ray meets the plane through `corner`, and there a and b of corner + a·u + b·v.
+    bool meet(Vec3 corner, Vec3 u, Vec3 v, float& distance, float& a, float& b) const {
+        const Vec3 n = cross(u, v), to = corner - p;
+        const float towards = dot(n, way);
+        if (towards == 0) return false;
+        distance = dot(n, to) / towards;
+        if (!(distance > 1e-5f * length(to))) return false;
+        const Vec3 q = way * distance - to;
+        const float over = 1 / dot(n, n);
+        a = dot(cross(q, v), n) * over, b = dot(cross(u, q), n) * over;
+        return true;
+    }
+};
+
+} // namespace
+
+Surroundings::Surroundings(const PreparedData& data, const Settings& settings, const Screen& screen)
+    : data_(data), settings_(settings), screen_(screen),
+      bounds_{screen.relative(data.scene.bounds.low), screen.relative(data.scene.bounds.high)} {
+    const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
+    bounds_ = {bounds_.low - slack, bounds_.high + slack};
+}
+
+Rgb Surroundings::seen(const Look& look) const {
+    float distance = kInfinity;
+    Rgb sum = picture_or_environment(look, distance);
+    const auto& lights = data_.scene.lights;
+    const std::size_t first = data_.scene.first_surface_light;
+    if (!look.lamps || lights.size() - first > kMostLamps) return sum;
+    const Vec3 p = screen_.absolute(look.p);
+    const LampFinder finder{p, look.way, look};
+    LampSeen nearest;
+    const SurfaceLight* lamp = nullptr;
+    std::size_t index = 0;
+    for (std::size_t i = first; i < lights.size(); ++i) {
+        const auto& light = std::get<SurfaceLight>(lights[i]);
+        const LampSeen found = std::visit(finder, light.shape);
+        if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
+    }
+    // What the picture shows a little before the lamp is the lamp.
+    if (lamp == nullptr || distance < 0.98f * nearest.distance) return sum;
+    if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
+    return lerp(sum, lamp->radiance, nearest.part);
+}
+
+Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
+    if (const auto hit = trace_screen(screen_, bounds_, look.p, look.n, look.way, look.from_picture)) {
+        distance = hit->distance;
+        const float there = max(screen_.homogeneous(look.p + look.way * hit->distance)[2], screen_.near());
+        // What is guessed is seen no sharper than the guess is good.
+        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap);
+        const RadiancePyramid& picture = look.lamps && hit->gap == 0 ? screen_.first_look().radiance : screen_.first_look().without_lamps;
+        return picture.at(hit->x, hit->y, size / screen_.pixel_size(there));
+    }
+    if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
+    const Environment& environment = data_.scene.environment;
+    return look.alpha > 0 && data_.prefiltered ? data_.prefiltered->at(environment, look.way, look.alpha)
+                                               : radiance(environment, look.way);
+}
+
+} // namespace duet::raster

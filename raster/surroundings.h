@@ -1,0 +1,49 @@
+// What a ray sees that leaves a point of the picture: of mirrors and of glass.
+#pragma once
+
+#include "common/vec/box.h"
+#include "raster/direct.h"
+#include "raster/prepare.h"
+#include "raster/screen.h"
+
+#include <cmath>
+
+namespace duet::raster {
+
+/// A ray from a surface, and how wide a look it stands for.
+struct Look {
+    Vec3 p;                   ///< where it begins, relative to the eye
+    Vec3 n, way;              ///< unit: the surface's normal on the ray's side; the ray's direction
+    float width = 0, turn = 0; ///< of the look where it begins, metres; by how much its two sides part, radians, which a
+                               ///< lens may have meet: either may be negative
+    float spread = 0;         ///< by which its blur grows, radians
+    float alpha = 0;          ///< GGX alpha by which an environment is blurred
+    bool lamps = true;        ///< whether it sees what shines: to rough surfaces lamps are direct light
+    const ShadingPoint* point = nullptr; ///< that it leaves, where shadow maps tell which lamps that sees
+    bool from_picture = true; ///< whether it begins at what the screen shows
+
+    /// Of the look, metres.
+    float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
+};
+
+/// What a picture and the scene's lists know without tracing a ray through its surfaces: what the picture shows
+/// (raster/screen_reflection.h); lamps, which are few, wherever they stand; the environment behind all.
+class Surroundings {
+public:
+    /// `screen`: with a first look. Refers to all.
+    Surroundings(const PreparedData& data, const Settings& settings, const Screen& screen);
+
+    Rgb seen(const Look& look) const;
+
+    static constexpr std::size_t kMostLamps = 256; ///< of more none is looked for outside the picture
+
+private:
+    Rgb picture_or_environment(const Look& look, float& distance) const;
+
+    const PreparedData& data_;
+    const Settings& settings_;
+    const Screen& screen_;
+    Box3 bounds_;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,26 @@
+#include "raytrace/integrator/shadow_rays.h"
+
+#include "raytrace/acceleration/bvh_leaf.h"
+
+namespace duet::raytrace {
+
+void ShadowRays::look() {
+    if (!plan_.prepared.accelerator.few_primitives()) return;
+    hits_.resize(rays_.size());
+    plan_.prepared.accelerator.closest_of_scattered(rays_, hits_);
+}
+
+bool ShadowRays::reached(std::size_t i) const {
+    const Ray& ray = rays_[i];
+    const ShadowEnd& end = waiting_[i].end;
+    if (!plan_.prepared.accelerator.few_primitives()) return reaches(plan_, ray, end);
+    const Hit& nearest = hits_[i];
+    if (!nearest.valid()) return true;
+    if (!end.is_surface()) return false;
+    if (!end.is_flat()) return !plan_.prepared.accelerator.occluded(ray, end.exact(ray));
+    // The ray meets the light where any other would: nothing is before it that is not before all others.
+    const bool is_end = nearest.object == end.about().object && nearest.primitive == end.about().primitive;
+    return is_end || !precedes(nearest, end.exact(ray));
+}
+
+} // namespace duet::raytrace

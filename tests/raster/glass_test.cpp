@@ -1,0 +1,187 @@
+// What glass shows of the picture without it, against the refracted rays themselves.
+#include "tests/raster/scenes.h"
+
+#include "common/material/fresnel.h"
+#include "raster/screen.h"
+#include "raster/split.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+const View kView{look({0, 0, 5}, {0, 0, 0}, 40), 160, 120};
+constexpr double kWallZ = -4;
+constexpr float kIor = 1.5f;
+
+raster::Settings plain() {
+    raster::Settings settings;
+    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    return settings;
+}
+
+/// A wall that reflects all of a grey sky, red to the left and green to the right.
+Scene wall() {
+    Scene scene;
+    const auto z = static_cast<float>(kWallZ);
+    add(scene, QuadList{{{Vec3(-9, -6, z), Vec3(9, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+    add(scene, QuadList{{{Vec3(0, -6, z), Vec3(9, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+    scene.environment = ConstantEnvironment{Rgb(0.5f)};
+    return scene;
+}
+
+/// A unit sphere of triangles, with normals.
+Mesh round_mesh(int around, int down) {
+    Mesh mesh;
+    for (int k = 0; k <= down; ++k)
+        for (int i = 0; i <= around; ++i) {
+            const double v = kPiDouble * k / down, u = 2 * kPiDouble * (i % around) / around;
+            mesh.positions.push_back(Vec3(Vec3d(std::sin(v) * std::cos(u), std::cos(v), -std::sin(v) * std::sin(u))));
+        }
+    mesh.normals = mesh.positions;
+    const auto vertex = [&](int i, int k) { return static_cast<std::uint32_t>(k * (around + 1) + i); };
+    for (int k = 0; k < down; ++k)
+        for (int i = 0; i < around; ++i) {
+            if (k > 0) mesh.triangles.push_back({vertex(i, k), vertex(i + 1, k + 1), vertex(i + 1, k)});
+            if (k + 1 < down) mesh.triangles.push_back({vertex(i, k), vertex(i, k + 1), vertex(i + 1, k + 1)});
+        }
+    return mesh;
+}
+
+/// Through a unit ball at the origin to the wall: where that is met, and how much goes on at the front; false for rays
+/// that miss the ball, or nearly.
+bool through_ball(int x, int y, Vec3d& met, double& reflected) {
+    const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
+    const double b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1;
+    if (b * b - c < 0.55) return false; // so near the outline that it mirrors the wall, too
+    const Vec3d p = ray.at(-b - std::sqrt(b * b - c));
+    const double eta = static_cast<double>(kIor), cosine = -dot(p, ray.direction);
+    const double inner = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
+    const Vec3d way = ray.direction / eta + p * (cosine / eta - inner), q = p - way * (2 * dot(p, way));
+    const Vec3d out = way * eta + q * (cosine - eta * inner); // by symmetry the two angles change places
+    reflected = static_cast<double>(fresnel_dielectric(static_cast<float>(cosine), kIor));
+    if (!(out.z < 0)) return false;
+    met = q + out * ((kWallZ - q.z) / out.z);
+    return std::abs(met.x) < 2.5 && std::abs(met.y) < 1.8; // within the picture
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a ball of glass, and one of triangles, show what refracted rays meet: left and right change places") {
+        for (const bool triangles : {false, true}) {
+            CAPTURE(triangles);
+            Scene scene = wall();
+            add(scene, triangles ? Shape(round_mesh(96, 48)) : Shape(Sphere{Vec3(0, 0, 0), 1}), Mat4(), Dielectric{kIor});
+            finish_scene(scene);
+            const ImageRgb found = render(scene, kView, plain()).radiance;
+            int swapped = 0, all = 0, wrong = 0;
+            for (int y = 0; y < kView.height; ++y)
+                for (int x = 0; x < kView.width; ++x) {
+                    Vec3d met;
+                    double reflected = 0;
+                    if (!through_ball(x, y, met, reflected) || std::abs(met.x) < 0.1) continue;
+                    const float color = static_cast<float>(0.5 * (1 - reflected)), sky = static_cast<float>(0.5 * reflected);
+                    const Rgb expected = met.x < 0 ? Rgb(color + sky, sky, sky) : Rgb(sky, color + sky, sky);
+                    ++all;
+                    swapped += (x < kView.width / 2) == (met.x > 0);
+                    for (std::size_t c = 0; c < 3; ++c)
+                        if (std::abs(found(x, y)[c] - expected[c]) > 0.02f) {
+                            ++wrong;
+                            break;
+                        }
+                }
+            CHECK(all > 200);
+            CHECK(swapped > all / 2);
+            CHECK(wrong * 50 < all);
+        }
+    }
+
+    TEST_CASE("a pane shows the wall straight behind it, as dimmed as its closed form says, and mirrors the sky") {
+        Scene scene = wall();
+        add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+        finish_scene(scene);
+        const ImageRgb found = render(scene, kView, plain()).radiance;
+        for (const int x : {66, 75, 85, 94}) {
+            const Rayd ray = CameraModel(kView).through().ray({x + 0.5, 70.5});
+            const ThinDielectricBsdf::Parts parts = ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(static_cast<float>(-ray.direction.z));
+            const float wall = 0.5f * parts.transmitted.r, sky = 0.5f * parts.reflected.r;
+            CHECK(found(x, 70).r == doctest::Approx(x < 80 ? wall + sky : sky).epsilon(0.002));
+            CHECK(found(x, 70).g == doctest::Approx(x < 80 ? sky : wall + sky).epsilon(0.002));
+        }
+    }
+
+    TEST_CASE("a ball that absorbs shows what is behind it by what the way through leaves") {
+        Scene scene = wall();
+        Dielectric glass{kIor};
+        glass.absorption = Rgb(0.2f, 0.7f, 1.0f);
+        add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), glass);
+        finish_scene(scene);
+        const Rgb found = render(scene, View{kView.camera, 161, 121}, plain()).radiance(108, 60);
+        const Rayd ray = CameraModel(View{kView.camera, 161, 121}).through().ray({108.5, 60.5});
+        const double b = dot(ray.origin, ray.direction);
+        const Vec3d p = ray.at(-b - std::sqrt(b * b - dot(ray.origin, ray.origin) + 1));
+        const double cosine = -dot(p, ray.direction), eta = static_cast<double>(kIor);
+        const auto way = static_cast<float>(2 * std::sqrt(1 - (1 - cosine * cosine) / (eta * eta)));
+        const float reflected = fresnel_dielectric(static_cast<float>(cosine), kIor);
+        CHECK(found.r == doctest::Approx(0.5f * reflected + 0.5f * (1 - reflected) * std::exp(-way * 0.2f)).epsilon(0.02));
+        CHECK(found.g == doctest::Approx(0.5f * reflected).epsilon(0.05));
+    }
+
+    TEST_CASE("glass mirrors a lamp that the picture does not show, and not through what stands before it") {
+        for (const bool screened : {false, true}) {
+            Scene scene = wall();
+            add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+            add(scene, QuadList{{{Vec3(-1, -1, 9), Vec3(0, 2, 0), Vec3(2, 0, 0)}}}, Mat4(), Emissive{Rgb(40.0f)}); // behind the eye
+            if (screened) add(scene, QuadList{{{Vec3(-1, -1, 8), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
+            finish_scene(scene);
+            scene.environment = ConstantEnvironment{Rgb(0.0f)};
+            raster::Settings settings = plain();
+            settings.parts.direct = false;
+            const Rgb found = render(scene, kView, settings).radiance(82, 62);
+            const float mirrored = 40 * ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(1).reflected.b;
+            CHECK(found.b == doctest::Approx(screened ? 0.0f : mirrored).epsilon(0.02));
+        }
+    }
+
+    TEST_CASE("turned off, or where there is no glass, no picture without it is made") {
+        for (const bool glass : {false, true})
+            for (const bool on : {false, true}) {
+                Scene scene = wall();
+                add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), glass ? Material(Dielectric{kIor}) : Material(Diffuse{}));
+                finish_scene(scene);
+                raster::Settings settings; // occlusion asks for the rest of the screen
+                settings.screen_refractions = on;
+                const auto screen = raster::screen_of(raster::prepare(scene, settings), kView, settings);
+                REQUIRE(screen != nullptr);
+                CHECK((screen->behind() != nullptr) == (glass && on));
+            }
+    }
+
+    TEST_CASE("normals by maps are the same in the normal shading, in strips and one by one, as in the normal picture") {
+        const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / "maps.json");
+        const View view{scene.camera, 160, 120};
+        raster::Settings settings;
+        settings.aovs.normal = settings.aovs.hit = true;
+        settings.shading = raster::Shading::kNormal;
+        const Rendering found = render(scene, view, settings);
+        int bent = 0;
+        float worst = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const Hit& hit = found.hit(x, y);
+                if (!hit.valid() || hit.object > 1 || x > 80) continue; // the floor and the amphora, where nothing is before them
+                const Vec3 n = found.normal(x, y);
+                bent += hit.object == 0 && n.y < 0.999f;
+                for (std::size_t c = 0; c < 3; ++c)
+                    worst = std::max(worst, std::abs(found.radiance(x, y)[c] - (n[c] + 1) / 2));
+            }
+        CHECK(bent > 100);
+        CHECK(worst < 2e-5f);
+    }
+}

@@ -1,0 +1,166 @@
+// Paths side by side, shaded lane by lane, their rays sent in packets: to the bit what each path gives alone.
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/pass.h"
+
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+enum class Lamp { kRectangle, kParallelogram, kTriangle, kBall, kTwoSided, kMany, kPoint, kSpot, kSun, kSky };
+constexpr Lamp kLamps[] = {Lamp::kRectangle, Lamp::kParallelogram, Lamp::kTriangle, Lamp::kBall, Lamp::kTwoSided,
+                           Lamp::kMany,      Lamp::kPoint,         Lamp::kSpot,     Lamp::kSun,  Lamp::kSky};
+
+struct Place {
+    float scale = 1;
+    Vec3 at{0, 0, 0};
+    Vec3 operator()(float x, float y, float z) const { return Vec3(x, y, z) * scale + at; }
+};
+
+void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
+    const float s = place.scale;
+    const auto emissive = [&](bool two_sided) { return builder.material(Emissive{Rgb(9.0f, 8, 6), two_sided, {Rgb(0.0f)}}); };
+    const auto hang = [&](float x, Vec3 u, Vec3 v, bool two_sided) {
+        builder.add(quad(place(x, 1.9f, -0.4f), u * s, v * s), emissive(two_sided));
+    };
+    const Vec3 down = normalize(Vec3(0.2f, -1, -0.3f));
+    switch (lamp) {
+    case Lamp::kRectangle: return hang(-0.3f, {0.6f, 0, 0}, {0, 0, 0.5f}, false);
+    case Lamp::kParallelogram: return hang(-0.3f, {0.6f, 0, 0}, {0.2f, 0.05f, 0.5f}, false);
+    case Lamp::kTwoSided: return hang(-0.3f, {0.4f, 0.3f, 0}, {0, 0, 0.5f}, true);
+    case Lamp::kMany:
+        for (const float x : {-0.9f, -0.4f, 0.1f, 0.6f}) hang(x, {0.2f, 0, 0}, {0, 0, 0.2f}, x > 0);
+        return;
+    case Lamp::kTriangle: {
+        Mesh mesh;
+        mesh.positions = {place(-0.4f, 1.9f, -0.4f), place(0.4f, 1.9f, -0.4f), place(0, 1.9f, 0.4f)};
+        mesh.triangles = {{0, 1, 2}};
+        builder.add(mesh, emissive(true));
+        return;
+    }
+    case Lamp::kBall: builder.add(Sphere{place(0.2f, 1.6f, 0), 0.2f * s}, emissive(false)); return;
+    case Lamp::kPoint: builder.scene.lights.push_back(PointLight{place(0, 2, 0), Rgb(4 * s * s)}); return; // in the ceiling
+    case Lamp::kSpot:
+        builder.scene.lights.push_back(SpotLight{place(0, 1.8f, 0), down, Rgb(4 * s * s), 0.95f, 0.5f});
+        return;
+    case Lamp::kSun: builder.scene.lights.push_back(SunLight{down, Rgb(3.0f)}); return;
+    case Lamp::kSky: builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)}; return;
+    }
+}
+
+// A room without a front, things in it of each kind of surface that goes side by side and of others; with `many`
+// triangles its rays look for their way through a tree.
+Scene room(Lamp lamp, bool many, const Place& place) {
+    SceneBuilder builder;
+    const float s = place.scale;
+    const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}), red = builder.material(Diffuse{{Rgb(0.6f, 0.1f, 0.1f)}});
+    const std::uint32_t black = builder.material(Diffuse{{Rgb(0.0f)}}), brushed = builder.material(Metal{{Rgb(0.9f)}, 0.4f});
+    builder.add(quad(place(-1, 0, 1), {2 * s, 0, 0}, {0, 0, -2 * s}), white);
+    if (lamp != Lamp::kSun && lamp != Lamp::kSky) builder.add(quad(place(-1, 2, -1), {2 * s, 0, 0}, {0, 0, 2 * s}), white);
+    builder.add(quad(place(-1, 0, -1), {2 * s, 0, 0}, {0, 2 * s, 0}), white);
+    builder.add(quad(place(-1, 0, 1), {0, 0, -2 * s}, {0, 2 * s, 0}), red);
+    builder.add(quad(place(1, 0, -1), {0, 0, 2 * s}, {0, 2 * s, 0}), black);
+    builder.add(Sphere{place(-0.4f, 0.35f, 0.3f), 0.35f * s}, red);
+    builder.add(Sphere{place(0.5f, 0.2f, 0.6f), 0.2f * s}, builder.material(Dielectric{1.5f, {Rgb(0.95f)}}));
+    builder.add(icosphere(many ? 3 : 0, 0.3f * s, place(0.3f, 0.6f, -0.3f), false), white);
+    builder.add(icosphere(many ? 2 : 0, 0.2f * s, place(-0.5f, 1, -0.5f), true), brushed);
+    add_lamp(builder, lamp, place);
+    builder.scene.camera.eye = Vec3d(place(0, 1, 3.2f));
+    builder.scene.camera.look_at = Vec3d(place(0, 1, 0));
+    builder.scene.camera.fov_degrees = 45;
+    return builder.finish();
+}
+
+// How many of the paths of a small picture differ in a bit, of those that bring light at all.
+struct Differences {
+    int differ = 0, lit = 0;
+    bool same_rays = false;
+};
+Differences side_by_side_and_alone(const Scene& scene, const Settings& settings) {
+    constexpr int kSide = 16, kSamples = 2;
+    const View view{scene.camera, kSide, kSide};
+    const Prepared prepared = prepare(scene, settings);
+    const RenderPlan plan(prepared.data(), view, settings);
+    const CameraModel camera(view);
+    std::vector<Sampler> samplers;
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            for (std::uint32_t i = 0; i < kSamples; ++i) {
+                samplers.push_back(settings.make_sampler());
+                samplers.back().start(x, y, i);
+                rays.push_back(camera_ray(plan, camera, x, y, samplers.back()));
+                hits.push_back(plan.prepared.accelerator.closest(rays.back()));
+            }
+    RayCounts alone_counts, counts;
+    std::vector<Rgb> alone, together(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Sampler sampler = samplers[i];
+        alone.push_back(path_radiance(plan, rays[i], hits[i], sampler, alone_counts));
+    }
+    path_radiances(plan, rays, hits, samplers, together, counts);
+    Differences found;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        found.differ += together[i] != alone[i];
+        found.lit += !is_black(alone[i]);
+    }
+    found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow;
+    return found;
+}
+
+void check_same(const Scene& scene, const Settings& settings) {
+    const Differences found = side_by_side_and_alone(scene, settings);
+    CHECK(found.differ == 0);
+    CHECK(found.lit > 20);
+    CHECK(found.same_rays);
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("paths side by side give the bits of each alone, under every light, in lists and trees") {
+        for (const Lamp lamp : kLamps)
+            for (const bool many : {false, true}) {
+                CAPTURE(static_cast<int>(lamp));
+                CAPTURE(many);
+                Settings settings;
+                settings.seed = 7;
+                check_same(room(lamp, many, {}), settings);
+            }
+    }
+
+    TEST_CASE("and at every scale, far from the origin") {
+        for (const Place& place : {Place{1e-6f, {}}, Place{1e6f, {}}, Place{1, {5000, -3000, 8000}}, Place{1e-3f, {1, 2, 3}}})
+            for (const Lamp lamp : {Lamp::kRectangle, Lamp::kTriangle, Lamp::kPoint, Lamp::kSky}) {
+                CAPTURE(place.scale);
+                CAPTURE(static_cast<int>(lamp));
+                Settings settings;
+                settings.seed = 8;
+                check_same(room(lamp, false, place), settings);
+            }
+    }
+
+    TEST_CASE("and whatever paths are asked for") {
+        const Scene scene = room(Lamp::kRectangle, false, {});
+        const auto check_with = [&](const auto& change) {
+            Settings settings;
+            change(settings);
+            check_same(scene, settings);
+        };
+        for (const int depth : {1, 2, 5}) check_with([&](Settings& s) { s.max_depth = depth; });
+        check_with([](Settings& s) { s.russian_roulette = false, s.max_depth = 20; });
+        check_with([](Settings& s) { s.integrator = Integrator::kDirect; });
+        check_with([](Settings& s) { s.sampler = SamplerKind::kIndependent; });
+        check_with([](Settings& s) { s.adaptive = true; }); // two replicates
+        check_with([](Settings& s) { s.skips.shadow_rays = false; });
+        check_with([](Settings& s) { s.skips.textures = false; });
+    }
+}
