@@ -113,9 +113,10 @@ private:
     }
 
     Vec3 bent_normal(std::size_t sample) const override {
-        if (!(strip_->seen >> sample & 1)) return {0, 0, 1};
+        if (!(strip_->samples->seen >> sample & 1)) return {0, 0, 1};
         const Vec2d pixel = place_->position(sample);
-        return hit_normal(data_.scene, view_, find_hit(geometry_, view_, strip_->id(sample), pixel), pixel, samples_per_pixel(*place_, view_));
+        return hit_normal(data_.scene, view_, find_hit(geometry_, view_, strip_->samples->id(sample), pixel), pixel,
+                          samples_per_pixel(*place_, view_));
     }
 
     /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
