@@ -19,8 +19,8 @@ struct Spent {
 /// Tells each pixel of a complete film how many samples it is to have after the next pass (Film::Pixel::target); false
 /// where a limit is reached: the mean number of samples, the time, or the error. The first 16 samples are taken at once,
 /// since no error is known before, and so are all others 16 by 16 where there is no limit. With one, passes grow with
-/// what is done, so that the end comes near the limit; before a limit of time they start with 2,
-/// and the last is cut to what the time is good for, as near as 2 samples.
+/// what is done, so that the end comes near the limit, and go no more than half of the way to an error asked for; before a
+/// limit of time they start with 2, and the last is cut to what the time is good for, as near as 2 samples.
 ///
 /// With Settings::adaptive the passes from the 16th sample on are spread (see spread_samples).
 bool plan_pass(const Settings& settings, const Spent& spent, Film& film);

@@ -2,6 +2,9 @@
 
 #include "common/system/sabotage.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace duet {
 
 Film::Film(int width, int height) : pixels_(width, height) {}
@@ -88,15 +91,36 @@ std::int64_t Film::invalid_samples() const {
     return count;
 }
 
+namespace {
+
+// The largest of each channel among a pixel's neighbours.
+Rgbd brightest_neighbour(const Image<Rgbd>& means, int x, int y) {
+    Rgbd most;
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, means.height() - 1); ++j)
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, means.width() - 1); ++i)
+            if (i != x || j != y)
+                for (std::size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], means(i, j)[c]);
+    return most;
+}
+
+} // namespace
+
 double Film::estimated_relmse() const {
+    Image<Rgbd> means(width(), height());
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) means(x, y) = mean(x, y);
     double sum = 0;
     std::size_t known = 0;
     for (int y = 0; y < height(); ++y)
         for (int x = 0; x < width(); ++x) {
-            const Rgbd m = mean(x, y), v = variance(x, y);
+            const Rgbd m = means(x, y), v = variance(x, y);
             if (!is_finite(v)) continue;
             ++known;
-            for (std::size_t channel = 0; channel < 3; ++channel) sum += v[channel] / (sqr(m[channel]) + 0.01);
+            const Rgbd around = brightest_neighbour(means, x, y);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double lower = std::max(m[c] - std::sqrt(v[c]), 0.0);
+                sum += v[c] / (sqr(std::min(m[c], std::max(around[c], lower))) + 0.01);
+            }
         }
     return 2 * known >= pixels_.size() ? sum / (3.0 * static_cast<double>(known)) : -1;
 }

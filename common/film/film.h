@@ -44,7 +44,9 @@ public:
     Image<std::uint32_t> samples_image() const;
     std::int64_t invalid_samples() const;
     /// Mean of variance / (mean² + 0.01) over channels and the pixels whose variance is known; −1 where that is fewer
-    /// than half.
+    /// than half. By a pixel's own mean a rare bright sample would hide itself, for it raises mean² as much as the variance: with
+    /// caustics half of the error was not seen. So a mean counts as no more than the brightest neighbour's, or the
+    /// replicate's that has less, whichever is more: what both replicates find is really there.
     double estimated_relmse() const;
 
     /// What a pixel keeps.

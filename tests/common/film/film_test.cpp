@@ -30,6 +30,22 @@ TEST_SUITE("unit") {
         CHECK(is_black(film.mean(1, 0)));
     }
 
+    TEST_CASE("a rare bright sample does not hide itself in the estimate of relMSE; what both replicates find counts in full") {
+        const auto estimate = [](float first, float second) { // the middle one of 3 × 3 pixels, the others 1 and known
+            Film film(3, 3);
+            for (int y = 0; y < 3; ++y)
+                for (int x = 0; x < 3; ++x)
+                    for (const std::size_t replicate : {0, 1})
+                        film.add(x, y, replicate, Rgb(x == 1 && y == 1 ? (replicate == 0 ? first : second) : 1.0f));
+            return film.estimated_relmse();
+        };
+        // ((101 − 1) / 2)² over 1 + 0.01, a ninth of it: not over the mean 51².
+        CHECK(estimate(101, 1) == doctest::Approx(50.0 * 50 / 1.01 / 9));
+        CHECK(estimate(1, 101) == estimate(101, 1));
+        CHECK(estimate(100, 102) == doctest::Approx(1.0 / (100.0 * 100 + 0.01) / 9)); // a lamp
+        CHECK(estimate(0, 1) == doctest::Approx(0.25 / (0.25 + 0.01) / 9));           // darker than its neighbours: as it is
+    }
+
 } // TEST_SUITE
 
 TEST_SUITE("statistical") {
