@@ -71,13 +71,15 @@ int main(int argc, char** argv) {
             ->check(CLI::PositiveNumber);
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(CLI::PositiveNumber);
-        app.add_flag("--adaptive,!--no-adaptive", adaptive,
-                     "More samples where the error is, --spp in the mean (default with --time or --error, but for "
-                     "--samples and samplers that need to know the number)");
+        // As a function: of an optional flag CLI11 would make false what is not given.
+        app.add_flag_function("--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
+                              "More samples where the error is, --spp in the mean (default with --time or --error, "
+                              "but for --samples and samplers that need to know the number)");
         auto* const film_option = app.add_option(
             "--film", film,
             "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
-            "from there, to the same bits as one run. `raytrace merge` joins films");
+            "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows its "
+            "error, and goes on with these alone. `raytrace merge` joins films");
         app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
             ->check(CLI::NonNegativeNumber)
             ->needs(film_option);

@@ -149,7 +149,7 @@ bool plan_pass(const Settings& settings, const Spent& spent, Film& film) {
         spread_samples(film, static_cast<std::int64_t>(count * pixels));
         if (!film.complete()) return true;
     }
-    raise_all(film, static_cast<std::uint32_t>(count));
+    raise_all(film, static_cast<std::uint32_t>(std::max(count, 1.0))); // of a few pixels a part of a sample each is none
     return true;
 }
 

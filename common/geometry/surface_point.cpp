@@ -127,7 +127,6 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w) {
             below = seen < 0;
         }
     }
-    if (sabotaged(Guard::kOffsetOrigin)) return point.p;
     return offset_origin(start, point.p_error, select(below, -point.ng, point.ng));
 }
 

@@ -234,7 +234,7 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
 void Sampler::get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers) {
     using Batch = WholeBatch<kMaxSimdLanes>;
     std::size_t done = 0;
-    for (; samplers[0].is_sobol() && samplers.size() - done >= kMaxSimdLanes; done += kMaxSimdLanes) {
+    for (; !samplers.empty() && samplers[0].is_sobol() && samplers.size() - done >= kMaxSimdLanes; done += kMaxSimdLanes) {
         alignas(Batch) std::array<std::uint32_t, kMaxSimdLanes> index, low, high, x, y;
         for (std::size_t i = 0; i < kMaxSimdLanes; ++i) {
             Sampler& s = samplers[done + i];

@@ -245,6 +245,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
         shapes_[object.shape] = own.build();
     }
     world_ = world.build();
+    few_primitives_ = !world_.use_tree() && world_.instances.empty() && !holes_;
 }
 
 // A ray in an instance's space, at its time.
@@ -363,7 +364,7 @@ namespace {
 
 // Rays that are sheared along the same axes: the main one, and which way they run along it. Of others 6.
 std::size_t shear_class(const Ray& ray) {
-    if (!traceable(ray)) return 6;
+    if (!traceable(ray) || ray.t_min != ray.t_min || ray.t_max != ray.t_max) return 6;
     const Vec3 size = abs(ray.direction); // as longest_axis, without a branch
     const bool x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
     const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
@@ -371,45 +372,62 @@ std::size_t shear_class(const Ray& ray) {
     return axis + (d[axis] < 0 ? 3 : 0);
 }
 
-// The indices of rays, class after class; `ends`: of each class there.
-std::vector<std::uint32_t> by_class(std::span<const Ray> rays, std::array<std::size_t, 7>& ends) {
-    std::vector<std::uint8_t> classes(rays.size());
-    std::array<std::size_t, 7> next{};
-    for (std::size_t i = 0; i < rays.size(); ++i) ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[i]))];
-    std::size_t begin = 0;
-    for (std::size_t& count : next) begin += std::exchange(count, begin);
-    std::vector<std::uint32_t> order(rays.size());
-    for (std::uint32_t i = 0; i < rays.size(); ++i) order[next[classes[i]]++] = i;
-    ends = next;
-    return order;
-}
+// So many rays are sorted at a time.
+constexpr std::size_t kMostSorted = 512;
+
+// The indices of some rays, class after class.
+struct ByClass {
+    explicit ByClass(std::span<const Ray> rays) {
+        std::array<std::uint8_t, kMostSorted> classes;
+        std::array<std::size_t, 7> next{};
+        for (std::size_t i = 0; i < rays.size(); ++i) ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[i]))];
+        std::size_t begin = 0;
+        for (std::size_t& count : next) begin += std::exchange(count, begin);
+        for (std::uint32_t i = 0; i < rays.size(); ++i) order[next[classes[i]]++] = i;
+        ends = next;
+    }
+    std::array<std::uint32_t, kMostSorted> order;
+    std::array<std::size_t, 7> ends; ///< of each class in it
+};
 
 } // namespace
 
-// Those sheared alike go as packets, however they run otherwise: all primitives are tested.
+// Rays sheared alike, up to a packet of them, however they run otherwise: all primitives are tested.
+void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const {
+    constexpr std::size_t kSize = RayPacket::kSize;
+    std::array<Ray, kSize> some;
+    for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[which[k < which.size() ? k : 0]];
+    const RayPacket packet{std::span<const Ray, kSize>(some)};
+    if (which.size() < kSize / 4 || !packet.coherent()) {
+        for (const std::uint32_t i : which) hits[i] = first(rays[i]);
+        return;
+    }
+    PacketHits best(xsimd::min(packet.t_max(), RayPacket::Batch(std::numeric_limits<float>::max())));
+    const PacketInstances none{*this, some};
+    PacketTraversal(world_, packet, some, (1u << which.size()) - 1, kNoObject, none, best).run_list();
+    std::array<Hit, kSize> found;
+    best.store(found);
+    for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
+}
+
 void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const {
-    constexpr std::size_t kSize = RayPacket::kSize, kFewest = kSize / 4;
     if (!few_primitives()) {
         for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest(rays[i]);
         return;
     }
-    std::array<std::size_t, 7> ends;
-    const std::vector<std::uint32_t> order = by_class(rays, ends);
-    std::size_t done = 0;
-    for (std::size_t c = 0; c < 7; ++c) {
-        for (; c < 6 && ends[c] - done >= kFewest; done += std::min(kSize, ends[c] - done)) {
-            const auto which = std::span(order).subspan(done, std::min(kSize, ends[c] - done));
-            std::array<Ray, kSize> some;
-            for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[which[k < which.size() ? k : 0]];
-            const RayPacket packet{std::span<const Ray, kSize>(some)};
-            PacketHits best(xsimd::min(packet.t_max(), RayPacket::Batch(std::numeric_limits<float>::max())));
-            const PacketInstances none{*this, some};
-            PacketTraversal(world_, packet, some, (1u << which.size()) - 1, kNoObject, none, best).run_list();
-            std::array<Hit, kSize> found;
-            best.store(found);
-            for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
-        }
-        for (; done < ends[c]; ++done) hits[order[done]] = closest(rays[order[done]]);
+    for (std::size_t from = 0; from < rays.size(); from += kMostSorted) {
+        const std::size_t size = std::min(rays.size() - from, kMostSorted);
+        const auto some = rays.subspan(from, size);
+        const auto their_hits = hits.subspan(from, size);
+        const ByClass sorted(some);
+        std::size_t done = 0;
+        for (std::size_t c = 0; c < 6; ++c)
+            while (done < sorted.ends[c]) {
+                const std::size_t taken = std::min(RayPacket::kSize, sorted.ends[c] - done);
+                closest_in_list(some, std::span(sorted.order).subspan(done, taken), their_hits);
+                done += taken;
+            }
+        for (; done < size; ++done) their_hits[sorted.order[done]] = first(some[sorted.order[done]]);
     }
 }
 

@@ -26,8 +26,9 @@ public:
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
     /// The same of rays that run anywhere: faster where there are few primitives, and many rays.
     void closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const;
-    /// Whether they are: then the nearest hit of many rays costs less than a look for any hit of each.
-    bool few_primitives() const { return !world_.use_tree() && !holes_; }
+    /// Whether there are few, and nothing but primitives: then the nearest hit of many rays costs less than a look for any
+    /// hit of each.
+    bool few_primitives() const { return few_primitives_; }
     /// Whether anything is hit before `end`, other than end's own primitive: where a light is the end of a shadow
     /// ray, it does not shade itself. An end without object is a mere distance.
     bool occluded(const Ray& ray, const Hit& end) const;
@@ -39,6 +40,7 @@ public:
 
 private:
     Hit first(const Ray& ray) const;
+    void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
     Hit beyond_holes(const Ray& ray, Hit hit) const;
     bool occluded_beyond_holes(Ray ray, const Hit& end) const;
     struct PacketInstances;
@@ -51,6 +53,7 @@ private:
     std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
     std::int64_t primitives_ = 0;
     bool holes_; ///< some material has
+    bool few_primitives_ = false;
 };
 
 } // namespace duet::raytrace

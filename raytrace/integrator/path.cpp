@@ -311,15 +311,16 @@ private:
     }
 
     void advance(int depth) {
-        std::array<std::vector<std::uint32_t>, 2> matt;
+        flat_.clear();
+        round_.clear();
         std::erase_if(going_, [&](std::uint32_t i) {
             const Kind kind = hits_[i].valid() && depth < plan_.max_depth ? plan_.matt.kind(hits_[i]) : Kind::kNone;
             if (kind == Kind::kNone) return !paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i]);
-            matt[kind == Kind::kRound].push_back(i);
+            (kind == Kind::kRound ? round_ : flat_).push_back(i);
             return true;
         });
-        scatter(Kind::kFlat, matt[0], depth);
-        scatter(Kind::kRound, matt[1], depth);
+        scatter(Kind::kFlat, flat_, depth);
+        scatter(Kind::kRound, round_, depth);
     }
 
     void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
@@ -344,7 +345,7 @@ private:
     const std::span<Sampler> samplers_;
     RayCounts& counts_;
     std::vector<Path<Sum, kInsides>> paths_;
-    std::vector<std::uint32_t> going_;
+    std::vector<std::uint32_t> going_, flat_, round_; // of all that go on, those that stand at matt surfaces
     std::vector<VertexNumbers> numbers_;
     ShadowRays shadows_;
     std::vector<Ray> some_rays_;

@@ -6,8 +6,10 @@ namespace duet::raytrace {
 
 void ShadowRays::look() {
     if (!plan_.prepared.accelerator.few_primitives()) return;
+    for (std::size_t i = 0; i < rays_.size(); ++i) rays_[i].t_max = waiting_[i].end.about().t;
     hits_.resize(rays_.size());
     plan_.prepared.accelerator.closest_of_scattered(rays_, hits_);
+    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may lie behind
 }
 
 bool ShadowRays::reached(std::size_t i) const {

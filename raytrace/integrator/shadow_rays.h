@@ -15,7 +15,6 @@ public:
     void add(std::uint32_t path, const Ray& ray, Vec3 p, const Arrival& arrival, Rgb light) {
         waiting_.push_back({path, light, ShadowEnd(plan_.scene, ray, p, arrival)});
         rays_.push_back(ray);
-        rays_.back().t_max = waiting_.back().end.about().t;
     }
     /// Sends all. Calls arrived(path, light) for each that nothing stands in the way of, in order; none is left.
     template <typename Arrived> void send(const Arrived& arrived) {
@@ -38,8 +37,8 @@ private:
 
     const RenderPlan& plan_;
     std::vector<Waiting> waiting_;
-    std::vector<Ray> rays_; ///< parallel to it, t_max as far as is to be looked
-    std::vector<Hit> hits_; ///< the nearest, where they have been looked for
+    std::vector<Ray> rays_;  ///< parallel to it
+    std::vector<Hit> hits_;  ///< the nearest, where they have been looked for
 };
 
 } // namespace duet::raytrace

@@ -39,6 +39,8 @@ one_line_error --decode
 
 expect 0 "$bin/compare" skip models/cornell.json --size 16x16 --spp 1 --repeats 1 --only lens --only raster/frustum
 grep -q "raster/frustum.*same bits" "$scratch/stdout" || fail "compare skip prints no table"
+expect 0 "$bin/compare" skip models/cornell.json --size 16x16 --spp 4 --repeats 1 --only auxiliary
+test "$(grep -c "auxiliary.*same bits" "$scratch/stdout")" = 2 || fail "auxiliary pictures change the picture"
 expect 2 "$bin/compare" skip models/cornell.json --only nothing
 one_line_error raster/back_faces
 

@@ -59,3 +59,12 @@ one_line_error "cannot go with --orbit"
 expect 2 render x.pfm --film "$scratch/missing/x.exr"
 one_line_error "no folder"
 finish
+
+# With a limit sampling is adaptive, and knows its error; --no-adaptive and a plain number of samples are not.
+kept() { tr -c '[:print:]' ' ' <"$scratch/$1" | grep -q "film\.$2 string  *${3}duet:"; }
+render limited.png --error 0.05 --film "$scratch/limited.exr"
+kept limited.exr adaptive yes || fail "--error is not adaptive"
+kept limited.exr replicates 2 || fail "--error does not know its error"
+render even.png --error 0.05 --no-adaptive --film "$scratch/even.exr"
+kept even.exr adaptive no || fail "--no-adaptive is adaptive"
+kept joint.exr replicates 1 || fail "a plain film has replicates"

@@ -78,10 +78,11 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a render that is stopped at any point and goes on from its film has the bits of one in one go") {
         const Scene scene = small_scene();
-        Settings settings;
-        settings.samples_per_pixel = 40;
-        const ImageRgb expected = rendered(scene, settings).radiance;
         for (const double where : {0.0, 0.01, 0.2, 0.4, 0.7, 0.9}) {
+            Settings settings;
+            settings.samples_per_pixel = 40;
+            settings.aovs.variance = where != 0.2 && where != 0.7; // with replicates, and without
+            const ImageRgb expected = rendered(scene, settings).radiance;
             const ScratchFolder folder;
             settings.film = folder / "film.exr";
             std::atomic<bool> stop = where == 0;
@@ -123,21 +124,28 @@ TEST_SUITE("unit") {
         const Scene scene = small_scene();
         const ScratchFolder folder;
         Settings settings;
-        const KeptFilm one = film_of(scene, settings, folder / "one.exr", 0, 30);
-        const KeptFilm a = film_of(scene, settings, folder / "a.exr", 0, 7), b = film_of(scene, settings, folder / "b.exr", 7, 16),
-                       c = film_of(scene, settings, folder / "c.exr", 16, 30);
-        const KeptFilm joined = merged({{"c", c}, {"a", a}, {"b", b}});
-        CHECK(joined.first_sample == 0);
-        double worst = 0;
-        for (std::size_t i = 0; i < one.film.pixels().size(); ++i) {
-            const Film::Pixel &x = one.film.pixels()[i], &y = joined.film.pixels()[i];
-            CHECK(x.count == y.count);
-            for (std::size_t r = 0; r < Film::kReplicates; ++r)
-                for (std::size_t color = 0; color < 3; ++color)
-                    worst = std::max(worst, std::abs(x.sum[r][color] - y.sum[r][color]) / std::max(x.sum[r][color], 1e-30));
+        const auto shard = [&](const char* name, int first, int last) {
+            std::filesystem::remove(folder / name);
+            return film_of(scene, settings, folder / name, first, last);
+        };
+        for (const bool replicates : {true, false}) {
+            settings.aovs.variance = replicates;
+            const KeptFilm one = shard("one.exr", 0, 30);
+            const KeptFilm joined = merged({{"c", shard("c.exr", 16, 30)}, {"a", shard("a.exr", 0, 7)}, {"b", shard("b.exr", 7, 16)}});
+            CHECK(joined.first_sample == 0);
+            CHECK((joined.film.estimated_relmse() >= 0) == replicates);
+            double worst = 0;
+            for (std::size_t i = 0; i < one.film.pixels().size(); ++i) {
+                const Film::Pixel &x = one.film.pixels()[i], &y = joined.film.pixels()[i];
+                CHECK(x.count == y.count);
+                for (std::size_t r = 0; r < Film::kReplicates; ++r)
+                    for (std::size_t color = 0; color < 3; ++color)
+                        worst = std::max(worst, std::abs(x.sum[r][color] - y.sum[r][color]) / std::max(x.sum[r][color], 1e-30));
+            }
+            CHECK(worst <= 1e-12);
         }
-        CHECK(worst <= 1e-12);
 
+        const KeptFilm a = shard("a.exr", 0, 7);
         CHECK(error_of([&] { merged({}); }) == Containing("no film"));
         CHECK(error_of([&] { merged({{"a", a}, {"again", a}}); }) == Containing("again: has samples from 0 on, but a has"));
         settings.seed = 1;

@@ -2,6 +2,8 @@
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/pass.h"
 
+#include "common/sampling/warp.h"
+#include "common/vec/simd.h"
 #include "tests/raytrace/scene_builder.h"
 
 #include <doctest/doctest.h>
@@ -79,7 +81,7 @@ Scene room(Lamp lamp, bool many, const Place& place) {
 
 // How many of the paths of a small picture differ in a bit, of those that bring light at all.
 struct Differences {
-    int differ = 0, lit = 0;
+    int differ = 0, lit = 0, matt = 0; // and of those that stand at matt surfaces first
     bool same_rays = false;
 };
 Differences side_by_side_and_alone(const Scene& scene, const Settings& settings) {
@@ -105,11 +107,13 @@ Differences side_by_side_and_alone(const Scene& scene, const Settings& settings)
         Sampler sampler = samplers[i];
         alone.push_back(path_radiance(plan, rays[i], hits[i], sampler, alone_counts));
     }
+    const std::vector<Hit> first_hits = hits;
     path_radiances(plan, rays, hits, samplers, together, counts);
     Differences found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         found.differ += together[i] != alone[i];
         found.lit += !is_black(alone[i]);
+        found.matt += first_hits[i].valid() && plan.matt.kind(first_hits[i]) != MattSurfaces::Kind::kNone;
     }
     found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow;
     return found;
@@ -120,6 +124,8 @@ void check_same(const Scene& scene, const Settings& settings) {
     CHECK(found.differ == 0);
     CHECK(found.lit > 20);
     CHECK(found.same_rays);
+    const bool asked = settings.skips.shadow_rays && settings.skips.textures; // by tests: then none goes side by side
+    if (kDoubleLanes >= 4) CHECK((found.matt > 100) == asked);
 }
 
 } // namespace
@@ -135,6 +141,46 @@ TEST_SUITE("unit") {
                 settings.seed = 7;
                 check_same(room(lamp, many, {}), settings);
             }
+    }
+
+    TEST_CASE("rays that run anywhere, in any number, hit what each alone does") {
+        const Scene scene = room(Lamp::kRectangle, false, {});
+        Settings settings;
+        const Prepared prepared = prepare(scene, settings);
+        const Accelerator& accelerator = prepared.data().accelerator;
+        REQUIRE(accelerator.few_primitives());
+        Sampler sampler(SamplerKind::kIndependent, 3, 1);
+        int found = 0;
+        for (std::uint32_t count = 0; count < 1200; count = count < 40 ? count + 1 : 3 * count) {
+            std::vector<Ray> rays;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                sampler.start(static_cast<int>(count), 0, i);
+                const Vec2 at = sampler.get_2d();
+                Ray ray{Vec3(2 * at.x - 1, i % 3 == 0 ? 0.0f : 1.9f * sampler.get_1d(), 2 * at.y - 1), // some on the floor
+                        uniform_sphere(sampler.get_2d())};
+                if (i % 5 == 0) ray.direction = Vec3(i % 2 == 0 ? 1.0f : -1.0f, 0, 0);
+                if (i % 7 == 0) ray.t_max = sampler.get_1d();
+                if (i % 31 == 30) ray.direction = {};
+                if (i % 37 == 36) ray.t_max = std::numeric_limits<float>::quiet_NaN();
+                rays.push_back(ray);
+                if (i % 11 == 0) rays.push_back(ray);
+            }
+            std::vector<Hit> hits(rays.size());
+            accelerator.closest_of_scattered(rays, hits);
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                REQUIRE(hits[i] == accelerator.closest(rays[i]));
+                found += hits[i].valid();
+            }
+        }
+        CHECK(found > 1000);
+    }
+
+    TEST_CASE("one instance is no list of few primitives") {
+        SceneBuilder builder;
+        const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}), ball = builder.shape(icosphere(3));
+        builder.place_moving(ball, white, translation(Vec3(0, 0, 0)), translation(Vec3(1, 0, 0)));
+        const Scene scene = builder.finish();
+        CHECK(!prepare(scene, Settings()).data().accelerator.few_primitives());
     }
 
     TEST_CASE("and at every scale, far from the origin") {
@@ -160,6 +206,7 @@ TEST_SUITE("unit") {
         check_with([](Settings& s) { s.integrator = Integrator::kDirect; });
         check_with([](Settings& s) { s.sampler = SamplerKind::kIndependent; });
         check_with([](Settings& s) { s.adaptive = true; }); // two replicates
+        check_with([](Settings& s) { s.environment = false; });
         check_with([](Settings& s) { s.skips.shadow_rays = false; });
         check_with([](Settings& s) { s.skips.textures = false; });
     }
