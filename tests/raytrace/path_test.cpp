@@ -48,8 +48,8 @@ TEST_SUITE("unit") {
         for (const float a : {1e-20f, 1e-3f, 1.0f, 3.0f, 1e20f})
             for (const float b : {1e-20f, 1e-3f, 1.0f, 3.0f, 1e20f})
                 CHECK(mis_weight(a, b) + mis_weight(b, a) == doctest::Approx(1));
-        CHECK(mis_weight(1, 0) == 1);
-        CHECK(mis_weight(1, kInfinity) == 0);
+        CHECK(mis_weight(1.0f, 0.0f) == 1);
+        CHECK(mis_weight(1.0f, kInfinity) == 0);
     }
 
     TEST_CASE("the density of a light sample is what its hit is weighed with") {

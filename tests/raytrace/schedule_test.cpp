@@ -73,6 +73,18 @@ ImageRgb reference(const Scene& scene, int scale = 1) {
 
 TEST_SUITE("unit") {
 
+    TEST_CASE("a pass over a single pixel that is hardly above the error takes samples") {
+        for (const bool adaptive : {false, true}) {
+            Film film(1, 1);
+            for (std::uint32_t i = 0; i < 16; ++i) film.add(0, 0, i & 1u, Rgb(i % 2 ? 1.0f : 2.0f));
+            Settings settings;
+            settings.samples_per_pixel = 1 << 20;
+            settings.adaptive = adaptive;
+            settings.error_limit = 0.999 * film.estimated_relmse();
+            CHECK(planned(settings, 16) > 16);
+        }
+    }
+
     TEST_CASE("passes grow, stop at the limits, and end at the samples asked for") {
         Settings settings;
         settings.samples_per_pixel = 100;
