@@ -24,8 +24,8 @@ struct CameraSample {
 };
 
 /// Traces what render() with the same settings traces: sample `index` of pixel (x, y) is the same ray, the same path
-/// and, but for rounding, the same radiance, light.sum(). As in the film, even and odd indices are two independent
-/// halves (see Sampler). The integrator must be path or direct.
+/// and, but for rounding, the same radiance, light.sum(). Where those know their error, even and
+/// odd indices are two independent halves (see Sampler). The integrator must be path or direct.
 class SplitTracer {
 public:
     SplitTracer(const Prepared& prepared, const View& view, const Settings& settings);
