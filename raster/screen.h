@@ -39,7 +39,7 @@ public:
     }
     /// The pixel of such a place, or the nearest one.
     std::pair<int, int> pixel_at(Vec3 place) const {
-        const auto within = [](float at, int size) { return std::clamp(static_cast<int>(at), 0, size - 1); };
+        const auto within = [](float at, int size) { return static_cast<int>(clamp(at, 0.0f, static_cast<float>(size - 1))); };
         return {within(place.x, width()), within(place.y, height())};
     }
     /// What is seen at a pixel; nothing outside the picture, or where nothing is.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace duet::raster {
 namespace {
@@ -117,8 +118,7 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, V
         const float met = clamp(part_at(seen_depth), static_cast<float>(i - 1) / pixels, t);
         return ScreenHit{from.x + dx * met, from.y + dy * met, length(step)};
     }
-    if (last_x < 0) last_x = static_cast<int>(from.x), last_y = static_cast<int>(from.y);
-    last_x = std::clamp(last_x, 0, screen.width() - 1), last_y = std::clamp(last_y, 0, screen.height() - 1);
+    if (last_x < 0) std::tie(last_x, last_y) = screen.pixel_at(from);
     const float last_fx = static_cast<float>(last_x) + 0.5f, last_fy = static_cast<float>(last_y) + 0.5f;
     if (hidden_from >= 0 && front_x >= 0 && normal_turn(screen, front_x, front_y) < kFlat) {
         const float crossed = meets_plane(screen, p, way, front_x, front_y);
@@ -135,11 +135,12 @@ std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, V
 float normal_turn(const Screen& screen, int x, int y) {
     const Vec3 n = screen.normal(x, y);
     const float depth = screen.depth(x, y);
+    if (!(depth < kInfinity)) return 0; // nothing is seen
     float most = 0;
     for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
         const int i = x + dx, k = y + dy;
         if (i < 0 || k < 0 || i >= screen.width() || k >= screen.height()) continue;
-        if (std::abs(screen.depth(i, k) - depth) > kSameSurface * depth) continue;
+        if (!(std::abs(screen.depth(i, k) - depth) <= kSameSurface * depth)) continue;
         const float turn = length(screen.normal(i, k) - n);
         if (turn < kSmallTurn) most = std::max(most, turn);
     }

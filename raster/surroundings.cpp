@@ -1,5 +1,6 @@
 #include "raster/surroundings.h"
 
+#include "common/scene/lamp_texture.h"
 #include "raster/prefiltered.h"
 #include "raster/screen_reflection.h"
 
@@ -90,7 +91,9 @@ Rgb Surroundings::seen(const Look& look) const {
     // What the picture shows a little before the lamp is the lamp.
     if (lamp == nullptr || distance < 0.98f * nearest.distance) return sum;
     if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
-    return lerp(sum, lamp->radiance, nearest.part);
+    const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, *lamp, p, look.way, nearest.distance)
+                                                      : lamp->radiance;
+    return lerp(sum, shown, nearest.part);
 }
 
 Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {

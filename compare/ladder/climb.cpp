@@ -83,9 +83,7 @@ LadderPictures climb(ImageRgb first, const PreparedPair& pair, const View& view,
     LadderPictures pictures;
     pictures.first = std::move(first);
     for (auto& half : pictures.halves) half.fill(ImageRgb(view.width, view.height));
-    raytrace::Settings in_halves = pair.raytrace_settings;
-    in_halves.aovs.variance = true; // for which samples fall into replicates
-    const raytrace::SplitTracer tracer(pair.raytrace, view, in_halves);
+    const raytrace::SplitTracer tracer(pair.raytrace, view, pair.raytrace_settings);
     const std::shared_ptr<const raster::Screen> screen =
         raster::screen_of(pair.raster, view, pair.raster_settings);
     std::atomic<std::int64_t> invalid = 0;

@@ -68,7 +68,8 @@ PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& common) {
     raster::Settings raster;
     raster.samples_per_pixel = common.raster_spp;
     raytrace::Settings raytrace;
-    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves
+    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves,
+    raytrace.aovs.variance = true; // which are replicates
     raytrace.max_depth = common.max_depth;
     raster.threads = raytrace.threads = common.threads;
     raster.seed = raytrace.seed = common.seed;

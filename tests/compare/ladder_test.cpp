@@ -214,6 +214,7 @@ TEST_SUITE("unit") {
         const LadderPictures pictures = climb_scene(scene, 8, 1);
         raytrace::Settings settings;
         settings.samples_per_pixel = 8;
+        settings.aovs.variance = true;
         Control control;
         const View view{scene.camera, kSize, kSize};
         const ImageRgb path = raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
