@@ -81,8 +81,14 @@ Rgb SeenThrough::through(Vec3 way, float eta, float alpha) const {
     const float bend = (1 - 1 / eta) * turn_, parting = static_cast<float>(left.lost) * kParting;
     const auto kept = [&](float absorption) { return std::exp(-left.inside * absorption); };
     const std::optional<Rgb> met = met_inside(left.p);
+    SurfacePoint exit = point_.surface; // where shadow maps tell which lamps it sees
+    exit.p = screen_.absolute(left.p);
+    exit.ng = exit.ns = exit.horizon = left.n;
+    exit.lift = {};
+    const ShadingPoint leaves(exit, left.n);
     const Rgb light = met ? *met : around_.seen({.p = left.p, .n = left.n, .way = left.way, .width = width_ - left.inside * bend, .turn = -2 * bend,
-                                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .from_picture = false});
+                                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .point = &leaves,
+                                    .from_picture = false});
     return light * tint * tint * Rgb(kept(glass.absorption.r), kept(glass.absorption.g), kept(glass.absorption.b));
 }
 

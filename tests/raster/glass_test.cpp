@@ -149,6 +149,24 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a ball shows a lamp beside the picture, refracted, and not through what stands before that") {
+        for (const bool screened : {false, true}) {
+            Scene scene;
+            add(scene, Sphere{{0, 0, 0}, 1}, Mat4(), Dielectric{kIor});
+            add(scene, QuadList{{{Vec3(-6, -3, -2), Vec3(0, 0, -4), Vec3(0, 6, 0)}}}, Mat4(), Emissive{Rgb(8.0f), true});
+            if (screened) add(scene, QuadList{{{Vec3(-4, -6, 2), Vec3(0, 0, -12), Vec3(0, 12, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
+            finish_scene(scene);
+            scene.environment = ConstantEnvironment{Rgb(0.0f)};
+            const View narrow{look({0, 0, 5}, {0, 0, 0}, 30), 64, 64};
+            const ImageRgb found = render(scene, narrow, plain()).radiance;
+            const auto bright = std::count_if(found.begin(), found.end(), [](Rgb c) { return c.g > 2; });
+            if (screened)
+                CHECK(bright == 0); // but where shadow maps blur, or light is mirrored
+            else
+                CHECK(bright > 40);
+        }
+    }
+
     TEST_CASE("turned off, or where there is no glass, no picture without it is made") {
         for (const bool glass : {false, true})
             for (const bool on : {false, true}) {
