@@ -169,7 +169,7 @@ public:
         Mask on = dot(wi, points_.n) * local.z > zero;
         Color throughput = throughput_ * albedo_;
         if (plan_.russian_roulette && depth > 0) {
-            const Floats probability = max_component(throughput) / (refraction.floats() * Floats(kDim));
+            const Floats probability = survival(throughput, refraction.floats());
             on = on & ((probability >= one) | (roulette.floats() < probability));
             throughput = throughput * select(probability >= one, one, one / probability);
         }

@@ -227,7 +227,7 @@ private:
     }
 
     bool survives(float u) {
-        const float probability = max_component(state_.throughput) / (state_.refraction * kDim);
+        const float probability = survival(state_.throughput, state_.refraction);
         if (probability >= 1) return true;
         if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
         if (!(u < probability)) return false;

@@ -20,7 +20,11 @@ struct PathState {
 
 /// Russian roulette ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier, and
 /// well placed samples suffer most: a path of half its throughput is still worth its rays (README.md has what other
-/// thresholds cost). The probability to go on is that of the throughput, without what refraction did to it, over this.
-inline constexpr float kDim = 0.25f;
+/// thresholds cost). This is the probability to go on, where it is below 1: by the throughput without what refraction did
+/// to it. T is float or a batch of floats.
+template <typename T> T survival(RgbT<T> throughput, T refraction) {
+    constexpr float kDim = 0.25f;
+    return max_component(throughput) / (refraction * T(kDim));
+}
 
 } // namespace duet::raytrace
