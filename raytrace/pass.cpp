@@ -62,7 +62,7 @@ class CameraBatch {
 public:
     CameraBatch(const PassTarget& target, const CameraModel& camera)
         : target_(target), camera_(camera),
-          replicates_(target.settings.replicates()), samplers_(kSize, target.settings.make_sampler()) {
+          samplers_(kSize, target.settings.make_sampler()) {
         samples_.reserve(kSize);
     }
 
@@ -86,7 +86,7 @@ public:
                   std::span(radiances_).first(size), counts_);
         for (std::size_t i = 0; i < size; ++i) {
             const auto [x, y, index] = samples_[i];
-            if (!target_.keeper.film().add(x, y, index % replicates_, radiances_[i]))
+            if (!target_.keeper.film().add(x, y, samplers_[i].replicate(), radiances_[i]))
                 first_invalid_ = first_of(first_invalid_, InvalidSample{index, y, x});
         }
         counts_.camera += static_cast<std::int64_t>(size);
@@ -128,7 +128,6 @@ private:
     const CameraModel& camera_;
     RayCounts counts_;
     std::optional<InvalidSample> first_invalid_;
-    std::uint32_t replicates_;
     std::vector<Sample> samples_; // so many of those below
     std::vector<Sampler> samplers_;
     std::array<CameraModel::Point, kSize> points_;

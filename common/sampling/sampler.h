@@ -45,6 +45,8 @@ public:
     /// To a given dimension of the current sample: gives each bounce dimensions of its own.
     void set_dimension(std::uint32_t dimension) { dimension_ = dimension; }
     std::uint32_t dimension() const { return dimension_; }
+    /// Of the current sample.
+    std::uint32_t replicate() const { return replicate_; }
 
     /// The next one or two dimensions: numbers in [0, 1).
     float get_1d();

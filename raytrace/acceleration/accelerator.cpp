@@ -411,10 +411,6 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
 }
 
 void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const {
-    if (!few_primitives()) {
-        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest(rays[i]);
-        return;
-    }
     for (std::size_t from = 0; from < rays.size(); from += kMostSorted) {
         const std::size_t size = std::min(rays.size() - from, kMostSorted);
         const auto some = rays.subspan(from, size);

@@ -24,7 +24,7 @@ public:
     /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
     /// neighbouring pixels do. As many hits as rays.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
-    /// The same of rays that run anywhere: faster where there are few primitives, and many rays.
+    /// The same of rays that run anywhere, where there are few_primitives().
     void closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const;
     /// Whether there are few, and nothing but primitives: then the nearest hit of many rays costs less than a look for any
     /// hit of each.
