@@ -104,4 +104,13 @@ TriangleSoup sphere_triangles(int rings) {
     return builder.finish();
 }
 
+double area(const TriangleSoup& soup) {
+    double sum = 0;
+    for (std::size_t i = 0; i < soup.triangles.size(); i += 3) {
+        const auto p = [&](std::size_t k) { return Vec3d(soup.positions[static_cast<std::size_t>(soup.triangles[i + k])]); };
+        sum += length(cross(p(1) - p(0), p(2) - p(0))) / 2;
+    }
+    return sum;
+}
+
 } // namespace duet::compare

@@ -25,5 +25,9 @@ TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world);
 /// texture coordinates of sphere_uv. No vertex is more than π/rings from the next; faces lie within 1 −
 /// cos(π/(2·rings)) below the sphere's surface.
 TriangleSoup sphere_triangles(int rings);
+constexpr std::int64_t sphere_triangle_count(int rings) { return 4 * std::int64_t{rings} * (rings - 1); }
+
+/// Of all triangles.
+double area(const TriangleSoup& soup);
 
 } // namespace duet::compare

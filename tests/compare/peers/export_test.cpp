@@ -78,7 +78,8 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the sphere's mesh: closed, outwards, on the sphere, its texture coordinates sphere_uv's") {
         const TriangleSoup soup = sphere_triangles(16);
-        CHECK(soup.slots.size() == 4 * 16 * 15);
+        CHECK(soup.slots.size() == sphere_triangle_count(16));
+        CHECK(area(soup) == doctest::Approx(4 * kPiDouble).epsilon(0.02));
         CHECK(faces_outwards(soup));
         double volume = 0;
         for (std::size_t t = 0; t < soup.slots.size(); ++t) {
@@ -133,7 +134,10 @@ TEST_SUITE("unit") {
         ExportNotes notes;
         const json file = exported(scratch, builder.finish(), &notes);
         CHECK(file["meshes"].size() == 1);
-        CHECK(file["objects"][0]["matrix"][0] == json{0.5, 0.0, 0.0, 1.0});
+        const json& row = file["objects"][0]["matrix"][0];
+        CHECK(row[0].get<double>() > 0.5); // so much larger that its area is the sphere's
+        CHECK(row[0].get<double>() == doctest::Approx(0.5).epsilon(2e-4));
+        CHECK(row[3] == 1.0);
         CHECK(file["objects"][1]["mesh"] == 0);
         CHECK(notes.size() == 1);
         // For the direction w Cycles looks up u = ½ − atan2(y, x)/2π of its turned version; ours adds a quarter.
@@ -146,6 +150,29 @@ TEST_SUITE("unit") {
         CHECK(u == doctest::Approx(static_cast<double>(sphere_uv(Vec3(w)).x) + 0.25));
         CHECK(turned(2) == doctest::Approx(w.y));
         CHECK(read_image(scratch / "environment.exr").width() == 4);
+    }
+
+    TEST_CASE("many spheres are coarser, and of a sphere's area all the same") {
+        const ScratchFolder scratch;
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        for (int i = 0; i < 1000; ++i) builder.add(Sphere{{static_cast<float>(3 * i), 0, 0}, 1}, grey);
+        ExportNotes notes;
+        const json file = exported(scratch, builder.finish(), &notes);
+        const auto positions = numbers<float>(scratch, file["meshes"][0]["positions"]);
+        const auto corners = numbers<std::int32_t>(scratch, file["meshes"][0]["triangles"]);
+        CHECK(corners.size() / 3 > 1000);
+        CHECK(corners.size() / 3 <= (1u << 21) / 1000);
+        double sum = 0;
+        for (std::size_t i = 0; i < corners.size(); i += 3) {
+            const auto p = [&](std::size_t k) {
+                const auto at = 3 * static_cast<std::size_t>(corners[i + k]);
+                return Vec3d(positions[at], positions[at + 1], positions[at + 2]);
+            };
+            sum += length(cross(p(1) - p(0), p(2) - p(0))) / 2;
+        }
+        const double scale = file["objects"][999]["matrix"][0][0].get<double>();
+        CHECK(sum * scale * scale == doctest::Approx(4 * kPiDouble).epsilon(1e-5));
     }
 
     TEST_CASE("what has no counterpart is refused by name") {
