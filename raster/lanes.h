@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace duet::raster {
 
@@ -99,6 +100,18 @@ inline Floats look_up(const StripOf<float>& table, const Ints& index) {
 #endif
 }
 
+/// The same of whole numbers.
+inline Ints look_up(const StripOf<std::int32_t>& table, const Ints& index) {
+#if defined(__AVX512F__)
+    return _mm512_permutexvar_epi32(index, load(table, 0));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    index.store_aligned(at.data());
+    for (std::int32_t& place : at) place = table[static_cast<std::size_t>(place & 15)];
+    return Ints::load_aligned(at.data());
+#endif
+}
+
 /// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
@@ -155,9 +168,14 @@ template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
 #if defined(__AVX512F__)
     return typename xsimd::batch_bool<T>::register_type(bits);
 #else
-    std::array<bool, xsimd::batch<T>::size> lanes;
-    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = bits >> i & 1;
-    return xsimd::batch_bool<T>::load_unaligned(lanes.data());
+    using Whole = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+    using Lanes = xsimd::batch<Whole>;
+    alignas(64) static constexpr auto kBits = [] {
+        std::array<Whole, Lanes::size> each{};
+        for (std::size_t i = 0; i < each.size(); ++i) each[i] = Whole{1} << i;
+        return each;
+    }();
+    return xsimd::bool_cast((Lanes(static_cast<Whole>(bits)) & Lanes::load_aligned(kBits.data())) != Lanes(Whole{0}));
 #endif
 }
 

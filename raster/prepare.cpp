@@ -40,15 +40,41 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
-std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
+/// The image texture that colours all of an object, if it is filtered.
+const ImageTexture* filtered_texture(const Scene& scene, const RgbSlot& slot) {
+    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
+    return texture != nullptr && uses_footprint(texture->filter) ? texture : nullptr;
+}
+std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
     const RgbSlot& slot = texture_slot(material);
     if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt; // metal may have colours by a table
-    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
-    const bool packed = texture != nullptr && uses_footprint(texture->filter) && texture->image < texels.size() &&
-                        !texels[texture->image].empty();
-    return packed ? std::optional(slot) : std::nullopt;
+    return filtered_texture(scene, slot) != nullptr ? std::optional(slot) : std::nullopt;
+}
+
+/// Whether a shading's fragments ask for base colours side by side. (Shading::kLit asks one by one.)
+bool uses_base_colors(Shading shading) {
+    switch (shading) {
+    case Shading::kPhong:
+    case Shading::kGouraud:
+    case Shading::kFlat:
+    case Shading::kToon:
+    case Shading::kWireframe:
+    case Shading::kAlbedo:
+        return true;
+    default:
+        return false;
+    }
+}
+
+/// Of those images that alone colour some object.
+std::vector<Texels> pack_texels(const Scene& scene, const Settings& settings) {
+    if (!uses_base_colors(settings.shading)) return {};
+    std::vector<std::uint8_t> wanted(scene.textures.images.size(), 0);
+    for (const Object& object : scene.objects)
+        if (const auto slot = one_texture(scene, object)) wanted[filtered_texture(scene, *slot)->image] = 1;
+    return raster::pack_texels(scene.textures, wanted, settings.threads);
 }
 
 PreparedObject prepare_object(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
@@ -58,7 +84,10 @@ PreparedObject prepare_object(const Scene& scene, const Object& object, const st
     // Matrix entries are interpolated, so a point moves on a straight line: between the bounds of both ends.
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
     result.one_color = one_color(scene, object);
-    result.one_texture = one_texture(scene, object, texels);
+    if (const auto slot = one_texture(scene, object)) {
+        const std::uint32_t image = filtered_texture(scene, *slot)->image;
+        if (image < texels.size() && !texels[image].empty()) result.one_texture = slot;
+    }
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
@@ -98,7 +127,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
                       .spheres = {},
                       .irradiance = Irradiance(scene.environment, settings.threads),
                       .vertices = pack_vertices(scene),
-                      .texels = settings.shading != Shading::kLit ? pack_texels(scene.textures) : std::vector<Texels>{},
+                      .texels = pack_texels(scene, settings),
                       .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];

@@ -45,7 +45,7 @@ struct PreparedData {
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
-    std::vector<Texels> texels{};                      ///< an image each; none for Shading::kLit, which looks up one by one
+    std::vector<Texels> texels{};                      ///< an image each, of those that are looked up side by side
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;

@@ -126,8 +126,7 @@ private:
         if (!(samples.seen >> sample & 1)) return {};
         const Mesh& mesh = *samples.mesh;
         const bool filtered = data_.scene.needs.footprints;
-        const auto kept = [&](double b) { return filtered ? static_cast<double>(static_cast<float>(b)) : b; }; // as by a Hit
-        const double u = kept(strip_->b1[sample]), v = kept(strip_->b2[sample]);
+        const double u = static_cast<double>(strip_->b1[sample]), v = static_cast<double>(strip_->b2[sample]);
         const auto& corners = mesh.triangles[samples.index(sample)];
         SurfacePoint point;
         point.object = samples.object->object;
@@ -173,7 +172,7 @@ private:
         const std::uint32_t with_area = gather_uvs(first, corners);
         const Doubles scale(1 / std::sqrt(samples_per_pixel(*place_, view_))), one(1.0), zero(0.0); // as PixelFootprint's
         for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
-            const Doubles u = rounded(load(strip_->b1, first + k)), v = rounded(load(strip_->b2, first + k)); // as by a Hit
+            const Doubles u = load_doubles(strip_->b1.at(first + k)), v = load_doubles(strip_->b2.at(first + k));
             const auto has_area = lanes_from<double>(with_area >> k);
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 const auto uv = [&](std::size_t corner) { return load_doubles(corners[corner][axis].at(k)); };
@@ -188,28 +187,28 @@ private:
             }
         }
     }
-    /// Texture coordinates at the corners of each sample's triangle, 0 where nothing is seen. A bit for each triangle that has
-    /// an area in the texture.
+    /// Texture coordinates at the corners of each sample's triangle; where nothing is seen any. A bit for each triangle that has
+    /// an area in the texture. Triangle by triangle: samples side by side mostly see the same.
     std::uint32_t gather_uvs(std::size_t first, std::array<std::array<StripOf<float>, 2>, 3>& corners) const {
+        constexpr std::uint32_t kAll = (1u << Floats::size) - 1;
         const StripSamples& samples = *strip_->samples;
         const Mesh& mesh = *samples.mesh;
         std::uint32_t with_area = 0;
-        for (std::size_t i = 0; i < Floats::size; ++i) {
-            if (!(samples.seen >> (first + i) & 1)) continue;
+        for (std::uint32_t left = samples.seen >> first & kAll; left != 0;) {
+            const std::size_t sample = first + static_cast<std::size_t>(std::countr_zero(left));
+            const std::uint32_t lanes = lanes_of_number(samples.ids, samples.ids[sample]) >> first & kAll;
+            left &= ~lanes;
             std::array<Vec2, 3> uv{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
             if (!mesh.uvs.empty())
-                for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[mesh.triangles[samples.index(first + i)][k]];
+                for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[mesh.triangles[samples.index(sample)][k]];
             const Vec2d along_u = Vec2d(uv[1]) - Vec2d(uv[0]), along_v = Vec2d(uv[2]) - Vec2d(uv[0]);
-            const bool area = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0;
-            with_area |= std::uint32_t{area} << i;
-            for (std::size_t k = 0; k < 3; ++k) corners[k][0][i] = uv[k].x, corners[k][1][i] = uv[k].y;
+            if (difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0) with_area |= lanes;
+            const auto here = lanes_from<float>(lanes);
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    store(corners[k][axis], 0, xsimd::select(here, Floats(axis == 0 ? uv[k].x : uv[k].y), load(corners[k][axis], 0)));
         }
         return with_area;
-    }
-    static Doubles rounded(const Doubles& value) {
-        std::array<float, Doubles::size> floats;
-        store_floats(value, floats.data());
-        return load_doubles(floats.data());
     }
 
     const PreparedData& data_;

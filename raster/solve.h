@@ -19,7 +19,7 @@ template <VertexShader S> struct SolvedStrip {
     std::array<StripOf<float>, kCount> at;                        ///< varyings
     std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
     std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
-    StripOf<double> b1, b2;                                       ///< barycentrics of the second and third corner
+    StripOf<float> b1, b2; ///< barycentrics of the second and third corner, as a Hit has them: rounded here, and nowhere else
     StripOf<double> depth;                                        ///< camera-space −z
     std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
     /// A bit for each sample that lies in the unsnapped triangle, where the solution holds as it is.
@@ -170,16 +170,16 @@ void StripSolver<S>::solve_lanes(const SetUpsOf& set_ups, const Positions& posit
                     merge(d2_dx[half], along(one.e2, second_b[half], 0));
                     merge(d2_dy[half], along(one.e2, second_b[half], 1));
                 });
-            store(strip.b1, k, first_b[half]);
-            store(strip.b2, k, second_b[half]);
             store(strip.depth, k, depth_sum * inverse);
         }
         const Floats u = narrowed(first_b[0], first_b[1]), v = narrowed(second_b[0], second_b[1]);
+        store(strip.b1, i, u);
+        store(strip.b2, i, v);
         std::array<Floats, kCount> at_here;
         Vec3T<Floats> ng_here;
         set_ups.template for_each<float>(i, [&](const auto& one, const auto& merge) {
             for (std::size_t c = 0; c < kCount; ++c)
-                merge(at_here[c], xsimd::fma(lanes_of(one.n1[c], i), u, xsimd::fma(lanes_of(one.n2[c], i), v, lanes_of(one.n[c], i))));
+                merge(at_here[c], fused(lanes_of(one.n1[c], i), u, fused(lanes_of(one.n2[c], i), v, lanes_of(one.n[c], i))));
             merge(ng_here.x, lanes_of(one.ng[0], i));
             merge(ng_here.y, lanes_of(one.ng[1], i));
             merge(ng_here.z, lanes_of(one.ng[2], i));
@@ -235,16 +235,15 @@ void StripSolver<S>::mend_strip(const Many* many, const StripPlace& place, const
         const Run& run = run_of(samples.id(i));
         const WholeTriangle whole = triangles_.whole(run, Triangles::index(run, samples.id(i)));
         const Interpolated here = interpolate(whole, place.position(i));
-        strip.b1[i] = here.b1 / here.sum;
-        strip.b2[i] = here.b2 / here.sum;
+        strip.b1[i] = static_cast<float>(here.b1 / here.sum);
+        strip.b2[i] = static_cast<float>(here.b2 / here.sum);
         strip.depth[i] = here.depth_sum / here.sum;
-        const auto u = static_cast<float>(strip.b1[i]), v = static_cast<float>(strip.b2[i]);
         const One* one = nullptr;
         for (std::size_t k = 0; k < samples.few && many == nullptr; ++k)
             if (samples.few_lanes[k] >> i & 1) one = &set_ups_.kept(samples.few_kept[k]);
         for (std::size_t c = 0; c < kCount; ++c)
-            strip.at[c][i] = one != nullptr ? one->n[c] + one->n1[c] * u + one->n2[c] * v
-                                            : many->n[c][i] + many->n1[c][i] * u + many->n2[c][i] * v;
+            strip.at[c][i] = one != nullptr ? one->n[c] + one->n1[c] * strip.b1[i] + one->n2[c] * strip.b2[i]
+                                            : many->n[c][i] + many->n1[c][i] * strip.b1[i] + many->n2[c][i] * strip.b2[i];
     }
 }
 

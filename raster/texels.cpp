@@ -1,79 +1,93 @@
 #include "raster/texels.h"
 
+#include "common/system/error.h"
+#include "common/system/parallel.h"
 #include "common/texture/probe_line.h"
 #include "common/texture/texel_place.h"
-
-#include <algorithm>
-#include <utility>
+#include "raster/shader.h"
 
 namespace duet::raster {
 
-Texels::Level::Level(const ImageRgb& image) : width(image.width()), height(image.height()), texels(image.size()) {
-    for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = {image[i].r, image[i].g, image[i].b};
+// Rows are stored from the top.
+void Texels::add(const ImageRgb& image) {
+    const auto level = static_cast<std::size_t>(levels_++);
+    widths_[level] = static_cast<float>(image.width()); // whole numbers below 2^24
+    heights_[level] = static_cast<float>(image.height());
+    firsts_[level] = static_cast<std::int32_t>(texels_.size());
+    const auto add_row = [&](int y) {
+        for (int x = 0; x <= image.width(); ++x) {
+            const Rgb c = image(x % image.width(), y);
+            texels_.push_back({c.r, c.g, c.b});
+        }
+    };
+    add_row(image.height() - 1);
+    for (int y = 0; y < image.height(); ++y) add_row(y);
 }
 
 Texels::Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller) {
-    levels_.reserve(smaller.size() + 1);
-    levels_.emplace_back(image);
-    for (const ImageRgb& one : smaller) levels_.emplace_back(one);
+    if (smaller.size() >= kStrip) throw Error(message(smaller.size() + 1, " sizes of an image: expected at most ", kStrip));
+    const auto room = [](const ImageRgb& one) { return static_cast<std::size_t>(one.width() + 1) * static_cast<std::size_t>(one.height() + 1); };
+    std::size_t count = room(image);
+    for (const ImageRgb& one : smaller) count += room(one);
+    texels_.reserve(count);
+    add(image);
+    for (const ImageRgb& one : smaller) add(one);
 }
 
-std::size_t Texels::memory_bytes() const {
-    std::size_t bytes = 0;
-    for (const Level& level : levels_) bytes += level.texels.size() * sizeof(Texel);
-    return bytes;
-}
-
-std::vector<Texels> pack_texels(const TextureSet& textures) {
+std::vector<Texels> pack_texels(const TextureSet& textures, const std::vector<std::uint8_t>& wanted, int threads) {
     std::vector<Texels> result(textures.images.size());
-    for (std::size_t i = 0; i < textures.smaller.size(); ++i)
-        if (!textures.smaller[i].empty()) result[i] = Texels(textures.images[i], textures.smaller[i]);
+    parallel_for(textures.smaller.size(), threads, [&](std::size_t i) {
+        if (wanted[i] != 0 && !textures.smaller[i].empty()) result[i] = Texels(textures.images[i], textures.smaller[i]);
+    });
     return result;
 }
 
-/// The size of the image that each lane looks at.
+/// The size of the image that each lane looks at, and where.
 struct Texels::LevelLanes {
-    std::array<const Texel*, kStrip> texels{};
-    StripOf<double> width, height;
-    std::array<StripOf<std::int32_t>, 4> corners; ///< numbers of the texels around a place
+    const Texel* texels;
+    StripOf<float> width, height;
+    StripOf<std::int32_t> first;
+    StripOf<std::int32_t> at, above; ///< numbers of the left ones of the texels around a place
     StripOf<float> weight_x, weight_y;
 
-    void set(std::size_t lane, const Level& level) {
-        texels[lane] = level.texels.data();
-        width[lane] = level.width, height[lane] = level.height;
+    LevelLanes(const Texels& of, const Ints& level) : texels(of.texels_.data()) {
+        store(width, 0, raster::look_up(of.widths_, level));
+        store(height, 0, raster::look_up(of.heights_, level));
+        store(first, 0, raster::look_up(of.firsts_, level));
     }
-    /// Some lanes' corners; rows are stored from the top, v rises from the bottom.
+    /// Some lanes' places. v rises from the bottom, and the top row is stored second.
     void move_to(std::size_t k, const Doubles& s, const Doubles& t) {
-        const Doubles columns = load(width, k), rows = load(height, k);
+        const Doubles columns = load_doubles(width.at(k)), rows = load_doubles(height.at(k)), stride = columns + Doubles(1.0);
         const TexelPair<Doubles> x(s, columns), y(t, rows);
-        const Doubles first = (rows - Doubles(1.0) - y.first) * columns, second = (rows - Doubles(1.0) - y.second) * columns;
-        store_ints(first + x.first, corners[0].at(k));
-        store_ints(first + x.second, corners[1].at(k));
-        store_ints(second + x.first, corners[2].at(k));
-        store_ints(second + x.second, corners[3].at(k));
+        const Doubles place = (rows - y.first) * stride + x.first;
+        store_ints(place, at.at(k));
+        store_ints(place - stride, above.at(k));
         store_floats(x.weight, weight_x.at(k));
         store_floats(y.weight, weight_y.at(k));
     }
     RgbT<Floats> colors() const {
-        const auto corner = [&](std::size_t c) -> RgbT<Floats> {
-            const auto columns = load_columns<Floats::size>(
-                [&](std::size_t lane) { return &texels[lane][corners[c][lane]].r; });
+        std::array<const Texel*, Floats::size> lower, upper;
+        for (std::size_t lane = 0; lane < Floats::size; ++lane) {
+            lower[lane] = texels + first[lane] + at[lane];
+            upper[lane] = texels + first[lane] + above[lane];
+        }
+        const auto corner = [](const std::array<const Texel*, Floats::size>& row, std::size_t column) -> RgbT<Floats> {
+            const auto columns = load_columns<Floats::size>([&](std::size_t lane) { return &row[lane][column].r; });
             return {columns[0], columns[1], columns[2]};
         };
-        return bilinear(corner(0), corner(1), corner(2), corner(3), load(weight_x, 0), load(weight_y, 0));
+        return bilinear(corner(lower, 0), corner(lower, 1), corner(upper, 0), corner(upper, 1), load(weight_x, 0), load(weight_y, 0));
     }
 };
 
 struct Texels::Probes {
     StripOf<double> s, t;             ///< place of the middle
     StripOf<double> count, step_x, step_y;
-    StripOf<double> level;
-    StripOf<float> blend;
+    StripOf<float> counts, level, blend;
 };
 
 void Texels::find(const ImageTexture& texture, const TexturePlaces& places, Probes& probes) const {
     const Doubles scale_x(static_cast<double>(texture.scale.x)), scale_y(static_cast<double>(texture.scale.y));
-    const Doubles width(static_cast<double>(levels_.front().width)), height(static_cast<double>(levels_.front().height));
+    const Doubles width(static_cast<double>(widths_[0])), height(static_cast<double>(heights_[0]));
     for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
         const auto in_texels = [&](const std::array<StripOf<float>, 2>& duv) {
             return Vec2T<Doubles>(load_doubles(duv[0].at(k)) * scale_x * width, load_doubles(duv[1].at(k)) * scale_y * height);
@@ -85,7 +99,8 @@ void Texels::find(const ImageTexture& texture, const TexturePlaces& places, Prob
         store(probes.count, k, line.count);
         store(probes.step_x, k, line.step.x);
         store(probes.step_y, k, line.step.y);
-        store(probes.level, k, line.level);
+        store_floats(line.count, probes.counts.at(k));
+        store_floats(line.level, probes.level.at(k));
         store_floats(line.blend, probes.blend.at(k));
     }
 }
@@ -93,40 +108,28 @@ void Texels::find(const ImageTexture& texture, const TexturePlaces& places, Prob
 RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& places) const {
     Probes probes;
     find(texture, places, probes);
-    LevelLanes fine, coarse;
-    double most = 1;
-    for (std::size_t i = 0; i < Floats::size; ++i) {
-        const auto level = static_cast<std::size_t>(probes.level[i]), last = levels_.size() - 1;
-        fine.set(i, levels_[std::min(level, last)]);
-        coarse.set(i, levels_[std::min(level + 1, last)]);
-        most = std::max(most, probes.count[i]);
-    }
-    const Doubles width(static_cast<double>(levels_.front().width)), height(static_cast<double>(levels_.front().height));
-    const Floats blend = load(probes.blend, 0), zero(0.0f);
-    const bool blends = xsimd::any(blend > zero);
-    StripOf<float> weights; // of probes: 1, or 0 beyond the last
+    const Ints level = truncated(load(probes.level, 0)), last(levels_ - 1);
+    LevelLanes fine(*this, min(level, last)), coarse(*this, min(level + Ints(1), last));
+    const Doubles width(static_cast<double>(widths_[0])), height(static_cast<double>(heights_[0]));
+    const Floats blend = load(probes.blend, 0), counts = load(probes.counts, 0), zero(0.0f);
+    const auto between = blend > zero; // two sizes
+    const bool any_between = xsimd::any(between);
     RgbT<Floats> sum(zero);
-    for (int i = 0; i < static_cast<int>(most); ++i) {
+    const int most = static_cast<int>(highest(counts));
+    for (int i = 0; i < most; ++i) {
         for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
-            const Doubles number(static_cast<double>(i)), count = load(probes.count, k);
-            const Doubles along = number - Doubles(0.5) * (count - Doubles(1.0));
+            const Doubles along = Doubles(static_cast<double>(i)) - Doubles(0.5) * (load(probes.count, k) - Doubles(1.0));
             const Doubles s = fraction(Doubles(load(probes.s, k) + along * load(probes.step_x, k) / width)),
                           t = fraction(Doubles(load(probes.t, k) + along * load(probes.step_y, k) / height));
             fine.move_to(k, s, t);
-            if (blends) coarse.move_to(k, s, t);
-            store_floats(xsimd::select(number < count, Doubles(1.0), Doubles(0.0)), weights.at(k));
+            if (any_between) coarse.move_to(k, s, t);
         }
         RgbT<Floats> color = fine.colors();
-        if (blends) color = lerp(color, coarse.colors(), blend);
-        sum += color * load(weights, 0);
+        // What a lane does not ask for is left out, not weighed by 0: it may be infinite.
+        if (any_between) color = select_each(between, lerp(color, coarse.colors(), blend), color);
+        sum += select_each(Floats(static_cast<float>(i)) < counts, color, RgbT<Floats>(zero));
     }
-    Floats count;
-    {
-        StripOf<float> counts;
-        for (std::size_t k = 0; k < Floats::size; k += Doubles::size) store_floats(load(probes.count, k), counts.at(k));
-        count = load(counts, 0);
-    }
-    return sum * (Floats(1.0f) / count);
+    return sum * (Floats(1.0f) / counts);
 }
 
 } // namespace duet::raster

@@ -15,14 +15,17 @@ struct TexturePlaces {
     std::array<StripOf<float>, 2> uv, duv_dx, duv_dy;
 };
 
-/// An image and its smaller versions, each texel in one piece of memory that can be loaded at once.
+/// An image and its smaller versions, each texel in one piece of memory that can be loaded at once. Each version repeats its
+/// first column beyond its last one and its bottom row above its top one, as it does over uv: so the four texels around a
+/// place always lie beside each other.
 class Texels {
 public:
-    /// Of a picture that no texture filters there is nothing.
+    /// Of a picture that is not asked for there is nothing.
     Texels() = default;
+    /// `smaller`: not empty; up to 16 sizes in all, as any image that is read has (kMaxImageSide).
     Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller);
-    bool empty() const { return levels_.empty(); }
-    std::size_t memory_bytes() const;
+    bool empty() const { return texels_.empty(); }
+    std::size_t memory_bytes() const { return texels_.size() * sizeof(Texel); }
 
     /// What evaluate_texture() says at each place, of a texture of this image that uses_footprint().
     RgbT<Floats> look_up(const ImageTexture& texture, const TexturePlaces& places) const;
@@ -31,20 +34,18 @@ private:
     struct alignas(16) Texel {
         float r = 0, g = 0, b = 0, unused = 0;
     };
-    struct Level {
-        int width = 0, height = 0;
-        std::vector<Texel> texels;
-
-        explicit Level(const ImageRgb& image);
-    };
     struct Probes;
     struct LevelLanes;
+    void add(const ImageRgb& image);
     void find(const ImageTexture& texture, const TexturePlaces& places, Probes& probes) const;
 
-    std::vector<Level> levels_;
+    std::int32_t levels_ = 0;
+    StripOf<float> widths_, heights_; ///< of each
+    StripOf<std::int32_t> firsts_;    ///< number of its first texel
+    std::vector<Texel> texels_;       ///< of one after the other, row by row
 };
 
-/// Of each image of a scene.
-std::vector<Texels> pack_texels(const TextureSet& textures);
+/// Of those images of a scene that are wanted and that a texture filters.
+std::vector<Texels> pack_texels(const TextureSet& textures, const std::vector<std::uint8_t>& wanted, int threads);
 
 } // namespace duet::raster

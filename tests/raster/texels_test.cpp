@@ -2,15 +2,19 @@
 #include "raster/texels.h"
 
 #include "common/texture/pyramid.h"
+#include "raster/prepare.h"
+#include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
 
 using namespace duet;
 using namespace duet::raster;
+using namespace duet::test;
 
 namespace {
 
@@ -50,9 +54,14 @@ SurfacePoint random_point(std::mt19937& random) {
     return point;
 }
 
-/// How many of 16,000 look-ups differ in any bit.
-int differences(int width, int height, const ImageTexture& texture) {
-    const TextureSet set = random_texture(width, height, texture);
+bool same_bits(Rgb a, Rgb b) { // any NaN is the same as any other
+    const auto same = [](float x, float y) { return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) || (x != x && y != y); };
+    return same(a.r, b.r) && same(a.g, b.g) && same(a.b, b.b);
+}
+
+/// How many of so many look-ups differ in any bit.
+int differences(const TextureSet& set) {
+    const ImageTexture& texture = std::get<ImageTexture>(set.textures[0]);
     const Texels texels(set.images[0], set.smaller[0]);
     std::mt19937 random(11);
     int differ = 0;
@@ -71,9 +80,33 @@ int differences(int width, int height, const ImageTexture& texture) {
         RgbT<StripOf<float>> found;
         store(found.r, 0, many.r), store(found.g, 0, many.g), store(found.b, 0, many.b);
         for (std::size_t i = 0; i < points.size(); ++i)
-            differ += Rgb(found.r[i], found.g[i], found.b[i]) != evaluate_texture(set, set.textures[0], points[i]);
+            differ += !same_bits({found.r[i], found.g[i], found.b[i]}, evaluate_texture(set, set.textures[0], points[i]));
     }
     return differ;
+}
+int differences(int width, int height, const ImageTexture& texture) { return differences(random_texture(width, height, texture)); }
+
+/// A torus that one texture colours, twice around it; some of its triangles have no area in the texture.
+Scene textured_scene(const ImageTexture& texture, bool with_coordinates) {
+    Scene scene;
+    Mesh mesh = smooth_torus(48, 24);
+    for (std::size_t i = 0; with_coordinates && i < mesh.positions.size(); ++i)
+        mesh.uvs.push_back(i < 100 ? Vec2(0.3f, 0.7f) : Vec2(static_cast<float>(i / 24) / 24, static_cast<float>(i % 24) / 12));
+    scene.textures = random_texture(61, 40, texture);
+    add(scene, std::move(mesh), Mat4(), Diffuse{{Rgb(0.9f, 0.8f, 0.7f), 0}});
+    finish_scene(scene);
+    return scene;
+}
+
+/// Base colours, looked up together where the scene was prepared so, else one by one.
+ImageRgb base_colors(const Scene& scene, Shading prepared_for) {
+    Settings settings;
+    settings.shading = prepared_for;
+    const Prepared prepared = prepare(scene, settings);
+    REQUIRE(prepared.data().objects[0].one_texture.has_value() == (prepared_for == Shading::kAlbedo));
+    settings.shading = Shading::kAlbedo;
+    Control control;
+    return raster::render(prepared, perspective(), settings, control).radiance;
 }
 
 } // namespace
@@ -87,10 +120,35 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("texels: what is not filtered is not packed") {
-        CHECK(pack_texels(random_texture(8, 8, {.filter = TextureFilter::kBilinear})).at(0).empty());
-        CHECK(pack_texels(random_texture(1, 1, {})).at(0).empty());
-        const std::vector<Texels> packed = pack_texels(random_texture(8, 4, {}));
-        CHECK(packed.at(0).memory_bytes() == 16 * (8 * 4 + 4 * 2 + 2 * 1 + 1));
+    TEST_CASE("texels: infinite ones reach those places alone that they lie at") {
+        for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic}) {
+            TextureSet set = random_texture(37, 101, {.image = 0, .scale = {1, 1}, .filter = filter});
+            std::mt19937 random(5);
+            for (int i = 0; i < 300; ++i) set.images[0][random() % set.images[0].size()].g = std::numeric_limits<float>::infinity();
+            build_pyramids(set);
+            CHECK(differences(set) == 0);
+        }
+    }
+
+    TEST_CASE("base colours of strips: the same bits together and one by one") {
+        for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic})
+            for (const bool with_coordinates : {true, false}) {
+                const Scene scene = textured_scene({.image = 0, .scale = {1.7f, -0.6f}, .filter = filter}, with_coordinates);
+                const ImageRgb together = base_colors(scene, Shading::kAlbedo), alone = base_colors(scene, Shading::kLit);
+                int differ = 0, seen = 0;
+                for (std::size_t i = 0; i < together.size(); ++i) {
+                    differ += !same_bits(together[i], alone[i]);
+                    seen += !is_black(together[i]);
+                }
+                CHECK(differ == 0);
+                CHECK(seen > 10'000);
+            }
+    }
+
+    TEST_CASE("texels: what is not filtered or not wanted is not packed") {
+        CHECK(pack_texels(random_texture(8, 8, {.filter = TextureFilter::kBilinear}), {1}, 1).at(0).empty());
+        CHECK(pack_texels(random_texture(1, 1, {}), {1}, 1).at(0).empty());
+        CHECK(pack_texels(random_texture(8, 4, {}), {0}, 1).at(0).empty());
+        CHECK(pack_texels(random_texture(8, 4, {}), {1}, 2).at(0).memory_bytes() == 16 * (9 * 5 + 5 * 3 + 3 * 2 + 2 * 2));
     }
 }
