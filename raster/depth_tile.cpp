@@ -68,6 +68,25 @@ struct DepthTile::BlockRow {
     }();
 };
 
+/// A triangle's samples in a block, a bit each: all, and those that lie well inside.
+struct DepthTile::Covered {
+    std::uint64_t some = 0, well_inside = 0;
+
+    /// By the edges' values at the block's first sample; in the strips of its rows y0 to y1, the others have none.
+    Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) {
+        const Ints zero(0);
+        for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip)
+            for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+                const auto value = [&](std::size_t k) { return Ints(at[k] + strip * edges.next_strip[k]) + load(edges.step[k], i); };
+                const Ints e0 = value(0), e1 = value(1), e2 = value(2);
+                const auto inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
+                const std::size_t first = static_cast<std::size_t>(strip) * kStrip + i;
+                some |= std::uint64_t{lane_bits(min(min(e0, e1), e2) >= zero)} << first;
+                well_inside |= std::uint64_t{lane_bits(inside)} << first;
+            }
+    }
+};
+
 void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport) {
     rect_ = rect;
     offset_ = offset;
@@ -100,6 +119,9 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
     const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
     if (r.empty()) return;
     const Edges edges(triangle, rect_, offset_, viewport_);
+    // The tile's first sample, from the origin of the triangle's plane.
+    const double left_of_tile = rect_.x0 - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
+                 top_of_tile = rect_.y0 - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels;
     const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
     const std::uint32_t touched = (2u << last_column) - (1u << first_column);
     for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
@@ -110,11 +132,15 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
             const int column = std::countr_zero(left);
             const auto c = static_cast<std::size_t>(column), block = static_cast<std::size_t>(row * kBlocks) + c;
             const bool all = (blocks.all >> c & 1) && triangle.sound;
+            std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
+            if (!all) {
+                const Covered covered(edges, {blocks.first[0][c], blocks.first[1][c], blocks.first[2][c]}, y0, y1);
+                if (covered.some == 0) continue;
+                some = covered.some, well_inside = covered.well_inside;
+            }
             open(block);
-            const std::array<std::int32_t, 3> first{blocks.first[0][c], blocks.first[1][c], blocks.first[2][c]};
-            const std::uint64_t edge_samples = all ? draw_block<true>(edges, first, triangle, column, row, y0, y1)
-                                                   : draw_block<false>(edges, first, triangle, column, row, y0, y1);
-            if (edge_samples != 0) draw_edge_samples(triangle, whole, block, edge_samples);
+            draw_samples(block, well_inside, triangle.id, triangle.nearness, left_of_tile + column * kBlock, top_of_tile + row * kBlock);
+            if (some != well_inside) draw_edge_samples(triangle, whole, block, some & ~well_inside);
             constexpr std::uint8_t kOften = 16;
             if (all || ++partial_[block] >= kOften) find_farthest(block);
         }
@@ -158,40 +184,16 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
     xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
 }
 
-/// Draws those samples of a block that are covered for certain and lie well inside; `kAll` of them do, or the edges say
-/// which, from their values at the block's first sample on. Returns the other covered ones, a bit each. Only the strips of
-/// rows y0 to y1 of the block are looked at.
-template <bool kAll>
-std::uint64_t DepthTile::draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle,
-                                    int column, int row, int y0, int y1) {
-    const Ints zero(0);
-    const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    const Nearness nearness(triangle.nearness, viewport_,
-                            rect_.x0 + column * kBlock - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
-                            rect_.y0 + row * kBlock - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels);
-    const int first_strip = y0 / kStripRows, last_strip = y1 / kStripRows;
-    std::uint64_t edge_samples = 0;
-    std::array<std::int32_t, 3> value{};
-    for (std::size_t k = 0; k < 3; ++k) value[k] = at[k] + first_strip * edges.next_strip[k];
-    for (int strip = first_strip; strip <= last_strip; ++strip) {
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-            const std::size_t in_block = static_cast<std::size_t>(strip) * kStrip + i, place = block * kBlockSamples + in_block;
-            xsimd::batch_bool<float> inside(true);
-            if constexpr (!kAll) {
-                const Ints e0 = Ints(value[0]) + load(edges.step[0], i), e1 = Ints(value[1]) + load(edges.step[1], i),
-                           e2 = Ints(value[2]) + load(edges.step[2], i);
-                const auto covered = min(min(e0, e1), e2) >= zero;
-                const auto well_inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
-                const std::uint32_t covered_bits = lane_bits(covered);
-                if (covered_bits == 0) continue;
-                edge_samples |= std::uint64_t{covered_bits & ~lane_bits(well_inside)} << in_block;
-                inside = xsimd::bool_cast(well_inside);
-            }
-            keep_nearest(place, static_cast<std::int32_t>(triangle.id), nearness.at(in_block), inside);
-        }
-        for (std::size_t k = 0; k < 3; ++k) value[k] += edges.next_strip[k];
+/// Draws those samples of a block, whose first lies at (x, y) from the plane's origin.
+void DepthTile::draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y) {
+    if (samples == 0) return;
+    const Nearness nearness(plane, viewport_, x, y);
+    constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
+    for (auto i = static_cast<std::size_t>(std::countr_zero(samples) / kLanesOfBatch * kLanesOfBatch);
+         i < kBlockSamples && samples >> i != 0; i += Floats::size) {
+        const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
+        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness.at(i), lanes_from<float>(here));
     }
-    return edge_samples;
 }
 
 void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
@@ -226,22 +228,13 @@ std::uint64_t moved(std::uint64_t bits, int x, int y) {
 void DepthTile::draw(const Patch& patch) {
     const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
     for (int row = std::max(y >> 3, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
-        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column)
-            draw_block(patch, column, row, moved(patch.samples, x - column * kBlock, y - row * kBlock));
-}
-
-/// Draws those samples of a block.
-void DepthTile::draw_block(const Patch& patch, int column, int row, std::uint64_t samples) {
-    if (samples == 0) return;
-    const Nearness nearness(patch.nearness, viewport_, rect_.x0 + column * kBlock - patch.x, rect_.y0 + row * kBlock - patch.y);
-    const auto block = static_cast<std::size_t>(row * kBlocks + column);
-    open(block);
-    constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
-    for (auto i = static_cast<std::size_t>(std::countr_zero(samples) / kLanesOfBatch * kLanesOfBatch);
-         i < kBlockSamples && samples >> i != 0; i += Floats::size) {
-        const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
-        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(patch.id), nearness.at(i), lanes_from<float>(here));
-    }
+        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column) {
+            const std::uint64_t samples = moved(patch.samples, x - column * kBlock, y - row * kBlock);
+            if (samples == 0) continue;
+            const auto block = static_cast<std::size_t>(row * kBlocks + column);
+            open(block);
+            draw_samples(block, samples, patch.id, patch.nearness, column * kBlock - x, row * kBlock - y);
+        }
 }
 
 void DepthTile::draw(std::span<const Fragment> fragments) {

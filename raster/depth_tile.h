@@ -63,11 +63,9 @@ private:
     struct Edges;
     struct BlockRow;
     struct Nearness;
+    struct Covered;
     std::uint32_t not_hidden(int row, float nearest) const;
-    template <bool kAll>
-    std::uint64_t draw_block(const Edges& edges, const std::array<std::int32_t, 3>& at, const DrawTriangle& triangle, int column,
-                             int row, int y0, int y1);
-    void draw_block(const Patch& patch, int column, int row, std::uint64_t samples);
+    void draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y);
     template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
