@@ -74,6 +74,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
         most_ = {std::max(most_.x, offset.x), std::max(most_.y, offset.y)};
     }
     small_.clear();
+    outlined_.clear();
     touches_.clear();
     patch_touches_.clear();
     const Shape& shape = triangles.shape(run);
@@ -84,6 +85,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
         judge(outlines);
         sort_out(outlines);
     }
+    set_up_outlines();
     cover_candidates();
     find_nearness();
     sorter_.sort(batch, touches_, patch_touches_, plan.grid.size());
@@ -197,10 +199,9 @@ void Assembler::sort_out(const Outlines& out) {
         if (out.verdict[i] == kSmall) {
             add_candidate(out, i);
         } else if (out.verdict[i] == kDraw) {
-            set_up_outline(index, whole_triangle(index),
-                           {FixedPoint{out.x[0][i], out.y[0][i]}, FixedPoint{out.x[1][i], out.y[1][i]},
-                            FixedPoint{out.x[2][i], out.y[2][i]}},
-                           false);
+            const auto corner = [&](std::size_t k) { return FixedPoint{out.x[k][i], out.y[k][i]}; };
+            if (add_outline(index, {corner(0), corner(1), corner(2)}) != nullptr)
+                outlined_.push_back({index, static_cast<std::uint32_t>(batch_->triangles.size() - 1)});
         } else {
             clip_and_set_up(index);
         }
@@ -222,11 +223,13 @@ void Assembler::clip_and_set_up(std::uint32_t index) {
     std::array<FixedPoint, 8> p;
     const auto count = static_cast<std::size_t>(polygon.count);
     for (std::size_t i = 0; i < count; ++i) p[i] = snap(polygon.vertices[i]);
-    for (std::size_t i = 2; i < count; ++i) set_up_outline(index, whole, {p[0], p[i - 1], p[i]}, true);
+    for (std::size_t i = 2; i < count; ++i)
+        if (DrawTriangle* triangle = add_outline(index, {p[0], p[i - 1], p[i]}))
+            *triangle = set_up(whole, triangle->corners, triangle->id, true, plan_->viewport);
 }
 
-void Assembler::set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> p,
-                               bool clipped) {
+/// Adds a triangle that lacks all but its corners and number; null where it is culled.
+DrawTriangle* Assembler::add_outline(std::uint32_t index, std::array<FixedPoint, 3> p) {
     const std::int64_t area = doubled_area(p[0], p[1], p[2]);
     const PixelRect first = pixels_within(p, least_), last = pixels_within(p, most_);
     const PixelRect touched{last.x0, last.y0, first.x1, first.y1}; // over all samples
@@ -239,11 +242,27 @@ void Assembler::set_up_outline(std::uint32_t index, const WholeTriangle& whole, 
     } else {
         if (area < 0) std::swap(p[1], p[2]);
         const auto number = static_cast<std::uint32_t>(batch_->triangles.size());
-        batch_->triangles.push_back(
-            set_up(whole, p, run_.first_id + index - run_.first, clipped, plan_->viewport));
         plan_->grid.for_each(touched, [&](std::size_t tile) {
             touches_.push_back({static_cast<std::uint32_t>(tile), number});
         });
+        return &batch_->triangles.emplace_back(DrawTriangle{.corners = p, .id = run_.first_id + index - run_.first});
+    }
+    return nullptr;
+}
+
+void Assembler::set_up_outlines() {
+    PlaneStrip planes;
+    for (std::size_t first = 0; first < outlined_.size(); first += kStrip) {
+        const std::span<const Outlined> some = std::span(outlined_).subspan(first, std::min(kStrip, outlined_.size() - first));
+        const auto triangle = [&](std::size_t i) -> DrawTriangle& { return batch_->triangles[some[i].number]; };
+        const auto origin_of = [&](std::size_t i) {
+            const Origin from = origin(triangle(i).corners, plan_->viewport);
+            return Vec2d(from.x, from.y);
+        };
+        find_planes(some.size(), [&](std::size_t i) { return some[i].index; }, origin_of, planes);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            set_plane(triangle(i), {planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]}, planes.least_depth[i], false,
+                      plan_->viewport.near);
     }
 }
 
@@ -324,13 +343,14 @@ void Assembler::add_small(std::size_t i, std::uint64_t covered, std::uint64_t we
 }
 
 void Assembler::find_nearness() {
-    std::array<StripOf<double>, 3> planes;
+    PlaneStrip planes;
     for (std::size_t first = 0; first < small_.size(); first += kStrip) {
-        const std::size_t count = std::min(kStrip, small_.size() - first);
-        find_planes(first, count, planes);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Small& small = small_[first + i];
-            const NearnessPlane plane{planes[0][i], planes[1][i], planes[2][i]};
+        const std::span<const Small> some = std::span(small_).subspan(first, std::min(kStrip, small_.size() - first));
+        const auto first_sample = [&](std::size_t i) { return least_.position(some[i].x, some[i].y); };
+        find_planes(some.size(), [&](std::size_t i) { return some[i].index; }, first_sample, planes);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const Small& small = some[i];
+            const NearnessPlane plane{planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]};
             constexpr int kFew = 2; // cheaper one by one
             const bool as_patch = plan_->patches && std::popcount(small.covered & small.well_inside) > kFew;
             if (as_patch) add_patch(small, plane);
@@ -339,24 +359,25 @@ void Assembler::find_nearness() {
     }
 }
 
-/// What set_up does for one triangle, side by side: planes of nearness, counted from the first sample of their boxes.
-void Assembler::find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const {
+/// What set_up does for one triangle, side by side: the planes of nearness of up to sixteen unclipped triangles of the
+/// object, each counted from its own place in the picture.
+template <typename IndexOf, typename OriginOf>
+void Assembler::find_planes(std::size_t count, const IndexOf& index_of, const OriginOf& origin_of, PlaneStrip& planes) const {
     const Viewport& viewport = plan_->viewport;
     const Mat4d& m = object_->to_pixel;
     const Shape& shape = triangles_->shape(run_);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     std::array<std::array<StripOf<double>, 3>, 3> p; // corner, axis
-    StripOf<double> sample_x, sample_y;
+    StripOf<double> from_x, from_y;
     for (std::size_t i = 0; i < count; ++i) {
-        const Small& small = small_[first + i];
-        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, small.index);
+        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, index_of(i));
         for (std::size_t k = 0; k < 3; ++k) {
             p[k][0][i] = static_cast<double>(corners[k].x);
             p[k][1][i] = static_cast<double>(corners[k].y);
             p[k][2][i] = static_cast<double>(corners[k].z);
         }
-        sample_x[i] = small.x + static_cast<double>(least_.x) / kSubPixels;
-        sample_y[i] = small.y + static_cast<double>(least_.y) / kSubPixels;
+        const Vec2d from = origin_of(i);
+        from_x[i] = from.x, from_y[i] = from.y;
     }
     for (std::size_t i = 0; i < count; i += Doubles::size) {
         std::array<Doubles, 3> x, y, w, depth;
@@ -367,13 +388,14 @@ void Assembler::find_planes(std::size_t first, std::size_t count, std::array<Str
             };
             depth[k] = row(2);
             w[k] = viewport.orthographic ? Doubles(1.0) : depth[k];
-            x[k] = row(0) - load(sample_x, i) * w[k];
-            y[k] = row(1) - load(sample_y, i) * w[k];
+            x[k] = row(0) - load(from_x, i) * w[k];
+            y[k] = row(1) - load(from_y, i) * w[k];
         }
         const TrianglePlanes<Doubles> all = triangle_planes(x, y, w, depth);
         const Doubles scale = Doubles(viewport.orthographic ? 1.0 : viewport.near) / abs(all.determinant);
         for (std::size_t c = 0; c < 3; ++c)
-            store(planes[c], i, (viewport.orthographic ? all.depth_sum[c] : all.sum[c]) * scale);
+            store(planes.plane[c], i, (viewport.orthographic ? all.depth_sum[c] : all.sum[c]) * scale);
+        store(planes.least_depth, i, min(min(depth[0], depth[1]), depth[2]));
     }
 }
 

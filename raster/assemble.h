@@ -43,12 +43,18 @@ private:
     void judge(Outlines& outlines) const;
     WholeTriangle whole_triangle(std::uint32_t index) const;
     void clip_and_set_up(std::uint32_t index);
-    void set_up_outline(std::uint32_t index, const WholeTriangle& whole, std::array<FixedPoint, 3> corners, bool clipped);
+    DrawTriangle* add_outline(std::uint32_t index, std::array<FixedPoint, 3> corners);
+    void set_up_outlines();
     void add_candidate(const Outlines& outlines, std::uint32_t i);
     void cover_candidates();
     void add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside);
     void find_nearness();
-    void find_planes(std::size_t first, std::size_t count, std::array<StripOf<double>, 3>& planes) const;
+    struct PlaneStrip {
+        std::array<StripOf<double>, 3> plane; ///< NearnessPlane's coefficients
+        StripOf<double> least_depth;          ///< of the corners
+    };
+    template <typename IndexOf, typename OriginOf>
+    void find_planes(std::size_t count, const IndexOf& index_of, const OriginOf& origin_of, PlaneStrip& planes) const;
     void add_patch(const Small& small, const NearnessPlane& plane);
     void add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane);
 
@@ -67,6 +73,10 @@ private:
         StripOf<std::int32_t> sample_x, sample_y;  ///< the first pixel of the box
     };
     Candidates candidates_;
+    struct Outlined { ///< a triangle of the batch that still lacks its plane
+        std::uint32_t index, number;
+    };
+    std::vector<Outlined> outlined_;
     std::vector<Small> small_;
     std::vector<TileSorter::Touch> touches_, patch_touches_;
     TileSorter sorter_;

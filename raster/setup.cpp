@@ -115,15 +115,17 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
                                 {a.yw - from.y * a.w, b.yw - from.y * b.w, c.yw - from.y * c.w}, {a.w, b.w, c.w},
                                 {a.depth, b.depth, c.depth});
     const auto& sum = viewport.orthographic ? all.depth_sum : all.sum;
-    const Vec3d plane = Vec3d(sum[0], sum[1], sum[2]) *
-                        ((viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant));
-    const double least_depth = std::min({whole.a.depth, whole.b.depth, whole.c.depth});
+    const double scale = (viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant);
     DrawTriangle result{.corners = corners, .id = id};
-    result.sound = is_finite(plane) && !sabotaged(Guard::kPerspective);
-    result.clipped = clipped;
-    if (!clipped) result.nearest = static_cast<float>(viewport.near / least_depth) * (1 + 0x1p-22f);
-    result.nearness = {plane.x, plane.y, plane.z};
+    set_plane(result, {sum[0] * scale, sum[1] * scale, sum[2] * scale}, std::min({a.depth, b.depth, c.depth}), clipped, viewport.near);
     return result;
+}
+
+void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near) {
+    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant) && !sabotaged(Guard::kPerspective);
+    triangle.clipped = clipped;
+    if (!clipped) triangle.nearest = static_cast<float>(near / least_depth) * (1 + 0x1p-22f);
+    triangle.nearness = plane;
 }
 
 } // namespace duet::raster

@@ -121,6 +121,8 @@ Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
 /// About the outline's origin.
 Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport);
+/// Completes a triangle from its plane of nearness and its corners' least depth. `clipped`: its outline is a part only.
+void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near);
 /// From the whole triangle and an outline of positive area, its own or one of its clipped parts'.
 DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
                     bool clipped, const Viewport& viewport);
