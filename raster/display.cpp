@@ -69,48 +69,47 @@ public:
                 const PassView& view, const DepthTile& tile, std::optional<Rgba8> background, Image<Rgba8>& picture)
         : data_(data), settings_(settings), geometry_(geometry), view_(view), tile_(tile), picture_(picture),
           shader_(program != nullptr ? program->for_tile(data, geometry, view, tile.rect()) : nullptr),
-          background_(background) {}
+          background_(background) {
+        if (background_) empty_strip_.fill(*background_);
+    }
 
     void run() {
         const PixelRect& rect = tile_.rect();
         for (int y = rect.y0; y < rect.y1; y += kBlock) {
-            for (int x = rect.x0; x < rect.x1; x += kBlock) block(intersect(rect, {x, y, x + kBlock, y + kBlock}));
+            std::uint32_t place = tile_.place(rect.x0, y);
+            std::size_t slot = 0;
+            for (int x = rect.x0; x < rect.x1; x += kBlock, place += kBlockSamples, slot += kStrips) block(x, y, place, slot);
             shade_together();
             const auto row_of = [&](std::size_t column, std::size_t row) {
-                return codes_[column * kStrips + row / kStripRows].at(row % kStripRows * kStripWidth);
+                constexpr std::size_t kRows = kStripRows;
+                return codes_[column * kStrips + row / kRows].at(row % kRows * kStripWidth);
             };
             copy_blocks(rect, y, row_of, picture_);
         }
     }
 
 private:
-    static constexpr std::size_t kStripRows = DepthTile::kStripRows, kStrips = kBlock / kStripRows; ///< of a block
+    static constexpr int kStripRows = DepthTile::kStripRows;
+    static constexpr std::size_t kStrips = kBlock / kStripRows; ///< of a block
 
-    void block(const PixelRect& rect) {
-        const std::uint32_t place = tile_.place(rect.x0, rect.y0);
-        const std::size_t block = place / kBlockSamples, slot = block % DepthTile::kBlocks * kStrips;
-        if (background_ && !tile_.drawn(block)) {
-            for (std::size_t s = 0; s < kStrips; ++s) codes_[slot + s].fill(*background_);
-            return;
-        }
-        for (std::size_t s = 0; s < kStrips; ++s) {
-            if (background_ && samples_seen(tile_.ids() + place + s * kStrip) == 0)
-                codes_[slot + s].fill(*background_);
+    /// The block whose first pixel is (x, y).
+    void block(int x, int y, std::uint32_t place, std::size_t slot) {
+        const bool drawn = !background_ || tile_.drawn(place / kBlockSamples);
+        for (std::size_t s = 0; s < kStrips; ++s, y += kStripRows, place += kStrip, ++slot) {
+            if (!drawn || (background_ && samples_seen(tile_.ids() + place) == 0))
+                codes_[slot] = empty_strip_;
             else
-                strip(intersect(rect, strip_rect(rect, s)), place + static_cast<std::uint32_t>(s * kStrip), slot + s);
+                strip(x, y, place, slot);
         }
     }
-    static PixelRect strip_rect(const PixelRect& block, std::size_t s) {
-        const int y = block.y0 + static_cast<int>(s * kStripRows);
-        return {block.x0, y, block.x1, y + static_cast<int>(kStripRows)};
-    }
 
-    void strip(const PixelRect& rect, std::uint32_t place, std::size_t slot) {
-        if (shader_ == nullptr) return shade_one_by_one(rect, codes_[slot]);
+    void strip(int x, int y, std::uint32_t place, std::size_t slot) {
+        if (shader_ == nullptr)
+            return shade_one_by_one(intersect(tile_.rect(), {x, y, x + kBlock, y + kStripRows}), codes_[slot]);
         slots_[count_] = slot;
         StripPlace& next = places_[count_++]; // written once, not copied: it will be read at once
-        next.x = rect.x0;
-        next.y = rect.y0;
+        next.x = x;
+        next.y = y;
         next.ids = tile_.ids() + place;
         next.nearness = tile_.nearness() + place;
         next.offset = tile_.offset();
@@ -149,6 +148,7 @@ private:
     std::size_t count_ = 0;
     std::optional<HitTile> hits_; ///< where one is needed
     std::optional<Rgba8> background_;
+    StripCodes empty_strip_; ///< of it
 };
 
 } // namespace
