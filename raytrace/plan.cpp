@@ -62,6 +62,8 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
     // Nothing that paths keep besides, or that tests ask for; and some lanes.
     if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays) matt = MattSurfaces(scene, *bsdfs);
+    // The naive one stays as plain as it is; and paths of one scattering are not ended.
+    if (russian_roulette && max_depth > 1 && settings.integrator != Integrator::kNaive) worth = learned_worth(*this, view);
 }
 
 std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
@@ -101,6 +103,8 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
     }
     if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
         skip("last bounce", "rays cannot find the lights: point, spot and sun");
+    if (plan.russian_roulette && plan.max_depth > 1)
+        skip("dim paths", message("roulette ends some whose throughput is below ", 1 / plan.worth));
     if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
     return list;
 }

@@ -6,6 +6,7 @@
 #include "raytrace/matt_surfaces.h"
 #include "raytrace/prepare.h"
 #include "raytrace/render.h"
+#include "raytrace/roulette.h"
 
 namespace duet::raytrace {
 
@@ -29,6 +30,7 @@ struct RenderPlan {
     MattSurfaces matt;              ///< those at which paths may scatter side by side (matt_vertices.h)
     int max_depth = 0;
     bool russian_roulette = false;
+    float worth = kPlainWorth;      ///< of throughput, to roulette: see learned_worth
     std::optional<PixelFootprint> pixel; ///< of a camera ray; empty where no texture is filtered
     bool lens = false;   ///< rays start all over the lens
     bool motion = false; ///< rays have times of their own

@@ -18,8 +18,8 @@ Subcommand add_bench(CLI::App& app) {
     bench->add_option("-o,--output", options.folder, "The folder for index.html, report.json and bench.csv");
     bench
         ->add_option("--techniques", options.choice.techniques,
-                     "Of raster, path, adaptive (path with more samples where the error is), naive (no light "
-                     "sampling), direct, unshadowed (default raster,path,naive)")
+                     "Of raster, path, adaptive (path with more samples where the error is), no-roulette (path, no "
+                     "path ended early), naive (no light sampling), direct, unshadowed (default raster,path,naive)")
         ->delimiter(',');
     bench
         ->add_option("--samplers", options.choice.samplers,

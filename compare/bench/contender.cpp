@@ -25,6 +25,8 @@ double cpu_seconds_so_far() {
 
 /// The path tracer with more samples where the error is.
 constexpr std::string_view kAdaptive = "adaptive";
+/// It, all paths as long as they may be.
+constexpr std::string_view kNoRoulette = "no-roulette";
 
 /// What keeps a technique from the reference's picture.
 std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
@@ -62,7 +64,8 @@ Contender raytrace_contender(const raytrace::Prepared& prepared, const Scene& sc
     settings.threads = choice.threads;
     settings.max_depth = choice.depth;
     settings.adaptive = technique == kAdaptive;
-    settings.integrator = raytrace::integrator(settings.adaptive ? "path" : technique);
+    settings.russian_roulette = technique != kNoRoulette;
+    settings.integrator = raytrace::integrator(technique == kAdaptive || technique == kNoRoulette ? "path" : technique);
     settings.sampler = sampler_kind(sampler);
     return {technique, sampler, note_of(settings.integrator, scene), choice.spps,
             [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
@@ -74,7 +77,7 @@ Contender raytrace_contender(const raytrace::Prepared& prepared, const Scene& sc
 }
 
 /// The techniques that estimate light, in the order of --help.
-constexpr std::string_view kTechniques[] = {"raster", "path", kAdaptive, "naive", "direct", "unshadowed"};
+constexpr std::string_view kTechniques[] = {"raster", "path", kAdaptive, kNoRoulette, "naive", "direct", "unshadowed"};
 constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 
 template <typename Names> std::string listed(const Names& names) {

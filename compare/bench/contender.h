@@ -25,7 +25,7 @@ struct Trial {
 
 /// A way to render, prepared for one scene and view.
 struct Contender {
-    std::string technique; ///< "raster", a path tracer's integrator, "adaptive" (path), or a peer's name
+    std::string technique; ///< "raster", a path tracer's integrator, "adaptive" or "no-roulette" (path), or a peer's name
     std::string sampler;   ///< empty where the technique has no choice of them
     std::string note;      ///< what it leaves out, in sentences; empty: it converges to the reference
     std::vector<int> spps;

@@ -10,14 +10,16 @@
 
 namespace duet::raytrace {
 
-/// Rays sent, for the statistics.
+/// Rays sent, and not sent, for the statistics.
 struct RayCounts {
     std::int64_t camera = 0, indirect = 0, shadow = 0;
+    std::int64_t ended = 0; ///< paths, by roulette
 
     RayCounts& operator+=(const RayCounts& other) {
         camera += other.camera;
         indirect += other.indirect;
         shadow += other.shadow;
+        ended += other.ended;
         return *this;
     }
 };

@@ -6,6 +6,7 @@
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/matt_vertices.h"
 #include "raytrace/integrator/path_footprint.h"
+#include "raytrace/integrator/path_gains.h"
 #include "raytrace/integrator/path_log.h"
 
 #include <type_traits>
@@ -56,14 +57,14 @@ private:
 };
 
 // Or each step is told, too.
-class Told : public Sum {
+template <typename Log> class Told : public Sum {
 public:
     static constexpr bool kTold = true;
-    explicit Told(PathLog& log) : log_(log) {}
-    PathLog& log() { return log_; }
+    explicit Told(Log& log) : log_(log) {}
+    Log& log() { return log_; }
 
 private:
-    PathLog& log_;
+    Log& log_;
 };
 
 // What a path keeps where no dielectric knows of others: nothing.
@@ -179,8 +180,8 @@ private:
         const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
         if (!vertex.consistent(wi, s->wi)) return tell_end("its direction lies between the horizons of both normals");
         state_.throughput *= s->weight;
-        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_.throughput);
         if (s->transmitted) note_refraction(vertex);
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_);
         footprint_.scatter(s->pdf, s->specular);
         // Each number is written where it is read from next: a whole ray copied right after it was put together would
         // wait for its parts.
@@ -227,10 +228,13 @@ private:
     }
 
     bool survives(float u) {
-        const float probability = survival(state_.throughput, state_.refraction);
+        const float probability = survival(state_.throughput, state_.refraction, plan_.worth);
         if (probability >= 1) return true;
         if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
-        if (!(u < probability)) return false;
+        if (!(u < probability)) {
+            ++counts_.ended;
+            return false;
+        }
         state_.throughput *= 1 / probability;
         return true;
     }
@@ -373,6 +377,11 @@ Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sample
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
     return traced(plan, ray, hit, sampler, counts, Told(log));
+}
+
+void follow_path(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathGains& gains) {
+    RayCounts counts;
+    traced(plan, ray, hit, sampler, counts, Told(gains));
 }
 
 LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {

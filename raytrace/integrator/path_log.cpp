@@ -64,10 +64,10 @@ void PathLog::light_sample(const Arrival& arrival, Rgb scattered, bool visible, 
          << (visible ? message(", weight ", weight, ": adds ", text_of(light)) : ", hidden: adds nothing") << "\n";
 }
 
-void PathLog::scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, Rgb throughput) {
+void PathLog::scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state) {
     out_ << "  scatters     towards " << text_of(wi) << (sample.transmitted ? ", through the surface" : "")
          << (sample.specular ? ", as a mirror or lens does" : message(", density ", sample.pdf)) << "\n"
-         << "               weight " << text_of(sample.weight) << ", throughput " << text_of(throughput)
+         << "               weight " << text_of(sample.weight) << ", throughput " << text_of(state.throughput)
          << ", next ray from " << text_of(offset_origin(vertex.point, wi)) << "\n";
 }
 

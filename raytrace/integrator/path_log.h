@@ -4,6 +4,7 @@
 #include "common/material/bsdf.h"
 #include "raytrace/integrator/light_parts.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path_state.h"
 
 #include <sstream>
 #include <string>
@@ -22,7 +23,7 @@ public:
     void no_light_sample(const char* why);
     /// A light sample that reaches the vertex or does not; with `weight` against BSDF samples it adds `light`.
     void light_sample(const Arrival& arrival, Rgb scattered, bool visible, float weight, Rgb light);
-    void scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, Rgb throughput);
+    void scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state);
     void roulette(float probability, bool survived);
     void end(const char* why);
 

@@ -18,13 +18,11 @@ struct PathState {
     Departure departure;
 };
 
-/// Russian roulette ends dim paths, and lets the survivors stand for them. Whatever it ends it also makes noisier, and
-/// well placed samples suffer most: a path of half its throughput is still worth its rays (README.md has what other
-/// thresholds cost). This is the probability to go on, where it is below 1: by the throughput without what refraction did
-/// to it. T is float or a batch of floats.
-template <typename T> T survival(RgbT<T> throughput, T refraction) {
-    constexpr float kDim = 0.25f;
-    return max_component(throughput) / (refraction * T(kDim));
+/// Russian roulette ends dim paths, and lets the survivors stand for them: this is the probability to go on, where it is
+/// below 1. `worth` is RenderPlan's; the throughput is taken without what refraction did to it. T is float or a batch of
+/// floats.
+template <typename T> T survival(RgbT<T> throughput, T refraction, T worth) {
+    return max_component(throughput) * worth / refraction;
 }
 
 } // namespace duet::raytrace

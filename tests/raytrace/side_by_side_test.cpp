@@ -118,7 +118,8 @@ Differences side_by_side_and_alone(const Scene& scene, const Settings& settings)
         found.lit += !is_black(alone[i]);
         found.matt += first_hits[i].valid() && plan.matt.kind(first_hits[i]) != MattSurfaces::Kind::kNone;
     }
-    found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow;
+    found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow &&
+                      counts.ended == alone_counts.ended;
     return found;
 }
 

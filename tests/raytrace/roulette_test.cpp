@@ -1,0 +1,132 @@
+// Russian roulette by expected contribution: what is learned beforehand, and that it biases nothing.
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/path_gains.h"
+#include "raytrace/pass.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+// The inside of a sphere with a point light in its centre: each path brings ρ E / (π (1 − ρ)), E = I/r², however it went,
+// and roulette is all that makes noise.
+constexpr double kIntensity = 3, kRadius = 1.5, kWhite = 0.75;
+constexpr double kTruth = kWhite * kIntensity / (kRadius * kRadius) / (kPiDouble * (1 - kWhite));
+
+Scene integrating_sphere() {
+    SceneBuilder builder;
+    builder.add(Sphere{{0, 0, 0}, static_cast<float>(kRadius)},
+                builder.material(Diffuse{{Rgb(static_cast<float>(kWhite))}}));
+    builder.scene.lights.push_back(PointLight{{0, 0, 0}, Rgb(static_cast<float>(kIntensity))});
+    builder.scene.camera.eye = {0.3, 0.2, 0.5};
+    builder.scene.camera.look_at = {0, 0, -1};
+    return builder.finish();
+}
+
+float worth_of(const Scene& scene, int side, const Settings& settings) {
+    const Prepared prepared = prepare(scene, settings);
+    return RenderPlan(prepared.data(), View{scene.camera, side, side}, settings).worth;
+}
+
+// Calls trace(ray, hit, sampler) for independent samples of one pixel.
+template <typename Trace> void for_samples(const RenderPlan& plan, std::uint32_t count, const Trace& trace) {
+    const CameraModel camera(View{plan.scene.camera, 1, 1});
+    Sampler sampler(SamplerKind::kIndependent, 3, static_cast<int>(count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        sampler.start(0, 0, i);
+        const Ray ray = camera_ray(plan, camera, 0, 0, sampler);
+        trace(ray, plan.prepared.accelerator.closest(ray), sampler);
+    }
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("the worth of throughput is learned from scene, view and plan alone") {
+        const Scene scene = integrating_sphere();
+        const float worth = worth_of(scene, 64, {});
+        CHECK(worth > 2 * kPlainWorth); // where nothing but roulette makes noise, less of it
+        Settings other;
+        other.seed = 99;
+        other.threads = 1;
+        other.samples_per_pixel = 7;
+        other.first_sample = 64;
+        other.sampler = SamplerKind::kIndependent;
+        CHECK(worth_of(scene, 64, other) == worth);
+        CHECK(worth_of(scene, 8, {}) == kPlainWorth); // too few pixels to tell
+        Settings naive;
+        naive.integrator = Integrator::kNaive;
+        CHECK(worth_of(scene, 64, naive) == kPlainWorth);
+    }
+
+    TEST_CASE("the statistics say what roulette ended") {
+        const Scene scene = integrating_sphere();
+        Settings settings;
+        settings.samples_per_pixel = 4;
+        const auto ended = [&] {
+            Control control;
+            const Rendering r = render(prepare(scene, settings), View{scene.camera, 16, 16}, settings, control);
+            for (const Skipped& s : r.statistics.skipped)
+                if (s.what == "paths ended by roulette") return s.count;
+            return std::int64_t{-1};
+        };
+        CHECK(ended() == 4 * 16 * 16); // nothing else ends them
+        settings.russian_roulette = false;
+        CHECK(ended() == -1);
+    }
+}
+
+TEST_SUITE("statistical") {
+
+    // Five standard errors: exceeded by chance once in 1.7 million times each. A bias of 1 % is five or more.
+    TEST_CASE("whatever worth is learned, the mean is the integrating sphere's") {
+        const Scene scene = integrating_sphere();
+        Settings settings;
+        const Prepared prepared = prepare(scene, settings);
+        RenderPlan plan(prepared.data(), View{scene.camera, 64, 64}, settings);
+        for (const float worth : {1.0f, kPlainWorth, plan.worth}) {
+            CAPTURE(worth);
+            plan.worth = worth;
+            double sum = 0, squares = 0;
+            constexpr std::uint32_t kCount = 200000;
+            RayCounts counts;
+            for_samples(plan, kCount, [&](const Ray& ray, const Hit& hit, Sampler& sampler) {
+                const auto light = static_cast<double>(path_radiance(plan, ray, hit, sampler, counts).g);
+                sum += light;
+                squares += light * light;
+            });
+            const double mean = sum / kCount, error = std::sqrt((squares / kCount - mean * mean) / kCount);
+            CHECK(std::abs(mean - kTruth) < 5 * error);
+            CHECK(error < kTruth / 500);
+        }
+    }
+
+    // Each step's light is its throughput × the truth, but for what roulette does. The ratio of the sums scatters by about
+    // 0.4 %.
+    TEST_CASE("steps of a path know what it gathers, and its rays") {
+        const Scene scene = integrating_sphere();
+        Settings settings;
+        const Prepared prepared = prepare(scene, settings);
+        RenderPlan plan(prepared.data(), View{scene.camera, 8, 8}, settings);
+        plan.worth = 4;
+        double light = 0, throughput = 0, others = 0;
+        for_samples(plan, 20000, [&](const Ray& ray, const Hit& hit, Sampler& sampler) {
+            PathGains path;
+            follow_path(plan, ray, hit, sampler, path);
+            for (const PathStep& step : path.steps()) {
+                light += static_cast<double>(step.weight * step.light);
+                throughput += static_cast<double>(step.weight * step.throughput);
+                others += step.next_rays != 2; // on, and to the lamp
+            }
+            others += path.camera_rays() != 2 || path.steps().empty() || !path.steps().front().first;
+        });
+        CHECK(others == 0);
+        CHECK(light / throughput == doctest::Approx(kTruth).epsilon(0.03));
+    }
+}
