@@ -2,6 +2,7 @@
 
 #include "common/system/control.h"
 #include "common/system/error.h"
+#include "raster/glass.h"
 #include "raster/prefiltered.h"
 #include "raster/shade.h"
 #include "raster/shadows.h"
@@ -44,6 +45,14 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     count(culled.subpixel, "sub-pixel", "triangles between the samples");
     count(culled.degenerate, "degenerate", "triangles of no area on the sub-pixel grid");
     return result;
+}
+
+/// Whether some glass is of an object that is not of glass alone, or has holes: its rays are not followed.
+bool has_mixed_glass(const PreparedData& data) {
+    for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
+        for (const std::uint32_t material : data.scene.objects[i].materials)
+            if (std::holds_alternative<Dielectric>(data.scene.materials[material]) && !is_glass(data, i)) return true;
+    return false;
 }
 
 void list_shadow_approximations(const PreparedData& data, const Settings& settings, std::vector<std::string>& result) {
@@ -96,9 +105,13 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
     const bool refracts = needs_screen_behind(data, settings);
     const bool mirrors = needs_screen_radiance(data, settings), any = parts.reflection && (needs.specular || needs.glossy);
-    const bool glass = needs.transmission && !refracts;
+    const bool plain = needs.transmission && (!refracts || has_mixed_glass(data));
+    const char* plain_glass = refracts ? "Glass with holes, or in one object with other materials," : "Glass";
     name(any && !mirrors && !refracts, "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
-    name(any && (mirrors || refracts) && glass, "Glass mirrors the environment alone, no surfaces and no lights that have one.");
+    if (any && (mirrors || refracts) && plain)
+        result.push_back(message(plain_glass, " mirrors the environment alone, no surfaces and no lights that have one."));
+    if ((mirrors || refracts) && data.unmirrored_lamps > 0)
+        result.push_back(message("The ", data.unmirrored_lamps, " weakest lamps are mirrored only where the picture shows them."));
     name(any && (mirrors || refracts) && needs.glossy, "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
     name(mirrors,
          "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
@@ -112,12 +125,13 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
-    name(refracts, "Glass mirrors and refracts what the picture shows without any glass, its far side found in the picture's depths, and "
-                   "casts no caustics.");
+    name(refracts, "Glass mirrors and refracts what the picture shows without it, up to three objects of glass deep, its far side found in the "
+                   "picture's depths, and casts no caustics.");
     name(refracts && needs.insides, "Glass overlaps as if it did not.");
-    name(parts.reflection && needs.transmission && !refracts,
-         "Glass shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics.");
-    name(parts.reflection && needs.insides && !refracts, "Glass absorbs as over the mean way through a ball of its size, and overlaps as if it did not.");
+    if (parts.reflection && plain)
+        result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics."));
+    if (parts.reflection && needs.insides && plain)
+        result.push_back(message(plain_glass, " absorbs as over the mean way through a ball of its size, and overlaps as if it did not."));
     name(needs.layers, "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
     name(parts.direct && needs.lamp_textures, "Surfaces that emit a picture light others by its mean.");
     name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");

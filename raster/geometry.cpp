@@ -147,6 +147,7 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
     const bool backs = sides == Sides::kBacks; // the fronts of what is turned inside out
+    for (DrawSphere& sphere : result.spheres) sphere.far_side = backs;
     const auto turn = [&] {
         for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
     };
@@ -170,21 +171,46 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
     process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
 }
 
+namespace {
+
+using Objects = std::vector<std::uint32_t>;
+
+Objects without(const Objects& objects, const Objects& taken) {
+    Objects kept;
+    std::set_difference(objects.begin(), objects.end(), taken.begin(), taken.end(), std::back_inserter(kept));
+    return kept;
+}
+Objects common_to(const Objects& objects, const Objects& others) {
+    Objects kept;
+    std::set_intersection(objects.begin(), objects.end(), others.begin(), others.end(), std::back_inserter(kept));
+    return kept;
+}
+
+} // namespace
+
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                            Geometry& result) {
-    const auto others = [&](const std::vector<std::uint32_t>& objects) {
-        std::vector<std::uint32_t> kept;
-        std::set_difference(objects.begin(), objects.end(), data.glass.begin(), data.glass.end(), std::back_inserter(kept));
+    process(data, without(data.polygonal, data.glass), without(data.spheres, data.glass), grid, view, settings, true, result);
+}
+
+void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                   Geometry& result) {
+    process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings, false, result);
+}
+
+void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings, bool glass,
+                   Geometry& result) {
+    const auto closed = [&](const Objects& objects) {
+        Objects kept = glass ? objects : without(objects, data.glass);
+        std::erase_if(kept, [&](std::uint32_t object) { return !data.objects[object].closed; });
         return kept;
     };
-    process(data, others(data.polygonal), others(data.spheres), grid, view, settings, true, result);
+    process(data, closed(data.polygonal), closed(data.spheres), grid, view, settings, true, result, Sides::kBacks);
 }
 
 void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                            Geometry& result) {
-    std::vector<std::uint32_t> kept;
-    std::set_intersection(data.polygonal.begin(), data.polygonal.end(), data.glass.begin(), data.glass.end(), std::back_inserter(kept));
-    process(data, kept, {}, grid, view, settings, true, result, Sides::kBacks);
+                            bool patches, Geometry& result) {
+    process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, patches, result, Sides::kBacks);
 }
 
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,

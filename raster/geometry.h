@@ -42,9 +42,15 @@ void process_geometry(const PreparedData& data, const TileGrid& grid, const Pass
 /// The same without PreparedData::glass.
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                            Geometry& result);
-/// The same of the back faces of PreparedData::glass, spheres apart, alone.
+/// The same of PreparedData::glass alone, each surface as whole triangles.
+void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                   Geometry& result);
+/// The same of the back faces of closed objects, far sides of spheres among them, with and without PreparedData::glass.
+void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings, bool glass,
+                   Geometry& result);
+/// The same of the back faces of PreparedData::glass, spheres apart, alone; patches: not as whole triangles.
 void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                            Geometry& result);
+                            bool patches, Geometry& result);
 /// The same of the surfaces that may be seen through.
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result);

@@ -1,7 +1,5 @@
 #include "raster/glass.h"
 
-#include "raster/screen_reflection.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -38,13 +36,13 @@ bool is_glass(const PreparedData& data, std::uint32_t object) {
 }
 
 SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point)
-    : data_(data), settings_(settings), screen_(screen), point_(point), around_(data, settings, *screen.behind()),
+    : data_(data), settings_(settings), screen_(screen), point_(point), scenery_{screen, screen.behind(), point.surface.object}, around_(data, settings, scenery_),
       p_(screen.relative(point.surface.p)), size_(length(data.objects[point.surface.object].bounds.diagonal())) {
     const Vec3 place = screen.project(p_);
     if (!(place.z > 0)) return;
     const auto [x, y] = screen.pixel_at(place);
     width_ = screen.pixel_size(place.z);
-    turn_ = bulges(screen, x, y) ? normal_turn(screen, x, y) : -normal_turn(screen, x, y);
+    turn_ = bulges(screen, x, y) ? screen.turn(x, y) : -screen.turn(x, y);
 }
 
 /// Of its front.
@@ -94,10 +92,10 @@ Rgb SeenThrough::through(Vec3 way, float eta, float alpha) const {
 
 /// What stands in the glass, or touches it where the ray would leave.
 std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
-    const Screen& behind = *screen_.behind();
-    const Vec3 place = behind.project(p);
-    if (!(place.z > 0) || !behind.contains(place.x, place.y)) return std::nullopt;
-    const auto [x, y] = behind.pixel_at(place);
+    const Vec3 place = screen_.project(p);
+    if (!(place.z > 0) || !screen_.contains(place.x, place.y)) return std::nullopt;
+    const auto [x, y] = screen_.pixel_at(place);
+    const Screen& behind = scenery_.at(x, y);
     const float depth = behind.depth(x, y);
     if (!(depth <= place.z * (1 + kTouching)) || !(screen_.depth(x, y) < depth)) return std::nullopt;
     return behind.first_look().radiance.at(place.x, place.y, 1);

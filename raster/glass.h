@@ -8,7 +8,8 @@
 namespace duet::raster {
 
 /// Light by way of glass at a point of the picture: the mirror image on its front, and what is seen through it, each
-/// looked up along its ray in a picture of the scene without glass (Surroundings).
+/// looked up along its ray in a picture of the scene without this object (Scenery). In that, other glass shows what is
+/// behind it, up to three objects deep; the last is seen as if there were no glass behind it.
 ///
 /// Refraction is at two boundaries (Wyman 2005, «An Approximate Image-Space Approach for Interactive Refraction»): where
 /// the ray enters, and where it leaves again. A ball's far side is found exactly. A mesh's is looked for in the depths of
@@ -49,6 +50,7 @@ private:
     const Settings& settings_;
     const Screen& screen_;
     const ShadingPoint& point_;
+    Scenery scenery_;
     Surroundings around_;
     Vec3 p_;           ///< relative to the eye
     float width_ = 0, turn_ = 0; ///< of a pixel here, metres; by which its neighbour's normal parts from its own, radians:

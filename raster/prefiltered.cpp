@@ -6,6 +6,7 @@
 #include "common/sampling/sobol.h"
 #include "common/system/parallel.h"
 #include "common/vec/frame.h"
+#include "raster/bilinear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +44,8 @@ float mean_cosine(const std::vector<LobeSample>& samples) {
 
 float wrapped(float u) { return u - std::floor(u); }
 
-/// Bilinear; around the picture and clamped at the poles.
-Rgb bilinear(const ImageRgb& map, Vec2 uv) {
-    const float x = wrapped(uv.x) * static_cast<float>(map.width()) - 0.5f,
-                y = clamp((1 - uv.y) * static_cast<float>(map.height()) - 0.5f, 0.0f, static_cast<float>(map.height() - 1));
-    const float left = std::floor(x);
-    const int x0 = (static_cast<int>(left) + map.width()) % map.width(), x1 = (x0 + 1) % map.width();
-    const int y0 = static_cast<int>(y), y1 = std::min(y0 + 1, map.height() - 1);
-    const float fx = x - left, fy = y - static_cast<float>(y0);
-    return lerp(lerp(map(x0, y0), map(x1, y0), fx), lerp(map(x0, y1), map(x1, y1), fx), fy);
+Rgb at_direction(const ImageRgb& map, Vec2 uv) {
+    return bilinear(map, wrapped(uv.x) * static_cast<float>(map.width()), (1 - uv.y) * static_cast<float>(map.height()), true);
 }
 
 /// The direction at the middle of a map's pixel: the inverse of sphere_uv.
@@ -96,7 +90,7 @@ Rgb filtered(const std::vector<ImageRgb>& levels, const std::vector<LobeSample>&
         const float level = clamp(0.5f * std::log2(s.solid_angle / pixel) + 0.5f, 0.0f, static_cast<float>(levels.size() - 1));
         const auto low = std::min(static_cast<std::size_t>(level), levels.size() - 2);
         const Vec2 uv = sphere_uv(normalize(w));
-        sum += lerp(bilinear(levels[low], uv), bilinear(levels[low + 1], uv), level - static_cast<float>(low)) * s.weight;
+        sum += lerp(at_direction(levels[low], uv), at_direction(levels[low + 1], uv), level - static_cast<float>(low)) * s.weight;
     }
     return sum;
 }
@@ -136,9 +130,9 @@ Rgb Prefiltered::at(const Environment& environment, Vec3 w, float alpha) const {
         return lerp(sky->down, sky->up, 0.5f * (1 + w.y * cosine));
     }
     const float place = clamp(std::sqrt(alpha), 0.0f, 1.0f) * kMaps - 1; // −1: the picture itself
-    if (place < 0) return lerp(radiance(environment, w), bilinear(maps_.front(), sphere_uv(w)), place + 1);
+    if (place < 0) return lerp(radiance(environment, w), at_direction(maps_.front(), sphere_uv(w)), place + 1);
     const auto low = std::min(static_cast<std::size_t>(place), maps_.size() - 2);
-    return lerp(bilinear(maps_[low], sphere_uv(w)), bilinear(maps_[low + 1], sphere_uv(w)), place - static_cast<float>(low));
+    return lerp(at_direction(maps_[low], sphere_uv(w)), at_direction(maps_[low + 1], sphere_uv(w)), place - static_cast<float>(low));
 }
 
 Vec3 Prefiltered::axis(Vec3 normal, Vec3 mirrored, float alpha) {

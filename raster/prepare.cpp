@@ -3,6 +3,7 @@
 #include "raster/geometry.h"
 #include "raster/prefiltered.h"
 #include "raster/shadows.h"
+#include "raster/surroundings.h"
 
 #include "common/system/error.h"
 
@@ -89,8 +90,23 @@ PreparedObject prepare_object(const Scene& scene, const Object& object, const st
         if (image < texels.size() && !texels[image].empty()) result.one_texture = slot;
     }
     const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const auto* quads = std::get_if<QuadList>(&shape); // one, or a box's six
+    result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || quads->quads.size() == 6;
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
+}
+
+/// The strongest surface lights: of more than a few, each mirrored ray would take too long to look for all.
+void choose_lamps(PreparedData& data) {
+    const std::vector<Light>& lights = data.scene.lights;
+    for (std::size_t i = data.scene.first_surface_light; i < lights.size(); ++i) data.lamps.push_back(i);
+    if (data.lamps.size() <= Surroundings::kMostLamps) return;
+    const float radius = length(data.scene.bounds.diagonal()) / 2;
+    std::stable_sort(data.lamps.begin(), data.lamps.end(),
+                     [&](std::size_t a, std::size_t b) { return light_power(lights[a], radius) > light_power(lights[b], radius); });
+    data.unmirrored_lamps = data.lamps.size() - Surroundings::kMostLamps;
+    data.lamps.resize(Surroundings::kMostLamps);
+    std::sort(data.lamps.begin(), data.lamps.end());
 }
 
 /// What rough metal and frosted glass need of the scene's lights, made now rather than in the first picture.
@@ -144,6 +160,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         data.unsampled_emitters =
             data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
     }
+    choose_lamps(data);
     std::size_t vertices = 0;
     for (const auto& shape : data.vertices) vertices += shape.size();
     data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +

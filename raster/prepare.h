@@ -17,6 +17,7 @@ struct PreparedObject {
     Box3 bounds;        ///< in the world, over all of the object's motion
     std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
     std::optional<RgbSlot> one_texture; ///< where that is all of it, and there are PreparedData::texels
+    bool closed = false; ///< a sphere, a box or a mesh that is closed and oriented outwards
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
 
@@ -42,6 +43,8 @@ struct PreparedData {
     std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
                                                                  ///< above (raster/layers.h)
     std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/glass.h)
+    std::vector<std::size_t> lamps{};     ///< surface lights that mirrors look for beside the picture: the strongest, in order
+    std::size_t unmirrored_lamps = 0;     ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each

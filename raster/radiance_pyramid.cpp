@@ -1,21 +1,11 @@
 #include "raster/radiance_pyramid.h"
 
+#include "raster/bilinear.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
-namespace {
-
-Rgb bilinear(const ImageRgb& level, float x, float y) {
-    x = clamp(x - 0.5f, 0.0f, static_cast<float>(level.width() - 1));
-    y = clamp(y - 0.5f, 0.0f, static_cast<float>(level.height() - 1));
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-    const int x1 = std::min(x0 + 1, level.width() - 1), y1 = std::min(y0 + 1, level.height() - 1);
-    const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
-    return lerp(lerp(level(x0, y0), level(x1, y0), fx), lerp(level(x0, y1), level(x1, y1), fx), fy);
-}
-
-} // namespace
 
 RadiancePyramid::RadiancePyramid(ImageRgb picture) {
     levels_.push_back(std::move(picture));

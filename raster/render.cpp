@@ -4,8 +4,8 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
-#include "raster/glass.h"
 #include "raster/layers.h"
+#include "raster/look.h"
 #include "raster/multisample.h"
 #include "raster/overlay.h"
 #include "raster/picture.h"
@@ -70,83 +70,6 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
-/// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
-/// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with before
-/// the screen has Screen::behind. `with_glass`: tiles that show some, found where nothing is known; the others are taken
-/// whole from what is.
-void first_look(const Frame& frame, const View& view, const Geometry& geometry, PassView pass, const Screen::FirstLook* known,
-                std::vector<std::uint8_t>& with_glass, Screen& screen) {
-    Settings settings = frame.settings;
-    settings.screen_reflections = false;
-    settings.parts = {};
-    settings.aovs = {};
-    pass.screen = &screen;
-    with_glass.resize(frame.grid.size(), 0);
-    FirstLookPicture picture = known != nullptr ? FirstLookPicture(*known) : FirstLookPicture(view.width, view.height);
-    parallel_for(frame.grid.size(), settings.threads, [&](std::size_t i) {
-        if (frame.control.stopped() || (known != nullptr && with_glass[i] == 0)) return;
-        const PixelRect rect = frame.grid.tile(i);
-        DepthTile depths;
-        cover(geometry, pass, pass.samples.front(), rect, i, depths);
-        const HitTile tile(depths, geometry, pass);
-        for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x) {
-                const Hit& hit = tile.hit(x, y);
-                const bool later = screen.behind() == nullptr && hit.valid() && is_glass(frame.data, hit.object);
-                if (later) with_glass[i] = 1;
-                const std::uint32_t key = later ? 0 : FirstLookPicture::key(frame.data.scene, hit);
-                const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
-                picture.set(frame.data.scene, x, y, hit,
-                            same ? known->radiance.finest()(x, y) : shade(frame.data, settings, tile, x, y).radiance, key);
-            }
-    });
-    screen.set_first_look(std::move(picture).finish());
-}
-
-/// The depths and normals at the pixels' centres.
-std::unique_ptr<Screen> depths_and_normals(const Frame& frame, const View& view, const PassView& central, const Geometry& geometry) {
-    ImageFloat nearness(view.width, view.height);
-    ImageRgb normals(view.width, view.height);
-    const std::unique_ptr<Program> normal = program(Shading::kNormal);
-    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (!frame.control.stopped())
-            keep_nearness_and_colors(frame.data, geometry, central, *normal, frame.grid.tile(i), i, nearness, normals);
-    });
-    auto screen = std::make_unique<Screen>(central.pinhole, central.samples.front(), std::move(nearness));
-    screen->set_normals(normals);
-    return screen;
-}
-
-/// What there is without glass, and the back of that.
-void look_behind_glass(const Frame& frame, const View& view, const PassView& central, std::vector<std::uint8_t>& with_glass, Screen& screen) {
-    GeometryLoan geometry(*frame.data.geometries);
-    process_without_glass(frame.data, frame.grid, central, frame.settings, *geometry);
-    std::unique_ptr<Screen> behind = depths_and_normals(frame, view, central, *geometry);
-    add_occlusion(frame.data, frame.settings, *behind);
-    first_look(frame, view, *geometry, central, &screen.first_look(), with_glass, *behind);
-    process_backs_of_glass(frame.data, frame.grid, central, frame.settings, *geometry);
-    screen.set_glass(std::move(behind), depths_and_normals(frame, view, central, *geometry));
-}
-
-/// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it.
-std::unique_ptr<Screen> look_at_screen(const Frame& frame, const View& view, const PassView& pass) {
-    if (!needs_screen(frame.data, frame.settings)) return nullptr;
-    const std::vector<SampleOffset> centers(1);
-    const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
-    GeometryLoan geometry(*frame.data.geometries);
-    process_geometry(frame.data, frame.grid, central, frame.settings, *geometry);
-    std::unique_ptr<Screen> screen = depths_and_normals(frame, view, central, *geometry);
-    add_occlusion(frame.data, frame.settings, *screen);
-    const bool glass = needs_screen_behind(frame.data, frame.settings);
-    std::vector<std::uint8_t> with_glass;
-    if (glass || needs_screen_radiance(frame.data, frame.settings))
-        first_look(frame, view, *geometry, central, nullptr, with_glass, *screen);
-    if (!glass) return screen;
-    look_behind_glass(frame, view, central, with_glass, *screen);
-    first_look(frame, view, *geometry, central, &screen->first_look(), with_glass, *screen);
-    return screen;
-}
-
 /// One pass: its geometry, then each tile, which render_tile(view, index) makes.
 template <typename RenderTile>
 void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
@@ -159,7 +82,7 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
         frame.account.add(*frame.layers);
     }
     const Stopwatch watch;
-    const std::unique_ptr<const Screen> screen = look_at_screen(frame, view, pass_view);
+    const std::unique_ptr<const Screen> screen = look_at_screen(frame.data, frame.settings, frame.grid, pass_view, frame.control);
     pass_view.screen = screen.get();
     frame.account.prepass += watch.seconds();
     const Stopwatch tiles_watch;
@@ -404,12 +327,7 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
     check(view, settings);
     const PreparedData& data = prepared.data();
     const TileGrid grid{{0, 0, view.width, view.height}};
-    Account account;
-    Control control;
-    Progress progress(control, grid.size());
-    GeometryLoan geometry(*data.geometries);
-    const Frame frame{data, settings, nullptr, grid, *geometry, nullptr, account, progress, control};
-    return look_at_screen(frame, view, pass_view_of(CameraModel(view), view, Pass{}));
+    return look_at_screen(data, settings, grid, pass_view_of(CameraModel(view), view, Pass{}), Control{});
 }
 
 void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {

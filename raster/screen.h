@@ -93,22 +93,31 @@ public:
     const std::array<ImageFloat, 3>& normals() const { return normals_; }
     Vec3 normal(int x, int y) const { return {normals_[0](x, y), normals_[1](x, y), normals_[2](x, y)}; }
 
+    /// By how much the normal turns from each pixel to the next (normal_turn), once that is known.
+    void set_turns(ImageFloat turns) { turns_ = std::move(turns); }
+    float turn(int x, int y) const { return turns_(x, y); }
+    /// Metres of depth from what each pixel sees to the nearest back face behind it, where that is of a closed object, once
+    /// they are there; else 0.
+    void set_thickness(ImageFloat thickness) { thickness_ = std::move(thickness); }
+    float thickness(int x, int y) const { return thickness_.empty() ? 0.0f : thickness_(x, y); }
+
     /// How much of the environment each pixel sees, once it is there; else null.
     void set_occlusion(std::shared_ptr<const OcclusionImage> occlusion) { occlusion_ = std::move(occlusion); }
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
     /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
-    /// (FirstLookPicture::key), or 0 where it would not be the same again; and the same at all sizes, without the scene's lamps
-    /// and with them.
+    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; and the same at all sizes,
+    /// without the scene's lamps and with them.
     struct FirstLook {
-        Image<std::uint32_t> keys;
+        Image<std::uint32_t> keys, objects;
         RadiancePyramid radiance, without_lamps;
     };
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
     const FirstLook& first_look() const { return first_look_; }
 
-    /// The same view without what is of glass, with a first look, and the nearest back faces of that; else null.
-    void set_glass(std::unique_ptr<const Screen> behind, std::unique_ptr<const Screen> backs) {
+    /// The same view where each pixel sees the next object behind its glass, with a first look, in turn with what is behind
+    /// that; and the nearest back faces of glass. Else null.
+    void set_glass(std::shared_ptr<const Screen> behind, std::shared_ptr<const Screen> backs) {
         behind_ = std::move(behind), backs_ = std::move(backs);
     }
     const Screen* behind() const { return behind_.get(); }
@@ -125,7 +134,8 @@ private:
     std::array<ImageFloat, 3> normals_;
     std::shared_ptr<const OcclusionImage> occlusion_;
     FirstLook first_look_;
-    std::unique_ptr<const Screen> behind_, backs_;
+    ImageFloat turns_, thickness_;
+    std::shared_ptr<const Screen> behind_, backs_;
 };
 
 } // namespace duet::raster

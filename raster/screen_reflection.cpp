@@ -1,8 +1,9 @@
 #include "raster/screen_reflection.h"
 
+#include "common/system/parallel.h"
+
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace duet::raster {
 namespace {
@@ -13,12 +14,6 @@ constexpr float kFlat = 0.01f;        ///< radians from pixel to pixel: what tur
 constexpr int kBlock = 16;            ///< pixels: blocks of the picture before which a ray is are passed at once
 constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve
 
-/// The part of a line over which it stays within [0, size), given where it begins and how it goes on.
-float part_within(float at, float way, float size) {
-    if (way > 0) return (size - at) / way;
-    return way < 0 ? at / -way : kInfinity;
-}
-
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
 float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     const std::optional<Vec3> seen = screen.seen(x, y);
@@ -27,6 +22,8 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     const float towards = -dot(n, way), height = dot(n, p - *seen);
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
 }
+
+bool is_flat(const Screen& screen, int x, int y) { return screen.turn(x, y) < kFlat; }
 
 /// How many of at most `most` steps (sx, sy) from a place stay in its block of kBlock × kBlock pixels, or fewer.
 int steps_in_block(float x, float y, float sx, float sy, int most) {
@@ -43,93 +40,192 @@ bool block_is_beyond(const Screen& screen, float x, float y, float depth) {
     return depth < screen.least_depth(x0, y0, std::min(x0 + kBlock, screen.width()) - 1, std::min(y0 + kBlock, screen.height()) - 1);
 }
 
-/// What pixel (x, y) shows stands for what is met at a distance.
-ScreenHit guess(const Screen& screen, Vec3 p, Vec3 way, float x, float y, float distance) {
-    const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
-    return {x, y, distance, seen ? length(*seen - p - way * distance) : 0.0f};
-}
+/// A ray's way across the picture, from 0 where it begins to 1, in whole steps of a pixel. Along it 1/depth is linear (under
+/// perspective; a parallel view's depth is itself).
+class Crossing {
+public:
+    Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
+        if (!(from_.z > 0)) return;
+        const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
+        // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
+        reach_ = std::min(deeper < 0 ? 0.5f * from_.z / -deeper : kInfinity, 1e3f * from_.z);
+        to_ = screen.project(p + way * reach_);
+        pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
+        if (!moves()) return;
+        float in = 0, out = 1;
+        clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
+        clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
+        if (!(in <= out)) return;
+        first_ = std::max(1, static_cast<int>(std::ceil(in * pixels_))), last_ = static_cast<int>(std::floor(out * pixels_));
+    }
+
+    Vec3 from() const { return from_; }
+    bool moves() const { return pixels_ > 1; }
+    int first() const { return first_; } ///< steps at which it is in the picture: rays may begin beside that
+    int last() const { return last_; }
+    float part(int step) const { return static_cast<float>(step) / pixels_; }
+    float x(float t) const { return lerp(from_.x, to_.x, t); }
+    float y(float t) const { return lerp(from_.y, to_.y, t); }
+    float step_x() const { return (to_.x - from_.x) / pixels_; }
+    float step_y() const { return (to_.y - from_.y) / pixels_; }
+    float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
+    /// The other way round; the end where it keeps its depth.
+    float part_at(float depth) const {
+        const float gained = perspective_ ? 1 / to_.z - 1 / from_.z : to_.z - from_.z;
+        return gained != 0 ? (perspective_ ? 1 / depth - 1 / from_.z : depth - from_.z) / gained : 1;
+    }
+    /// Metres gone at t, where it has a depth: a ray across the view keeps that.
+    float distance(float t, float depth) const {
+        return std::abs(to_.z - from_.z) > 1e-3f * from_.z ? reach_ * (depth - from_.z) / (to_.z - from_.z) : reach_ * t;
+    }
+
+private:
+    /// Of one axis: where the line from `at` on stays within [0, size).
+    static void clip(float at, float way, float size, float& in, float& out) {
+        if (way == 0) {
+            if (!(at >= 0 && at < size)) out = -1;
+            return;
+        }
+        const float a = -at / way, b = (size - at) / way;
+        in = std::max(in, std::min(a, b)), out = std::min(out, std::max(a, b));
+    }
+
+    Vec3 from_, to_; ///< in pixels, and depth
+    bool perspective_;
+    float reach_ = 0, pixels_ = 0;
+    int first_ = 1, last_ = 0;
+};
+
+/// One ray on its way.
+class ScreenTrace {
+public:
+    ScreenTrace(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture)
+        : scenery_(scenery), scene_(scene), p_(p), n_(n), way_(way), from_picture_(from_picture), line_(scenery.all, p, way) {}
+
+    std::optional<ScreenHit> follow() {
+        if (!(line_.from().z > 0)) return std::nullopt;
+        if (!line_.moves()) return in_one_pixel();
+        float before = line_.depth(line_.part(line_.first() - 1));
+        for (int i = line_.first(); i <= line_.last(); ++i) {
+            i += passed_at_once(i, before);
+            const float t = line_.part(i), depth = line_.depth(t), fx = line_.x(t), fy = line_.y(t);
+            if (!scenery_.all.contains(fx, fy)) continue; // by rounding
+            if (const auto hit = visit(i, t, fx, fy, before, depth)) return hit;
+            before = depth;
+        }
+        return beyond_edge();
+    }
+
+private:
+    struct Pixel {
+        int x = -1, y = -1;
+        bool valid() const { return x >= 0; }
+    };
+
+    std::optional<ScreenHit> in_one_pixel() const {
+        const Vec3 from = line_.from();
+        if (from_picture_ || !scenery_.all.contains(from.x, from.y)) return std::nullopt;
+        const auto x = static_cast<int>(from.x), y = static_cast<int>(from.y);
+        const float beyond = scenery_.at(x, y).depth(x, y) - from.z, deeper = scenery_.all.homogeneous_change(way_)[2];
+        return deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
+    }
+
+    /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays.
+    int passed_at_once(int i, float& before) const {
+        if (i <= 2) return 0;
+        const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t);
+        if (!scenery_.all.contains(fx, fy)) return 0;
+        const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), line_.last() - i);
+        if (more <= 0) return 0;
+        const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
+        const bool passes = block_is_beyond(scenery_.all, fx, fy, deepest);
+        if (passes) before = last_depth;
+        return passes ? more : 0;
+    }
+
+    /// A step, over which the ray's depth goes from `before` to `depth`.
+    std::optional<ScreenHit> visit(int i, float t, float fx, float fy, float before, float depth) {
+        const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
+        last_ = {x, y};
+        if (from_picture_ && i < 2) return std::nullopt;
+        const Screen& screen = scenery_.at(x, y);
+        const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
+        const float distance = line_.distance(t, depth);
+        if (far < seen_depth) {
+            hidden_from_ = -1, in_front_ = distance;
+            if (is_flat(screen, x, y) && seen_depth < kInfinity) flat_ = last_;
+            return std::nullopt;
+        }
+        const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
+        const bool behind = near > seen_depth + thickness;
+        if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
+        if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
+            const float crossed = meets_plane(screen, p_, way_, x, y);
+            if (crossed > hidden_from_ && crossed <= distance) return beside_edge(guess(screen, fx, fy, crossed), seen_depth);
+        }
+        if (behind) return std::nullopt;
+        return meet(screen, i, t, x, y, near, known > 0);
+    }
+
+    /// What is seen at a pixel, where the ray is no nearer and not behind it.
+    std::optional<ScreenHit> meet(const Screen& screen, int i, float t, int x, int y, float near, bool closed) const {
+        const std::optional<Vec3> seen = screen.seen(x, y);
+        if (!seen) return std::nullopt;
+        const Vec3 step = *seen - p_;
+        const float depth = screen.depth(x, y);
+        const bool inside = closed && near > depth; // it has come from behind or beside
+        if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
+        if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
+        const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
+        return ScreenHit{line_.x(met), line_.y(met), length(step)};
+    }
+
+    std::optional<ScreenHit> beyond_edge() const {
+        const Pixel last = last_.valid() ? last_ : Pixel{scenery_.all.pixel_at(line_.from()).first, scenery_.all.pixel_at(line_.from()).second};
+        const auto goes_on = [&](Pixel at, float from) -> std::optional<ScreenHit> {
+            const Screen& screen = scenery_.at(at.x, at.y);
+            const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
+            if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
+            return guess(screen, middle(at.x), middle(at.y), crossed);
+        };
+        if (hidden_from_ >= 0) {
+            if (flat_.valid())
+                if (const auto hit = goes_on(flat_, hidden_from_)) return hit;
+            return guess(scenery_.at(last.x, last.y), middle(last.x), middle(last.y), hidden_from_);
+        }
+        const Screen& screen = scenery_.at(last.x, last.y);
+        if (scenery_.is_own(last.x, last.y) || !screen.seen(last.x, last.y)) return std::nullopt;
+        if (is_flat(screen, last.x, last.y)) return goes_on(last, 0);
+        return flat_.valid() ? goes_on(flat_, 0) : std::nullopt; // something round stands before it there
+    }
+
+    /// What a pixel shows stands for what is met at a distance.
+    ScreenHit guess(const Screen& screen, float x, float y, float distance) const {
+        const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
+        return {x, y, distance, seen ? length(*seen - p_ - way_ * distance) : 0.0f};
+    }
+    /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
+    ScreenHit beside_edge(ScreenHit hit, float depth) const {
+        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), 0.1f * static_cast<float>(scenery_.all.width()));
+        const float x = hit.x + aside * line_.step_x(), y = hit.y + aside * line_.step_y();
+        if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
+        return hit;
+    }
+    static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
+
+    const Scenery& scenery_;
+    const Box3& scene_;
+    Vec3 p_, n_, way_;
+    bool from_picture_;
+    Crossing line_;
+    float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
+    Pixel last_, flat_;                     ///< where it is; the last flat surface that it was before
+};
 
 } // namespace
 
-std::optional<ScreenHit> trace_screen(const Screen& screen, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
-    const Vec3 from = screen.project(p);
-    if (!(from.z > 0)) return std::nullopt;
-    const auto h = screen.homogeneous_change(way);
-    const float deeper = h[2]; // depth gained a metre
-    // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
-    const float reach = deeper < 0 ? 0.5f * from.z / -deeper : 1e3f * from.z;
-    const Vec3 to = screen.project(p + way * std::min(reach, 1e3f * from.z));
-    const float dx = to.x - from.x, dy = to.y - from.y;
-    const float pixels = std::max(std::abs(dx), std::abs(dy));
-    if (!(pixels > 1)) { // all the way in one pixel
-        const float beyond = screen.contains(from.x, from.y) ? screen.depth(static_cast<int>(from.x), static_cast<int>(from.y)) - from.z : 0;
-        return !from_picture && deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
-    }
-    const float part = std::min({1.0f, part_within(from.x, dx, static_cast<float>(screen.width())),
-                                 part_within(from.y, dy, static_cast<float>(screen.height()))});
-    const int steps = static_cast<int>(std::floor(part * pixels));
-    // Along the line in the picture 1/depth is linear (under perspective; a parallel view's depth is itself).
-    const bool perspective = screen.perspective();
-    const auto depth_at = [&](float t) {
-        return perspective ? 1 / lerp(1 / from.z, 1 / to.z, t) : lerp(from.z, to.z, t);
-    };
-    const auto part_at = [&](float depth) { // the other way round; t's end where it keeps its depth
-        const float gained = perspective ? 1 / to.z - 1 / from.z : to.z - from.z;
-        return gained != 0 ? (perspective ? 1 / depth - 1 / from.z : depth - from.z) / gained : 1;
-    };
-    const float length_of_all = std::min(reach, 1e3f * from.z);
-    const auto distance_at = [&](float t, float depth) { // a ray across the view keeps its depth
-        return std::abs(to.z - from.z) > 1e-3f * from.z ? length_of_all * (depth - from.z) / (to.z - from.z) : length_of_all * t;
-    };
-    float before = from.z, in_front = 0; // the last distance at which it was before what is seen
-    float hidden_from = -1;              // and that at which it went behind it; negative: it is not
-    int last_x = -1, last_y = -1, front_x = -1, front_y = -1;
-    for (int i = 1; i <= steps; ++i) {
-        float t = static_cast<float>(i) / pixels, depth = depth_at(t), fx = from.x + dx * t, fy = from.y + dy * t;
-        if (i > 2 && screen.contains(fx, fy)) { // to the last place in a block before which it stays: the same as step by step
-            const int more = steps_in_block(fx, fy, dx / pixels, dy / pixels, steps - i);
-            const float last_t = static_cast<float>(i + more) / pixels, last_depth = depth_at(last_t);
-            if (more > 0 && block_is_beyond(screen, fx, fy, std::max({before, depth, last_depth})))
-                i += more, t = last_t, before = depth = last_depth, fx = from.x + dx * t, fy = from.y + dy * t;
-        }
-        if (!screen.contains(fx, fy)) break;
-        const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
-        last_x = x, last_y = y;
-        const float seen_depth = screen.depth(x, y);
-        const float far = std::max(before, depth), near = std::min(before, depth);
-        const float thickness = std::max(2 * (far - near), kThickness * seen_depth);
-        before = depth;
-        if (from_picture && i < 2) continue;
-        const float distance = distance_at(t, depth);
-        if (far < seen_depth) {
-            hidden_from = -1, in_front = distance, front_x = x, front_y = y;
-            continue;
-        }
-        if (near > seen_depth + thickness) {
-            if (hidden_from < 0) hidden_from = in_front;
-            const float crossed = meets_plane(screen, p, way, x, y);
-            if (crossed > hidden_from && crossed <= distance && normal_turn(screen, x, y) < kFlat) return guess(screen, p, way, fx, fy, crossed);
-            continue;
-        }
-        const std::optional<Vec3> seen = screen.seen(x, y);
-        if (!seen) continue;
-        const Vec3 step = *seen - p;
-        if (!(dot(n, step) > kSlack * length(step))) continue;
-        const float met = clamp(part_at(seen_depth), static_cast<float>(i - 1) / pixels, t);
-        return ScreenHit{from.x + dx * met, from.y + dy * met, length(step)};
-    }
-    if (last_x < 0) std::tie(last_x, last_y) = screen.pixel_at(from);
-    const float last_fx = static_cast<float>(last_x) + 0.5f, last_fy = static_cast<float>(last_y) + 0.5f;
-    if (hidden_from >= 0 && front_x >= 0 && normal_turn(screen, front_x, front_y) < kFlat) {
-        const float crossed = meets_plane(screen, p, way, front_x, front_y);
-        if (crossed > hidden_from && scene.contains(p + way * crossed))
-            return guess(screen, p, way, static_cast<float>(front_x) + 0.5f, static_cast<float>(front_y) + 0.5f, crossed);
-    }
-    if (hidden_from >= 0) return guess(screen, p, way, last_fx, last_fy, hidden_from);
-    const float beyond = meets_plane(screen, p, way, last_x, last_y);
-    const std::optional<Vec3> edge = screen.seen(last_x, last_y);
-    if (beyond == kInfinity || !scene.contains(p + way * beyond) || !edge || dot(n, *edge - p) <= kSlack * length(*edge - p)) return std::nullopt;
-    return guess(screen, p, way, last_fx, last_fy, beyond);
+std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
+    return ScreenTrace(scenery, scene, p, n, way, from_picture).follow();
 }
 
 float normal_turn(const Screen& screen, int x, int y) {
@@ -145,6 +241,14 @@ float normal_turn(const Screen& screen, int x, int y) {
         if (turn < kSmallTurn) most = std::max(most, turn);
     }
     return most;
+}
+
+ImageFloat normal_turns(const Screen& screen, int threads) {
+    ImageFloat turns(screen.width(), screen.height());
+    parallel_for(static_cast<std::size_t>(screen.height()), threads, [&](std::size_t row) {
+        for (int x = 0; x < screen.width(); ++x) turns(x, static_cast<int>(row)) = normal_turn(screen, x, static_cast<int>(row));
+    });
+    return turns;
 }
 
 } // namespace duet::raster

@@ -11,7 +11,6 @@
 #include "raster/split.h"
 #include "raster/surroundings.h"
 
-#include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
 #include "common/scene/used_materials.h"
 
@@ -139,11 +138,11 @@ Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), kMirror
 class Mirrored {
 public:
     Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf)
-        : around_(data, settings, screen), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)) {
+        : around_(data, settings, {screen, nullptr, point.surface.object}), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)) {
         const Vec3 place = screen.project(p_);
         if (place.z > 0) {
             const auto [x, y] = screen.pixel_at(place);
-            spread_ = 2 * normal_turn(screen, x, y);
+            spread_ = 2 * screen.turn(x, y);
         }
         width_ = screen.pixel_size(max(place.z, screen.near()));
     }
@@ -241,15 +240,6 @@ Bsdf bsdf_of(const PreparedData& data, const SurfacePoint& surface) {
     return bsdf;
 }
 
-/// Whether a material, somewhere, mirrors what the picture shows.
-bool may_mirror(const Material& material) {
-    const auto mirrors = [](const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; };
-    if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
-    if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
-    const auto* layers = std::get_if<Principled>(&material);
-    return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
-}
-
 Rgb background(const PreparedData& data, const Settings& settings, const Ray& ray) {
     if (const std::optional<Rgb> everywhere = constant_background(data, settings)) return *everywhere;
     return radiance(data.scene.environment, ray.direction);
@@ -297,35 +287,12 @@ std::optional<Rgb> constant_background(const PreparedData& data, const Settings&
     return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
 }
 
-std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
-    if (!hit.valid() || may_mirror(scene.materials[material_index(scene, hit.object, hit.primitive)])) return 0;
-    return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
-}
-
-void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
-    radiance_(x, y) = radiance;
-    keys_(x, y) = key;
-    lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
-}
-
-FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
-    : radiance_(look.radiance.finest()), keys_(look.keys), lamps_(look.keys.width(), look.keys.height(), 0) {
-    for (std::size_t i = 0; i < radiance_.size(); ++i) lamps_[i] = look.without_lamps.finest()[i] != radiance_[i];
-}
-
-Screen::FirstLook FirstLookPicture::finish() && {
-    ImageRgb dark = radiance_;
-    for (std::size_t i = 0; i < dark.size(); ++i)
-        if (lamps_[i] != 0) dark[i] = Rgb();
-    return {std::move(keys_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
-}
-
-const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
-    if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() || !settings.parts.all())
-        return nullptr;
-    const Screen::FirstLook& look = tile.screen()->first_look();
-    const std::uint32_t key = FirstLookPicture::key(data.scene, tile.hit(x, y));
-    return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
+bool may_mirror(const Material& material) {
+    const auto mirrors = [](const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; };
+    if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
+    if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
+    const auto* layers = std::get_if<Principled>(&material);
+    return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
 }
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,

@@ -31,28 +31,8 @@ bool needs_screen_behind(const PreparedData& data, const Settings& settings);
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
 /// Works it out, if so.
 void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen);
-/// What a first look at the picture, without reflections in itself, makes of the centre of each pixel.
-class FirstLookPicture {
-public:
-    FirstLookPicture(int width, int height) : radiance_(width, height), keys_(width, height, 0), lamps_(width, height, 0) {}
-    /// Begins as another.
-    explicit FirstLookPicture(const Screen::FirstLook& look);
-
-    /// `key`: of the hit, or 0 where it is to be shaded again.
-    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
-    Screen::FirstLook finish() &&;
-
-    /// Of what a pixel sees: 0 of what mirrors the picture, and of nothing.
-    static std::uint32_t key(const Scene& scene, const Hit& hit);
-
-private:
-    ImageRgb radiance_;
-    Image<std::uint32_t> keys_;
-    Image<std::uint8_t> lamps_;
-};
-/// What the first look made of a pixel, where all of the pixel is shaded at its centre and sees what that does: the same
-/// as shading it again. Null where it would be another.
-const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
+/// Whether a material, somewhere, mirrors what the picture shows.
+bool may_mirror(const Material& material);
 /// Settings::occlusion_radius, or what its 0 stands for.
 double occlusion_radius(const PreparedData& data, const Settings& settings);
 

@@ -79,8 +79,12 @@ float DrawSphere::nearest(const Ray& ray) const {
 }
 
 std::optional<float> DrawSphere::intersect(const Ray& ray) const {
-    if (identity) return intersect_sphere(ray, sphere);
-    return intersect_sphere(to_object_space(ray, to_world, to_object), sphere);
+    Ray local = identity ? ray : to_object_space(ray, to_world, to_object);
+    const std::optional<float> t = intersect_sphere(local, sphere);
+    if (!t || !far_side) return t;
+    local.t_min = *t;
+    const std::optional<float> out = intersect_sphere(local, sphere);
+    return out ? out : t;
 }
 
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport) {

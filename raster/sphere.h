@@ -17,6 +17,7 @@ struct DrawSphere {
     PixelRect bounds; ///< pixels that may see it, within the picture
     Sphere sphere;    ///< in its object's space
     bool identity = true;
+    bool far_side = false; ///< where a ray leaves it is drawn, not where that enters
     Mat4 to_world, to_object;
 
     /// Where a camera ray meets it: intersect_sphere in its object's space, as the ray tracer does it.

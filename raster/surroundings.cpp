@@ -2,15 +2,12 @@
 
 #include "common/scene/lamp_texture.h"
 #include "raster/prefiltered.h"
-#include "raster/screen_reflection.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
 namespace {
-
-constexpr float kGuessBlur = 0.25f;
 
 /// A lamp that a ray meets: how far off, and how much of a look of some width about the ray it fills.
 struct LampSeen {
@@ -65,9 +62,9 @@ private:
 
 } // namespace
 
-Surroundings::Surroundings(const PreparedData& data, const Settings& settings, const Screen& screen)
-    : data_(data), settings_(settings), screen_(screen),
-      bounds_{screen.relative(data.scene.bounds.low), screen.relative(data.scene.bounds.high)} {
+Surroundings::Surroundings(const PreparedData& data, const Settings& settings, const Scenery& scenery)
+    : data_(data), settings_(settings), scenery_(scenery),
+      bounds_{scenery.all.relative(data.scene.bounds.low), scenery.all.relative(data.scene.bounds.high)} {
     const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
     bounds_ = {bounds_.low - slack, bounds_.high + slack};
 }
@@ -76,14 +73,13 @@ Rgb Surroundings::seen(const Look& look) const {
     float distance = kInfinity;
     Rgb sum = picture_or_environment(look, distance);
     const auto& lights = data_.scene.lights;
-    const std::size_t first = data_.scene.first_surface_light;
-    if (!look.lamps || lights.size() - first > kMostLamps) return sum;
-    const Vec3 p = screen_.absolute(look.p);
+    if (!look.lamps) return sum;
+    const Vec3 p = scenery_.all.absolute(look.p);
     const LampFinder finder{p, look.way, look};
     LampSeen nearest;
     const SurfaceLight* lamp = nullptr;
     std::size_t index = 0;
-    for (std::size_t i = first; i < lights.size(); ++i) {
+    for (const std::size_t i : data_.lamps) {
         const auto& light = std::get<SurfaceLight>(lights[i]);
         const LampSeen found = std::visit(finder, light.shape);
         if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
@@ -97,17 +93,16 @@ Rgb Surroundings::seen(const Look& look) const {
 }
 
 Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
-    if (const auto hit = trace_screen(screen_, bounds_, look.p, look.n, look.way, look.from_picture)) {
+    if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
         distance = hit->distance;
-        const float there = max(screen_.homogeneous(look.p + look.way * hit->distance)[2], screen_.near());
-        // What is guessed is seen no sharper than the guess is good.
-        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap);
-        const RadiancePyramid& picture = look.lamps && hit->gap == 0 ? screen_.first_look().radiance : screen_.first_look().without_lamps;
-        return picture.at(hit->x, hit->y, size / screen_.pixel_size(there));
+        const float there = max(scenery_.all.homogeneous(look.p + look.way * hit->distance)[2], scenery_.all.near());
+        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap) / scenery_.all.pixel_size(there);
+        const Screen::FirstLook& shown = scenery_.about(hit->x, hit->y, size).first_look();
+        return (look.lamps && hit->gap == 0 ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);
     }
     if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
     const Environment& environment = data_.scene.environment;
-    return look.alpha > 0 && data_.prefiltered ? data_.prefiltered->at(environment, look.way, look.alpha)
+    return look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered ? data_.prefiltered->at(environment, look.way, look.alpha)
                                                : radiance(environment, look.way);
 }
 

@@ -4,7 +4,7 @@
 #include "common/vec/box.h"
 #include "raster/direct.h"
 #include "raster/prepare.h"
-#include "raster/screen.h"
+#include "raster/screen_reflection.h"
 
 #include <cmath>
 
@@ -30,19 +30,19 @@ struct Look {
 /// (raster/screen_reflection.h); lamps, which are few, wherever they stand; the environment behind all.
 class Surroundings {
 public:
-    /// `screen`: with a first look. Refers to all.
-    Surroundings(const PreparedData& data, const Settings& settings, const Screen& screen);
+    /// Refers to all, but the scenery.
+    Surroundings(const PreparedData& data, const Settings& settings, const Scenery& scenery);
 
     Rgb seen(const Look& look) const;
 
-    static constexpr std::size_t kMostLamps = 256; ///< of more none is looked for outside the picture
+    static constexpr std::size_t kMostLamps = 256; ///< PreparedData::lamps: of more, the others are seen in the picture alone
 
 private:
     Rgb picture_or_environment(const Look& look, float& distance) const;
 
     const PreparedData& data_;
     const Settings& settings_;
-    const Screen& screen_;
+    Scenery scenery_;
     Box3 bounds_;
 };
 

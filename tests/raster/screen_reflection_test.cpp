@@ -1,7 +1,7 @@
 // What metal mirrors of the picture, against the mirrored ray itself.
 #include "tests/raster/scenes.h"
 
-#include "raster/screen.h"
+#include "raster/screen_reflection.h"
 #include "raster/split.h"
 
 #include <doctest/doctest.h>
@@ -63,6 +63,49 @@ TEST_SUITE("unit") {
             }
         CHECK(std::min({red, green, sky}) > 300);
         CHECK(wrong * 50 < red + green + sky); // rays that leave the picture are guessed
+    }
+
+    TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
+        Scene scene;
+        const Vec3 center(0.8f, 0.7f, -0.2f);
+        constexpr double kRadius = 0.5;
+        add(scene, QuadList{{{Vec3(-3, -1, -2), Vec3(6, 0, 0), Vec3(0, 4, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, Sphere{center, static_cast<float>(kRadius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, kView, settings);
+        int red = 0, white = 0, wrong = 0;
+        for (int y = 0; y < kView.height; ++y)
+            for (int x = 0; x < kView.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z), way(ray.direction.x, ray.direction.y, -ray.direction.z);
+                const Vec3d to = Vec3d(center) - p;
+                const double beside = length(to - way * dot(to, way));
+                if (std::abs(beside - kRadius) < 0.08) continue;
+                ++(beside < kRadius ? red : white);
+                wrong += std::abs(found.radiance(x, y).g - (beside < kRadius ? 0.0f : 1.0f)) > 0.3f; // blurred
+            }
+        CHECK(red > 60);
+        CHECK(white > 2000);
+        CHECK(wrong * 50 < red);
+    }
+
+    TEST_CASE("a ray that begins beside the picture is followed through it") {
+        const Scene scene = before_wall(0);
+        const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
+        const Vec3 from(-5.5f, 1, 0), to(-1.2f, 0.8f, -2), way = normalize(to - from);
+        const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
+        const auto hit = raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(1, 0, 0), way, false);
+        REQUIRE(hit);
+        const Vec3 place = screen->project(screen->relative(to));
+        CHECK(std::abs(hit->x - place.x) < 1);
+        CHECK(std::abs(hit->y - place.y) < 1);
+        CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
+        CHECK(hit->gap == 0);
+        CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
     }
 
     TEST_CASE("slightly rough metal mirrors without grain: neighbours differ by 4 % at most where the wall is of one colour") {

@@ -1,0 +1,287 @@
+#include "raster/look.h"
+
+#include "raster/display.h"
+#include "raster/glass.h"
+#include "raster/hit_lists.h"
+#include "raster/one_sample.h"
+#include "raster/screen_reflection.h"
+#include "raster/shadings/shadings.h"
+#include "raster/strip_shader.h"
+
+#include "common/sampling/hash.h"
+#include "common/system/control.h"
+#include "common/system/parallel.h"
+
+#include <atomic>
+
+namespace duet::raster {
+namespace {
+
+/// One view's look at the scene.
+class Looker {
+public:
+    Looker(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& central, const Control& control)
+        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), with_glass_(grid.size(), 0) {}
+
+    std::unique_ptr<Screen> look() {
+        GeometryLoan geometry(*data_.geometries);
+        process_geometry(data_, grid_, central_, settings_, *geometry);
+        std::unique_ptr<Screen> screen = depths_and_normals(*geometry);
+        add_occlusion(data_, settings_, *screen);
+        const bool glass = needs_screen_behind(data_, settings_);
+        if (!glass && !needs_screen_radiance(data_, settings_)) return screen;
+        first_look(*geometry, nullptr, *screen);
+        add_shapes(true, *screen);
+        if (!glass) return screen;
+        look_behind_glass(*screen);
+        first_look(*geometry, &screen->first_look(), *screen);
+        return screen;
+    }
+
+private:
+    int width() const { return grid_.region.width(); }
+    int height() const { return grid_.region.height(); }
+    template <typename F> void for_tiles(const F& visit) const {
+        parallel_for(grid_.size(), settings_.threads, [&](std::size_t i) {
+            if (!control_.stopped()) visit(i, grid_.tile(i));
+        });
+    }
+
+    /// The depths and normals at the pixels' centres.
+    std::unique_ptr<Screen> depths_and_normals(const Geometry& geometry) const {
+        ImageFloat nearness(width(), height());
+        ImageRgb normals(width(), height());
+        const std::unique_ptr<Program> normal = program(Shading::kNormal);
+        for_tiles([&](std::size_t i, const PixelRect& rect) {
+            keep_nearness_and_colors(data_, geometry, central_, *normal, rect, i, nearness, normals);
+        });
+        auto screen = std::make_unique<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
+        screen->set_normals(normals);
+        return screen;
+    }
+
+    /// How things are curved and how thick they are.
+    void add_shapes(bool glass, Screen& screen) const {
+        screen.set_turns(normal_turns(screen, settings_.threads));
+        GeometryLoan geometry(*data_.geometries);
+        process_backs(data_, grid_, central_, settings_, glass, *geometry);
+        ImageFloat backs(width(), height());
+        for_tiles([&](std::size_t i, const PixelRect& rect) {
+            keep_nearness(*geometry, central_, rect, i, backs);
+            for (int y = rect.y0; y < rect.y1; ++y)
+                for (int x = rect.x0; x < rect.x1; ++x) {
+                    const std::uint32_t object = screen.first_look().objects(x, y);
+                    const bool closed = object != kNoObject && data_.objects[object].closed && backs(x, y) > 0;
+                    backs(x, y) = closed ? max(screen.near() / backs(x, y) - screen.depth(x, y), 0.0f) : 0;
+                }
+        });
+        screen.set_thickness(std::move(backs));
+    }
+
+    /// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
+    /// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with
+    /// before the screen has Screen::behind: tiles that show some are found where nothing is known; the others are taken
+    /// whole from what is.
+    void first_look(const Geometry& geometry, const Screen::FirstLook* known, Screen& screen) {
+        PassView pass = central_;
+        pass.screen = &screen;
+        const Settings settings = plain_settings();
+        FirstLookPicture picture = known != nullptr ? FirstLookPicture(*known) : FirstLookPicture(width(), height());
+        for_tiles([&](std::size_t i, const PixelRect& rect) {
+            if (known != nullptr && with_glass_[i] == 0) return;
+            DepthTile depths;
+            cover(geometry, pass, pass.samples.front(), rect, i, depths);
+            const HitTile tile(depths, geometry, pass);
+            for (int y = rect.y0; y < rect.y1; ++y)
+                for (int x = rect.x0; x < rect.x1; ++x) {
+                    const Hit& hit = tile.hit(x, y);
+                    const bool later = screen.behind() == nullptr && hit.valid() && is_glass(data_, hit.object);
+                    if (later) with_glass_[i] = 1;
+                    const std::uint32_t key = later ? 0 : FirstLookPicture::key(data_.scene, hit);
+                    const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
+                    picture.set(data_.scene, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
+                }
+        });
+        screen.set_first_look(std::move(picture).finish());
+    }
+    Settings plain_settings() const {
+        Settings settings = settings_;
+        settings.screen_reflections = false;
+        settings.parts = {};
+        settings.aovs = {};
+        return settings;
+    }
+
+    /// What there is without glass; over it, the second of the objects on each pixel's way, where that is glass, too.
+    void look_behind_glass(Screen& screen) {
+        GeometryLoan geometry(*data_.geometries), glass(*data_.geometries);
+        process_without_glass(data_, grid_, central_, settings_, *geometry);
+        std::unique_ptr<Screen> bare = depths_and_normals(*geometry);
+        add_occlusion(data_, settings_, *bare);
+        first_look(*geometry, &screen.first_look(), *bare);
+        add_shapes(false, *bare);
+        process_backs_of_glass(data_, grid_, central_, settings_, true, *glass);
+        const std::shared_ptr<const Screen> backs = depths_and_normals(*glass);
+        process_glass(data_, grid_, central_, settings_, *glass);
+        std::shared_ptr<const Screen> behind = second_layer(screen, *geometry, *glass, std::move(bare));
+        screen.set_glass(std::move(behind), backs);
+    }
+
+    std::shared_ptr<const Screen> second_layer(const Screen& front, const Geometry& bare_geometry, const Geometry& glass,
+                                               std::shared_ptr<const Screen> bare) {
+        Image<Hit> hits(width(), height()); ///< of glass behind other glass; none elsewhere
+        ImageFloat nearness = bare->nearness();
+        ImageRgb normals(width(), height());
+        std::atomic<bool> any{false};
+        for_glass_tiles(&bare_geometry, glass, [&](HitTile& tile, HitLists& lists) {
+            const auto& objects = front.first_look().objects;
+            lists.for_each([&](int x, int y, const Hit& hit) {
+                if (hit.object == objects(x, y)) return false;
+                hits(x, y) = hit;
+                tile.exchange(x, y, hit);
+                nearness(x, y) = tile.nearness(x, y);
+                any = true;
+                return true;
+            });
+        });
+        if (!any) return bare;
+        for (int y = 0; y < height(); ++y)
+            for (int x = 0; x < width(); ++x) {
+                const Hit& hit = hits(x, y);
+                normals(x, y) = as_color(hit.valid() ? normal_of(hit, x, y) : bare->normal(x, y));
+            }
+        auto screen = std::make_shared<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
+        screen->set_normals(normals);
+        screen->set_turns(normal_turns(*screen, settings_.threads));
+        ImageFloat thickness(width(), height());
+        for (int y = 0; y < height(); ++y)
+            for (int x = 0; x < width(); ++x) thickness(x, y) = hits(x, y).valid() ? 0 : bare->thickness(x, y);
+        screen->set_thickness(std::move(thickness));
+        screen->set_glass(bare, backs_of(hits));
+        shade_second_layer(bare_geometry, hits, *screen);
+        return screen;
+    }
+
+    Vec3 normal_of(const Hit& hit, int x, int y) const {
+        return hit_normal(data_.scene, central_, hit, central_.samples.front().position(x, y), 1);
+    }
+    static Rgb as_color(Vec3 n) { return Rgb(n.x + 1, n.y + 1, n.z + 1) * 0.5f; }
+
+    /// The nearest back face of each hit's own object.
+    std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits) {
+        GeometryLoan backs(*data_.geometries);
+        process_backs_of_glass(data_, grid_, central_, settings_, false, *backs);
+        ImageFloat nearness(width(), height());
+        ImageRgb normals(width(), height());
+        for_glass_tiles(nullptr, *backs, [&](HitTile& tile, HitLists& lists) {
+            lists.for_each([&](int x, int y, const Hit& hit) {
+                if (hit.object != hits(x, y).object) return false;
+                tile.exchange(x, y, hit);
+                nearness(x, y) = tile.nearness(x, y);
+                normals(x, y) = as_color(normal_of(hit, x, y));
+                return true;
+            });
+        });
+        auto screen = std::make_shared<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
+        screen->set_normals(normals);
+        return screen;
+    }
+
+    /// The first look of what is behind, which sees what is behind that.
+    void shade_second_layer(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
+        const Screen::FirstLook& bare = screen.behind()->first_look();
+        Screen::FirstLook places{bare.keys, bare.objects, {}, {}}; // which object is where, before any is shaded
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            if (hits[i].valid()) places.objects[i] = hits[i].object;
+        places.radiance = bare.radiance, places.without_lamps = bare.without_lamps;
+        screen.set_first_look(std::move(places));
+        PassView pass = central_;
+        pass.screen = &screen;
+        const Settings settings = plain_settings();
+        FirstLookPicture picture(screen.behind()->first_look());
+        for_tiles([&](std::size_t i, const PixelRect& rect) {
+            if (with_glass_[i] == 0) return;
+            DepthTile depths;
+            cover(bare_geometry, pass, pass.samples.front(), rect, i, depths);
+            HitTile tile(depths, bare_geometry, pass);
+            for (int y = rect.y0; y < rect.y1; ++y)
+                for (int x = rect.x0; x < rect.x1; ++x) {
+                    if (!hits(x, y).valid()) continue;
+                    tile.exchange(x, y, hits(x, y));
+                    picture.set(data_.scene, x, y, hits(x, y), shade(data_, settings, tile, x, y).radiance, 0);
+                }
+        });
+        screen.set_first_look(std::move(picture).finish());
+    }
+
+    /// The tiles that show glass: their hits of one geometry, or none, and the lists of another's before them.
+    template <typename F> void for_glass_tiles(const Geometry* seen, const Geometry& listed, const F& visit) const {
+        for_tiles([&](std::size_t i, const PixelRect& rect) {
+            if (with_glass_[i] == 0) return;
+            const SampleOffset offset = central_.samples.front();
+            DepthTile depths;
+            if (seen != nullptr) {
+                cover(*seen, central_, offset, rect, i, depths);
+            } else {
+                depths.reset(rect, offset, central_.viewport);
+                depths.empty_undrawn();
+            }
+            HitTile tile(depths, seen != nullptr ? *seen : listed, central_);
+            HitLists lists(listed, central_, offset, i, tile);
+            visit(tile, lists);
+        });
+    }
+
+    const PreparedData& data_;
+    const Settings& settings_;
+    const TileGrid& grid_;
+    const PassView& central_;
+    const Control& control_;
+    std::vector<std::uint8_t> with_glass_; ///< of each tile
+};
+
+} // namespace
+
+std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
+    if (!hit.valid()) return 0;
+    const Material& material = scene.materials[material_index(scene, hit.object, hit.primitive)];
+    if (may_mirror(material) || std::holds_alternative<Dielectric>(material)) return 0;
+    return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
+}
+
+void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
+    radiance_(x, y) = radiance;
+    keys_(x, y) = key;
+    objects_(x, y) = hit.object;
+    lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+}
+
+FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
+    : radiance_(look.radiance.finest()), keys_(look.keys), objects_(look.objects), lamps_(look.keys.width(), look.keys.height(), 0) {
+    for (std::size_t i = 0; i < radiance_.size(); ++i) lamps_[i] = look.without_lamps.finest()[i] != radiance_[i];
+}
+
+Screen::FirstLook FirstLookPicture::finish() && {
+    ImageRgb dark = radiance_;
+    for (std::size_t i = 0; i < dark.size(); ++i)
+        if (lamps_[i] != 0) dark[i] = Rgb();
+    return {std::move(keys_), std::move(objects_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
+}
+
+const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
+    if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() || !settings.parts.all())
+        return nullptr;
+    const Screen::FirstLook& look = tile.screen()->first_look();
+    const std::uint32_t key = FirstLookPicture::key(data.scene, tile.hit(x, y));
+    return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
+}
+
+std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& pass,
+                                       const Control& control) {
+    if (!needs_screen(data, settings)) return nullptr;
+    const std::vector<SampleOffset> centers(1);
+    const PassView central{.pinhole = pass.pinhole, .time = pass.time, .viewport = pass.viewport, .samples = centers};
+    return Looker(data, settings, grid, central, control).look();
+}
+
+} // namespace duet::raster
