@@ -7,7 +7,7 @@
 namespace duet {
 
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
-    SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), Vec3d(ray.direction),
+    SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), SphereLine<double>(Vec3d(ray.direction)),
                             static_cast<double>(sphere.radius));
     if (sabotaged(Guard::kSphereRoots)) { // the textbook's, in float
         const Vec3 g = ray.origin - sphere.center, e = ray.direction;

@@ -130,6 +130,7 @@ struct Bvh {
     std::vector<BvhInstance> instances;
 
     bool empty() const { return bounds.empty(); }
+    bool has_polygons() const { return !triangles.empty() || !quads.empty(); }
     /// Whether single rays go through the tree, not the list; packets do wherever there is one.
     bool use_tree() const { return list.empty() && !nodes.empty(); }
     std::int64_t memory_bytes() const;

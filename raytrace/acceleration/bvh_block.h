@@ -1,9 +1,8 @@
-// Rays against the primitives of a leaf, many at once. The results are those of intersect_triangle, intersect_quad and
-// intersect_sphere, to the bit.
+// Rays against the polygons of a leaf, many at once. The results are those of intersect_triangle and intersect_quad, to
+// the bit.
 #pragma once
 
 #include "common/geometry/quad.h"
-#include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
 #include "common/system/sabotage.h"
 #include "raytrace/acceleration/bvh.h"
@@ -148,62 +147,5 @@ inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const Triangl
 inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const QuadBlock& block, std::size_t lane) {
     return intersect_quad(ray, block.corners(lane));
 }
-
-/// The spheres of a block against one ray, all at once: in double, as one by one. (A filter in float before that gains
-/// nothing, with 8 doubles at once or with 4.)
-class SphereBlockTest {
-public:
-    [[gnu::always_inline]] SphereBlockTest(const Ray& ray, const SphereBlock& block, float end) {
-        if (sabotaged(Guard::kSphereRoots)) {
-            one_by_one(ray, block, end);
-            return;
-        }
-        alignas(32) BlockLanes<float> near, far;
-        unsigned met = 0;
-        for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
-            const auto along = [&](std::size_t axis) {
-                return load_doubles(block.center[axis].data() + i) - DoubleBatch(static_cast<double>(ray.origin[axis]));
-            };
-            const auto direction = [&](std::size_t axis) {
-                return DoubleBatch(static_cast<double>(ray.direction[axis]));
-            };
-            const SphereTest<DoubleBatch> test({along(0), along(1), along(2)},
-                                               {direction(0), direction(1), direction(2)},
-                                               load_doubles(block.radius.data() + i));
-            const unsigned these = lane_bits(test.discriminant >= DoubleBatch(0.0));
-            met |= these << i;
-            if (these == 0) continue;
-            const auto roots = test.roots();
-            store_floats(roots.near, near.data() + i);
-            store_floats(roots.far, far.data() + i);
-        }
-        hits_ = met;
-        if (met == 0) return;
-        const auto t_near = Batch::load_aligned(near.data()), t_far = Batch::load_aligned(far.data());
-        const Batch first(ray.t_min), last(end);
-        const auto near_counts = (t_near > first) & (t_near <= last), far_counts = (t_far > first) & (t_far <= last);
-        hits_ &= lane_bits(near_counts | far_counts);
-        xsimd::select(near_counts, t_near, t_far).store_aligned(t_.data());
-    }
-
-    unsigned hits() const { return hits_; } ///< the lanes with a hit in (t_min, end], a bit each
-    float t(std::size_t lane) const { return t_[lane]; }
-
-private:
-    using Batch = FloatBatch<kBlockSize>;
-
-    void one_by_one(Ray ray, const SphereBlock& block, float end) {
-        ray.t_max = end;
-        hits_ = 0;
-        for (std::size_t lane = 0; lane < kBlockSize; ++lane)
-            if (const auto t = intersect_sphere(ray, block.sphere(lane))) {
-                t_[lane] = *t;
-                hits_ |= 1u << lane;
-            }
-    }
-
-    unsigned hits_;
-    alignas(32) BlockLanes<float> t_;
-};
 
 } // namespace duet::raytrace

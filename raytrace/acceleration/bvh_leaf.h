@@ -3,6 +3,9 @@
 
 #include "common/geometry/hit.h"
 #include "raytrace/acceleration/bvh_block.h"
+#include "raytrace/acceleration/bvh_spheres.h"
+
+#include <optional>
 
 namespace duet::raytrace {
 
@@ -18,7 +21,10 @@ template <bool kAny, typename Instance> class LeafTest {
 public:
     /// object: of the primitives where it is not kNoObject (an instance's), else they name their own.
     LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance)
-        : bvh_(bvh), ray_(ray), sheared_(ray), object_(object), instance_(instance) {}
+        : bvh_(bvh), object_(object), instance_(instance) {
+        if (bvh.has_polygons()) sheared_.emplace(ray);
+        if (!bvh.spheres.empty()) sphere_ray_.emplace(ray);
+    }
 
     bool found() const { return found_; } ///< whether any test has found a hit
 
@@ -40,11 +46,11 @@ private:
 
     template <std::size_t kCorners>
     [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
-        BlockTest<kCorners> test(sheared_.shear, block, best.t);
+        BlockTest<kCorners> test(sheared_->shear, block, best.t);
         if (test.candidates() == 0) return false;
-        if (test.touched() != 0) test.measure_touched(sheared_, block);
+        if (test.touched() != 0) test.measure_touched(*sheared_, block);
         using Batch = FloatBatch<kBlockSize>;
-        unsigned hits = test.certain() & lane_bits((test.t() > Batch(sheared_.t_min)) & (test.t() <= Batch(best.t)));
+        unsigned hits = test.certain() & lane_bits((test.t() > Batch(sheared_->t_min)) & (test.t() <= Batch(best.t)));
         if (hits != 0) {
             const Lanes t(test.t()), u(test.u()), v(test.v());
             for (; hits != 0; hits &= hits - 1) {
@@ -58,13 +64,13 @@ private:
     }
 
     template <typename Block> [[gnu::noinline]] bool exactly(const Block& block, std::size_t lane, Hit& best) {
-        sheared_.t_max = best.t;
-        const auto hit = exact_hit(sheared_, block, lane);
+        sheared_->t_max = best.t;
+        const auto hit = exact_hit(*sheared_, block, lane);
         return hit && consider(block, lane, *hit, best);
     }
 
     bool spheres(const SphereBlock& block, Hit& best) {
-        const SphereBlockTest test(ray_, block, best.t);
+        const SphereBlockTest test(*sphere_ray_, block, best.t);
         for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
             if (consider({name(block.object[lane]), 0, 0, 0, test.t(lane)}, best)) return true;
@@ -85,8 +91,8 @@ private:
     std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
-    const Ray& ray_;
-    ShearedRay sheared_;
+    std::optional<ShearedRay> sheared_; // for polygons
+    std::optional<SphereRay> sphere_ray_; // for spheres
     std::uint32_t object_;
     const Instance& instance_;
     bool found_ = false;

@@ -26,6 +26,7 @@ public:
     Batch t_min() const { return t_min_; }
     Batch t_max() const { return t_max_; }
     const Shear<Batch>& shear() const { return shear_; }
+    const LineLanes<kSize>& lines() const { return lines_; }
 
     /// A bit for each child of the node whose box some of the rays may enter before `end`, the last of their ends; and
     /// for each a distance before which none does.
@@ -85,6 +86,8 @@ private:
         coherent_ = set_axes(rays, origin, direction, bounds != nullptr);
         if (!coherent_) return;
         shear_ = sheared(origin, direction);
+        const std::array<Batch, 6> columns_of_lines{ox, oy, oz, dx, dy, dz};
+        for (std::size_t k = 0; k < columns_of_lines.size(); ++k) columns_of_lines[k].store_aligned(lines_[k].data());
         const Vec3 first = rays[0].origin;
         const auto same = (ox == Batch(first.x)) & (oy == Batch(first.y)) & (oz == Batch(first.z));
         if (lane_bits(same) == kAllRays) origin_ = first;
@@ -181,6 +184,7 @@ private:
     std::optional<Vec3> origin_;
     Shear<Batch> shear_;
     alignas(64) std::array<Values, 7> lanes_; // the shear's, to be picked from
+    alignas(64) LineLanes<kSize> lines_;
     Batch t_min_, t_max_;
     float first_;
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
@@ -298,6 +302,8 @@ private:
     using Batch = RayPacket::Batch;
     // Up to so many rays are tested against a whole block of polygons, more with each polygon at a time.
     static constexpr int kFewRays = kSize / 2;
+    // From so many on they are tested together against a sphere, fewer each against all of a block.
+    static constexpr int kSomeRays = 3;
     // Rays that are tested together against a block, each in its share of the lanes.
     static constexpr std::size_t kShares = kSize / kBlockSize;
 
@@ -360,6 +366,9 @@ private:
         } else if (leaf.kind() == PrimitiveKind::kInstance && std::popcount(active) > kFewRays) {
             instances_(bvh_.instances[leaf.index()], active, best_);
             nearer_ = true;
+        } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kSomeRays &&
+                   !sabotaged(Guard::kSphereRoots)) {
+            test(bvh_.spheres[leaf.index()], active);
         } else {
             for (; active != 0; active &= active - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(active));
@@ -433,7 +442,8 @@ private:
             const unsigned nearer = lane_bits((test.t() > packet_.t_min()) & (test.t() < ends()));
             const unsigned ties = lane_bits((test.t() > packet_.t_min()) & (test.t() == ends()));
             const unsigned certain = test.certain() & candidates;
-            if ((certain & nearer) != 0) take(certain & nearer, test, block.object[lane], block.primitive[lane]);
+            if ((certain & nearer) != 0)
+                take(certain & nearer, test.t(), test.u(), test.v(), block.object[lane], block.primitive[lane]);
             if ((certain & ties) != 0) consider_each(certain & ties, block, lane, test);
             const unsigned touched = test.touched();
             if ((touched & candidates) != 0) consider_touched(touched & candidates, block, lane, test);
@@ -442,12 +452,32 @@ private:
         }
     }
 
+    // A sphere at a time: in double against the rays that do not surely miss it.
+    [[gnu::noinline]] void test(const SphereBlock& block, unsigned active) {
+        const SphereFilter filter(packet_.lines());
+        for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+            const Sphere sphere = block.sphere(lane);
+            if (sphere.radius != sphere.radius) return; // absent, and so are the rest
+            const unsigned candidates = filter.may_meet(sphere) & active;
+            if (candidates == 0) continue;
+            const SphereRaysTest test(packet_.lines(), candidates, sphere, packet_.t_min(), ends());
+            const unsigned nearer = test.hits() & lane_bits(test.t() < ends());
+            const Batch zero(0.0f);
+            const Lanes t(test.t());
+            for (unsigned ties = test.hits() & ~nearer; ties != 0; ties &= ties - 1) {
+                const auto ray = static_cast<std::size_t>(std::countr_zero(ties));
+                consider(ray, {name(block.object[lane]), 0, 0, 0, t[ray]});
+            }
+            if (nearer != 0) take(nearer, test.t(), zero, zero, block.object[lane], 0);
+        }
+    }
+
     // The hits become these rays' best ones.
-    void take(unsigned rays, const CandidateTest<Batch>& test, std::uint32_t object, std::uint32_t primitive) {
+    void take(unsigned rays, Batch t, Batch u, Batch v, std::uint32_t object, std::uint32_t primitive) {
         nearer_ = true;
-        store_lanes(test.t(), rays, best_.t.data());
-        store_lanes(test.u(), rays, best_.u.data());
-        store_lanes(test.v(), rays, best_.v.data());
+        store_lanes(t, rays, best_.t.data());
+        store_lanes(u, rays, best_.u.data());
+        store_lanes(v, rays, best_.v.data());
         store_lanes(name(object), rays, best_.object);
         store_lanes(primitive, rays, best_.primitive);
     }
@@ -482,7 +512,9 @@ private:
     }
     template <typename Block>
     void consider(const Block& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
-        const Hit found{name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t};
+        consider(ray, {name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t});
+    }
+    void consider(std::size_t ray, const Hit& found) {
         if (precedes(found, best_.get(ray))) set_best(ray, found);
     }
 

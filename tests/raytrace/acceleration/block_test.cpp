@@ -1,6 +1,7 @@
 // A block's primitives, tested at once, are hit as they are one by one, to the bit; and no hit is overlooked.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_block.h"
+#include "raytrace/acceleration/bvh_spheres.h"
 #include "tests/raytrace/acceleration/soup.h"
 
 #include <doctest/doctest.h>
@@ -249,7 +250,7 @@ TEST_SUITE("unit") {
                     if (trial % 3 == 0)
                         if (const auto t = intersect_sphere(ray, block.sphere(aimed_at))) ray.t_max = *t;
                     if (trial % 3 == 1) ray.t_min = random.uniform(0, 1) * scale;
-                    const SphereBlockTest test(ray, block, ray.t_max);
+                    const SphereBlockTest test(SphereRay(ray), block, ray.t_max);
                     for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
                         const auto expected = intersect_sphere(ray, block.sphere(lane));
                         const bool hit = (test.hits() >> lane & 1) != 0;
@@ -259,6 +260,50 @@ TEST_SUITE("unit") {
                 }
                 CHECK(wrong == 0);
                 CHECK(hits > 10000);
+            }
+    }
+
+    TEST_CASE("a sphere is hit by many rays as by each, to the bit; those left out surely miss it") {
+        constexpr std::size_t kRays = kMaxSimdLanes;
+        using Batch = FloatBatch<kRays>;
+        for (const float scale : kScales)
+            for (const float shift : kShifts) {
+                CAPTURE(scale);
+                CAPTURE(shift);
+                Random random(43);
+                const Vec3 offset = Vec3(1, -0.5f, 0.25f) * (shift * scale);
+                int hits = 0, wrong = 0, misses = 0, left_out = 0;
+                for (int trial = 0; trial < 60000 / static_cast<int>(kRays); ++trial) {
+                    const Sphere sphere{offset + random.vector() * scale, scale * std::pow(10.0f, random.uniform(-4, 2))};
+                    const Sphere beside{sphere.center + random.vector() * (4 * sphere.radius), sphere.radius};
+                    std::array<Ray, kRays> rays;
+                    alignas(64) LineLanes<kRays> lines;
+                    alignas(64) std::array<float, kRays> t_min, ends;
+                    for (std::size_t i = 0; i < kRays; ++i) {
+                        Ray& ray = rays[i] = sphere_ray(random, i % 2 == 0 ? sphere : beside);
+                        if (i % 3 == 0)
+                            if (const auto t = intersect_sphere(ray, sphere)) ray.t_max = *t;
+                        if (i % 3 == 1) ray.t_min = random.uniform(0, 1) * scale;
+                        if (i % 5 == 4) ray.direction = ray.direction * std::pow(10.0f, random.uniform(-15, 15));
+                        for (std::size_t axis = 0; axis < 3; ++axis)
+                            lines[axis][i] = ray.origin[axis], lines[3 + axis][i] = ray.direction[axis];
+                        t_min[i] = ray.t_min, ends[i] = ray.t_max;
+                    }
+                    const unsigned candidates = SphereFilter(lines).may_meet(sphere);
+                    const SphereRaysTest test(lines, candidates, sphere, Batch::load_aligned(t_min.data()),
+                                              Batch::load_aligned(ends.data()));
+                    const Lanes t(test.t());
+                    for (std::size_t i = 0; i < kRays; ++i) {
+                        const auto expected = intersect_sphere(rays[i], sphere);
+                        const bool hit = (test.hits() >> i & 1) != 0;
+                        (expected ? hits : misses)++;
+                        left_out += (candidates >> i & 1) == 0;
+                        wrong += hit != expected.has_value() || (hit && !same(t[i], *expected));
+                    }
+                }
+                CHECK(wrong == 0);
+                CHECK(hits > 5000);
+                CHECK(left_out > misses / 4); // of those whose line misses it
             }
     }
 

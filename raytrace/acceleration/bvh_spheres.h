@@ -1,0 +1,153 @@
+// Rays against the spheres of a leaf, many at once. The results are those of intersect_sphere, to the bit.
+#pragma once
+
+#include "common/geometry/sphere.h"
+#include "common/system/sabotage.h"
+#include "common/vec/robust.h"
+#include "raytrace/acceleration/bvh.h"
+
+#include <bit>
+#include <limits>
+
+namespace duet::raytrace {
+
+/// A ray made ready for such tests.
+struct SphereRay {
+    const Ray& ray;
+    Vec3d origin;
+    SphereLine<double> line;
+
+    explicit SphereRay(const Ray& its) : ray(its), origin(its.origin), line(Vec3d(its.direction)) {}
+};
+
+/// The spheres of a block against one ray, all at once: in double, as one by one. (A filter in float before that gains
+/// nothing: mostly a ray has begun on the one sphere that it does not surely miss.)
+class SphereBlockTest {
+public:
+    [[gnu::always_inline]] SphereBlockTest(const SphereRay& its, const SphereBlock& block, float end) {
+        const Ray& ray = its.ray;
+        if (sabotaged(Guard::kSphereRoots)) {
+            one_by_one(ray, block, end);
+            return;
+        }
+        alignas(32) BlockLanes<float> near, far;
+        unsigned met = 0;
+        for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
+            const auto along = [&](std::size_t axis) {
+                return load_doubles(block.center[axis].data() + i) - DoubleBatch(its.origin[axis]);
+            };
+            const SphereTest<DoubleBatch> test({along(0), along(1), along(2)}, SphereLine<DoubleBatch>(its.line),
+                                               load_doubles(block.radius.data() + i));
+            const unsigned these = lane_bits(test.meets_ahead());
+            met |= these << i;
+            if (these == 0) continue;
+            const auto roots = test.roots();
+            store_floats(roots.near, near.data() + i);
+            store_floats(roots.far, far.data() + i);
+        }
+        hits_ = met;
+        if (met == 0) return;
+        const auto t_near = Batch::load_aligned(near.data()), t_far = Batch::load_aligned(far.data());
+        const Batch first(ray.t_min), last(end);
+        const auto near_counts = (t_near > first) & (t_near <= last), far_counts = (t_far > first) & (t_far <= last);
+        hits_ &= lane_bits(near_counts | far_counts);
+        xsimd::select(near_counts, t_near, t_far).store_aligned(t_.data());
+    }
+
+    unsigned hits() const { return hits_; } ///< the lanes with a hit in (t_min, end], a bit each
+    float t(std::size_t lane) const { return t_[lane]; }
+
+private:
+    using Batch = FloatBatch<kBlockSize>;
+
+    void one_by_one(Ray ray, const SphereBlock& block, float end) {
+        ray.t_max = end;
+        hits_ = 0;
+        for (std::size_t lane = 0; lane < kBlockSize; ++lane)
+            if (const auto t = intersect_sphere(ray, block.sphere(lane))) {
+                t_[lane] = *t;
+                hits_ |= 1u << lane;
+            }
+    }
+
+    unsigned hits_;
+    alignas(32) BlockLanes<float> t_;
+};
+
+/// The lines of N rays, a number a lane: origins x, y, z, then directions.
+template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
+
+/// N rays against one sphere after the other.
+template <std::size_t N> class SphereFilter {
+public:
+    using Batch = FloatBatch<N>;
+
+    explicit SphereFilter(const LineLanes<N>& lines)
+        : origin_(load(lines, 0)), direction_(load(lines, 3)) {
+        const Batch squared = dot(direction_, direction_);
+        // NaN where a square may be rounded to nothing or to infinity: such rays may meet all.
+        const auto in_range = (squared > Batch(1e-20f)) & (squared < Batch(1e20f));
+        scale_ = xsimd::select(in_range, Batch(1.0f) / squared, Batch(std::numeric_limits<float>::quiet_NaN()));
+    }
+
+    /// A bit for each ray whose line may meet the sphere; the others surely miss it. In float, u being its unit roundoff and
+    /// g = centre − origin: the nearest point's place along the line is off by less than 10u|g|, and so is that point; its
+    /// distance from the centre by less than 14u|g|. (Where those numbers get too large, both sides are infinite.)
+    unsigned may_meet(const Sphere& sphere) const {
+        const Batch radius(sphere.radius);
+        const Vec3T<Batch> to_center(Batch(sphere.center.x) - origin_.x, Batch(sphere.center.y) - origin_.y,
+                                     Batch(sphere.center.z) - origin_.z);
+        const Vec3T<Batch> closest = direction_ * (dot(to_center, direction_) * scale_) - to_center;
+        const Batch far = xsimd::abs(to_center.x) + xsimd::abs(to_center.y) + xsimd::abs(to_center.z) + radius;
+        const Batch reach = radius + far * Batch(16 * kRoundoff<float>) + Batch(std::numeric_limits<float>::min());
+        return ~lane_bits(dot(closest, closest) > reach * reach) & ((1u << N) - 1);
+    }
+
+private:
+    static Vec3T<Batch> load(const LineLanes<N>& lines, std::size_t first) {
+        const auto at = [&](std::size_t i) { return Batch::load_aligned(lines[first + i].data()); };
+        return {at(0), at(1), at(2)};
+    }
+
+    Vec3T<Batch> origin_, direction_;
+    Batch scale_;
+};
+
+/// One sphere against those of N rays that are asked for, in double.
+template <std::size_t N> class SphereRaysTest {
+public:
+    using Batch = FloatBatch<N>;
+
+    SphereRaysTest(const LineLanes<N>& lines, unsigned rays, const Sphere& sphere, Batch t_min, Batch ends) {
+        constexpr unsigned kSome = (1u << kDoubleLanes) - 1;
+        alignas(sizeof(Batch)) std::array<float, N> near, far;
+        near.fill(0), far.fill(0);
+        const auto spread = [](float x) { return DoubleBatch(static_cast<double>(x)); };
+        for (std::size_t i = 0; i < N; i += kDoubleLanes) {
+            if ((rays >> i & kSome) == 0) continue;
+            const auto load = [&](std::size_t column) { return load_doubles(lines[column].data() + i); };
+            const SphereTest<DoubleBatch> test(
+                {spread(sphere.center.x) - load(0), spread(sphere.center.y) - load(1), spread(sphere.center.z) - load(2)},
+                SphereLine<DoubleBatch>({load(3), load(4), load(5)}), spread(sphere.radius));
+            const unsigned met = lane_bits(test.meets_ahead());
+            hits_ |= met << i;
+            if (met == 0) continue;
+            const auto roots = test.roots();
+            store_floats(roots.near, near.data() + i);
+            store_floats(roots.far, far.data() + i);
+        }
+        const Batch t_near = Batch::load_aligned(near.data()), t_far = Batch::load_aligned(far.data());
+        const auto near_counts = (t_near > t_min) & (t_near <= ends), far_counts = (t_far > t_min) & (t_far <= ends);
+        hits_ &= rays & lane_bits(near_counts | far_counts);
+        t_ = xsimd::select(near_counts, t_near, t_far);
+    }
+
+    unsigned hits() const { return hits_; } ///< the rays asked for with a hit in (t_min, end], a bit each
+    Batch t() const { return t_; }          ///< where
+
+private:
+    unsigned hits_ = 0;
+    Batch t_;
+};
+
+} // namespace duet::raytrace
