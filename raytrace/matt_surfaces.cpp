@@ -9,7 +9,7 @@ MattSurfaces::Kind kind_of(const Scene& scene, const Object& object) {
     const Shape& shape = scene.shapes[object.shape];
     if (std::holds_alternative<Sphere>(shape)) return MattSurfaces::Kind::kRound;
     const auto* mesh = std::get_if<Mesh>(&shape);
-    return mesh == nullptr || mesh->normals.empty() ? MattSurfaces::Kind::kFlat : MattSurfaces::Kind::kNone;
+    return mesh == nullptr || mesh->normals.empty() ? MattSurfaces::Kind::kFlat : MattSurfaces::Kind::kSmooth;
 }
 
 const DiffuseBsdf* matt(const Scene& scene, std::uint32_t material, const std::optional<Bsdf>& bsdf) {
@@ -22,8 +22,14 @@ const DiffuseBsdf* matt(const Scene& scene, std::uint32_t material, const std::o
 } // namespace
 
 MattSurfaces::MattSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs) : scene_(&scene) {
-    for (const Object& object : scene.objects) kinds_.push_back(kind_of(scene, object));
     for (std::uint32_t i = 0; i < bsdfs.size(); ++i) bsdfs_.push_back(matt(scene, i, bsdfs[i]));
+    for (const Object& object : scene.objects) {
+        const auto* mesh = std::get_if<Mesh>(&scene.shapes[object.shape]);
+        MattObject& matt = objects_.emplace_back();
+        matt.several = mesh != nullptr && !mesh->material_slots.empty();
+        matt.bsdf = matt.several ? nullptr : bsdfs_[object.materials[0]];
+        if (matt.several || matt.bsdf != nullptr) matt.kind = kind_of(scene, object);
+    }
 }
 
 } // namespace duet::raytrace

@@ -13,12 +13,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// Whether a camera ray uses all of its block's numbers, or the first two alone.
-bool uses_all(const RenderPlan& plan) { return plan.lens || plan.motion; }
-
-CameraNumbers camera_numbers(const RenderPlan& plan, Sampler& sampler) {
-    return uses_all(plan) ? sampler.camera_numbers() : CameraNumbers{sampler.pixel_numbers()};
-}
+Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
 
 CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
     return {Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), u.lens, u.time};
@@ -26,8 +21,8 @@ CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const Came
 
 } // namespace
 
-Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-    const CameraModel::Point point = camera_point(plan, x, y, camera_numbers(plan, sampler));
+Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler) {
+    const CameraModel::Point point = camera_point(plan, x, y, sampler.camera_numbers(camera_needs(plan)));
     return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
@@ -105,22 +100,11 @@ private:
 
     // As camera_ray has them.
     void start_rays(std::span<Ray> rays) {
-        const auto set = [&](std::size_t i, const CameraNumbers& u) {
-            points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, u);
-        };
-        if (uses_all(target_.plan)) {
-            std::size_t i = 0;
-            for (; i + 1 < rays.size(); i += 2) {
-                const auto [first, second] = Sampler::get_blocks(samplers_[i], samplers_[i + 1]);
-                set(i, samplers_[i].camera_numbers(first));
-                set(i + 1, samplers_[i + 1].camera_numbers(second));
-            }
-            if (i < rays.size()) set(i, samplers_[i].camera_numbers());
-        } else {
-            std::array<Vec2, kSize> numbers;
-            Sampler::pixel_numbers(std::span(samplers_).first(rays.size()), numbers);
-            for (std::size_t i = 0; i < rays.size(); ++i) set(i, CameraNumbers{numbers[i]});
-        }
+        std::array<CameraNumbers, kSize> numbers;
+        Sampler::camera_numbers(std::span(samplers_).first(rays.size()), camera_needs(target_.plan),
+                                std::span(numbers).first(rays.size()));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, numbers[i]);
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 
@@ -154,7 +138,8 @@ TileTally render_tile(const PassTarget& target, const CameraModel& camera, const
         const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
         if (x >= tile.x1 || y >= tile.y1) continue;
         const Film& film = target.keeper.film();
-        for (std::uint32_t index = film.taken(x, y); index < film.pixels()(x, y).target; ++index)
+        const std::uint32_t end = film.pixels()(x, y).target;
+        for (std::uint32_t index = film.taken(x, y); index < end; ++index)
             batch.add(x, y, target.settings.first_sample + index);
     }
     batch.finish();

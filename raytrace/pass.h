@@ -9,7 +9,7 @@
 namespace duet::raytrace {
 
 /// The camera ray of the sample that the sampler stands at, of pixel (x, y).
-Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler);
+Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler);
 
 /// Everything that a pass reads and adds to.
 struct PassTarget {

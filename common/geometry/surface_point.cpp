@@ -1,5 +1,6 @@
 #include "common/geometry/surface_point.h"
 
+#include "common/geometry/smooth_lift.h"
 #include "common/geometry/sphere.h"
 #include "common/system/sabotage.h"
 #include "common/vec/robust.h"
@@ -50,25 +51,6 @@ LocalPoint on_quad(const Quad& quad, double u, double v) {
     local.dpdu = du;
     local.dpdv = dv;
     return local;
-}
-
-// From a point of a triangle to the surface that its vertex normals mean, on the side that `direction` comes from: the
-// mean of its projections onto the vertices' tangent planes (Hanika 2021; Boubekeur and Alexa 2008, «Phong
-// Tessellation»). Zero unless it lies below all of them, but for a tenth of the farthest: where the surface is flat,
-// hollow, a saddle, or its normals merely lean.
-Vec3d lift_to_smooth(Vec3d p, const std::array<Vec3d, 3>& vertices, const std::array<Vec3d, 3>& normals,
-                     const std::array<double, 3>& weights, Vec3d ng, Vec3d direction) {
-    const double side = dot(ng, direction) > 0 ? -1 : 1;
-    Vec3d lift;
-    double farthest = 0, least = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3d n = normals[i] * (dot(normals[i], ng) < 0 ? -side : side);
-        const double below = dot(vertices[i] - p, n);
-        farthest = max(farthest, below);
-        least = min(least, below);
-        if (below > 0) lift += n * (below * weights[i]);
-    }
-    return least < -0.1 * farthest ? Vec3d() : lift;
 }
 
 LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, double v, Vec3d direction,

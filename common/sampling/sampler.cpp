@@ -231,46 +231,65 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
     return numbers;
 }
 
-void Sampler::get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers) {
-    using Batch = WholeBatch<kMaxSimdLanes>;
-    std::size_t done = 0;
-    for (; !samplers.empty() && samplers[0].is_sobol() && samplers.size() - done >= kMaxSimdLanes; done += kMaxSimdLanes) {
-        alignas(Batch) std::array<std::uint32_t, kMaxSimdLanes> index, low, high, x, y;
-        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) {
-            Sampler& s = samplers[done + i];
+// at(k): the sampler of the k-th number.
+template <typename At> void Sampler::pairs_of(const At& at, std::uint32_t dimension, std::span<Vec2> numbers) {
+    if (numbers.empty()) return;
+    if (!at(0).is_sobol()) {
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            Sampler sampler = at(k);
+            sampler.set_dimension(dimension);
+            numbers[k] = sampler.get_2d();
+        }
+        return;
+    }
+    constexpr std::size_t kLanes = kMaxSimdLanes;
+    using Batch = WholeBatch<kLanes>;
+    for (std::size_t done = 0; done < numbers.size(); done += kLanes) {
+        const std::size_t size = std::min(numbers.size() - done, kLanes);
+        alignas(Batch) std::array<std::uint32_t, kLanes> index, low, high, x, y;
+        for (std::size_t i = 0; i < kLanes; ++i) { // lanes too many are filled with the first's
+            const Sampler& s = at(done + (i < size ? i : 0));
             index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
-            s.dimension_ += 2;
         }
         const auto load = [](const auto& lanes) { return Batch::load_aligned(lanes.data()); };
-        const Batch seed = dimension_seed(load(low), load(high), Batch(samplers[done].dimension_ - 2));
+        const Batch seed = dimension_seed(load(low), load(high), Batch(dimension));
         const Vec2T<Batch> digits = sobol_2d_digits(load(index), seed);
         digits.x.store_aligned(x.data());
         digits.y.store_aligned(y.data());
-        for (std::size_t i = 0; i < kMaxSimdLanes; ++i) numbers[done + i] = {unit_float(x[i]), unit_float(y[i])};
+        for (std::size_t i = 0; i < size; ++i) numbers[done + i] = {unit_float(x[i]), unit_float(y[i])};
     }
-    for (; done < samplers.size(); ++done) numbers[done] = samplers[done].get_2d();
 }
 
-Vec2 Sampler::pixel_numbers() {
-    dimension_ = 0;
-    return kind_ == SamplerKind::kCenter ? Vec2(0.5f, 0.5f) : get_2d();
+void Sampler::pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, dimension, numbers.first(samplers.size()));
 }
 
-void Sampler::pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers) {
-    if (samplers.empty()) return;
-    for (Sampler& s : samplers) s.dimension_ = 0;
-    if (samplers[0].kind_ != SamplerKind::kCenter) return get_2d(samplers, numbers);
-    std::fill(numbers.begin(), numbers.end(), Vec2(0.5f, 0.5f));
+void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, std::uint32_t dimension,
+                    std::span<Vec2> numbers) {
+    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[which[k]]; }, dimension, numbers.first(which.size()));
 }
 
-CameraNumbers Sampler::camera_numbers() {
-    dimension_ = 0;
-    return camera_numbers(get_block());
+CameraNumbers Sampler::camera_numbers(CameraNeeds needs) const {
+    CameraNumbers numbers;
+    camera_numbers({this, 1}, needs, {&numbers, 1});
+    return numbers;
 }
 
-CameraNumbers Sampler::camera_numbers(const Block& u) const {
-    if (kind_ == SamplerKind::kCenter) return {{0.5f, 0.5f}, {0.5f, 0.5f}, 0};
-    return {{u[0], u[1]}, {u[2], u[3]}, u[4]};
+void Sampler::camera_numbers(std::span<const Sampler> samplers, CameraNeeds needs, std::span<CameraNumbers> numbers) {
+    std::fill(numbers.begin(), numbers.end(), CameraNumbers());
+    if (samplers.empty() || samplers[0].kind_ == SamplerKind::kCenter) return;
+    constexpr std::size_t kSome = 64;
+    std::array<Vec2, kSome> drawn;
+    for (std::size_t done = 0; done < samplers.size(); done += kSome) {
+        const auto some = samplers.subspan(done, std::min(kSome, samplers.size() - done));
+        const auto draw = [&](std::uint32_t dimension, const auto& set) {
+            pairs(some, dimension, drawn);
+            for (std::size_t i = 0; i < some.size(); ++i) set(numbers[done + i], drawn[i]);
+        };
+        draw(0, [](CameraNumbers& u, Vec2 pair) { u.pixel = pair; });
+        if (needs.lens) draw(2, [](CameraNumbers& u, Vec2 pair) { u.lens = pair; });
+        if (needs.time) draw(4, [](CameraNumbers& u, Vec2 pair) { u.time = pair.x; });
+    }
 }
 
 } // namespace duet

@@ -27,7 +27,7 @@ bool depends_on_count(SamplerKind kind);
 
 /// The numbers in [0, 1) that a camera ray uses.
 struct CameraNumbers {
-    Vec2 pixel, lens{0.5f, 0.5f};
+    Vec2 pixel{0.5f, 0.5f}, lens{0.5f, 0.5f};
     float time = 0;
 };
 
@@ -58,19 +58,26 @@ public:
     /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
     /// machine has room for both at once.
     static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
-    /// get_2d of each of several of one kind that stand at the same dimension, some at a time.
-    static void get_2d(std::span<Sampler> samplers, std::span<Vec2> numbers);
-    /// The first block, or only its first pair, for the camera; of kCenter (½, ½), (½, ½) and 0.
-    CameraNumbers camera_numbers();
-    CameraNumbers camera_numbers(const Block& first) const; ///< that block given
-    Vec2 pixel_numbers();
-    static void pixel_numbers(std::span<Sampler> samplers, std::span<Vec2> numbers);
+    /// What get_2d gives at a dimension, of all samplers of one kind, or of some of them in the order of `which`: many at
+    /// once. They stay where they are.
+    static void pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers);
+    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, std::uint32_t dimension,
+                      std::span<Vec2> numbers);
+    /// What the camera asks for besides the place in the pixel.
+    struct CameraNeeds {
+        bool lens = false, time = false;
+    };
+    /// The first three pairs, for the camera; what it does not ask for is as in CameraNumbers, and so is all of kCenter.
+    CameraNumbers camera_numbers(CameraNeeds needs) const;
+    /// Those of many of one kind.
+    static void camera_numbers(std::span<const Sampler> samplers, CameraNeeds needs, std::span<CameraNumbers> numbers);
 
 private:
     bool is_sobol() const {
         return kind_ == SamplerKind::kSobol || kind_ == SamplerKind::kBlueNoise || kind_ == SamplerKind::kCenter;
     }
     void share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y);
+    template <typename At> static void pairs_of(const At& at, std::uint32_t dimension, std::span<Vec2> numbers);
 
     SamplerKind kind_;
     std::uint64_t seed_;

@@ -1,9 +1,9 @@
 #include "raytrace/integrator/matt_vertices.h"
 
-#include "common/vec/robust_batch.h"
 #include "common/light/area_sampling.h"
 #include "common/light/solid_angle.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/matt_points.h"
 
 #include <array>
 
@@ -11,104 +11,14 @@ namespace duet::raytrace {
 
 #if XSIMD_WITH_AVX
 
+using namespace lanes;
+
 namespace {
 
-constexpr std::size_t kLanes = kMattLanes;
-using Floats = FloatBatch<kLanes>;
-using Doubles = DoubleBatch;
-using Vec = Vec3T<Floats>;
-using Vecd = Vec3T<Doubles>;
-using Color = RgbT<Floats>;
-using Mask = Floats::batch_bool_type;
-
-// A number of each path, and three.
-struct Column {
-    alignas(sizeof(Doubles)) std::array<float, kLanes> of{};
-
-    Column() = default;
-    explicit Column(Floats lanes) { lanes.store_aligned(of.data()); }
-    explicit Column(Doubles lanes) { store_floats(lanes, of.data()); }
-    Floats floats() const { return Floats::load_aligned(of.data()); }
-    Doubles doubles() const { return load_doubles(of.data()); }
-};
-struct Columns {
-    Column x, y, z;
-
-    Columns() = default;
-    template <typename T> explicit Columns(const Vec3T<T>& v) : x(v.x), y(v.y), z(v.z) {}
-    void set(std::size_t i, Vec3 v) { x.of[i] = v.x, y.of[i] = v.y, z.of[i] = v.z; }
-    void set(std::size_t i, Rgb c) { set(i, Vec3(c.r, c.g, c.b)); }
-    Vec3 vec(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
-    Rgb rgb(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
-    Vec floats() const { return {x.floats(), y.floats(), z.floats()}; }
-    Vecd doubles() const { return {x.doubles(), y.doubles(), z.doubles()}; }
-    Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
-};
-
-Vec rounded(const Vecd& v) { return Columns(v).floats(); }
-
-// Lanes that no path has are filled with the first one's numbers.
-template <typename Set> void for_lanes(std::span<const MattPath> paths, const Set& set) {
-    for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
-}
-
-// What of a SurfacePoint a matt surface has.
-struct Points {
-    Vec p, p_error, n;
-};
-
-// The magnitude of the terms that p was made of bounds its error, as surface_point has it.
-Points points(const Vecd& p, const Vecd& magnitude, const Vecd& n) {
-    constexpr double kRounding = 2 * static_cast<double>(kRoundoff<float>);
-    return {rounded(p), rounded(magnitude * Doubles(kRounding)), rounded(n)};
-}
-
-Points flat_points(const Scene& scene, std::span<const MattPath> paths) {
-    Columns corner, base, a, b; // edges are a − base and b − base
-    Column u, v, quad;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
-        const Hit& hit = *path.hit;
-        const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
-        u.of[i] = hit.u, v.of[i] = hit.v;
-        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-            const auto& [ia, ib, ic] = mesh->triangles[hit.primitive];
-            corner.set(i, mesh->positions[ia]);
-            base.set(i, mesh->positions[ia]);
-            a.set(i, mesh->positions[ib]);
-            b.set(i, mesh->positions[ic]);
-        } else {
-            const Quad& q = std::get<QuadList>(shape).quads[hit.primitive];
-            corner.set(i, q.corner);
-            a.set(i, q.u);
-            b.set(i, q.v);
-            quad.of[i] = 1;
-        }
-    });
-    const Vecd p0 = corner.doubles(), da = a.doubles() - base.doubles(), db = b.doubles() - base.doubles();
-    const Vecd p = p0 + da * u.doubles() + db * v.doubles();
-    const Vecd magnitude = select(quad.doubles() > Doubles(0.0), abs(p0) + abs(da) + abs(db), abs(p));
-    return points(p, magnitude, normalize(cross(da, db)));
-}
-
-Points round_points(const Scene& scene, std::span<const MattPath> paths) {
-    Columns origin, direction, center;
-    Column radius, t;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
-        const Sphere& sphere = std::get<Sphere>(scene.shapes[scene.objects[path.hit->object].shape]);
-        origin.set(i, path.ray->origin);
-        direction.set(i, path.ray->direction);
-        center.set(i, sphere.center);
-        radius.of[i] = sphere.radius, t.of[i] = path.hit->t;
-    });
-    const Vecd at = origin.doubles() + direction.doubles() * t.doubles();
-    const Vecd n = normalize(at - center.doubles()), p = center.doubles() + n * radius.doubles();
-    return points(p, abs(p), n);
-}
-
-class Block {
+template <typename Points> class Block {
 public:
     Block(const RenderPlan& plan, std::span<MattPath> paths, const Points& points)
-        : plan_(plan), paths_(paths), points_(points), frame_(frame_from_normal(points.n)) {
+        : plan_(plan), paths_(paths), points_(points), frame_(frame_from_normal(points.ns())) {
         Columns direction, throughput, albedo;
         for_lanes(paths, [&](std::size_t i, const MattPath& path) {
             direction.set(i, path.ray->direction);
@@ -116,7 +26,7 @@ public:
             albedo.set(i, plan.matt.albedo(*path.hit));
         });
         const Vec w = -direction.floats();
-        const Floats side = select(dot(w, points.n) < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
+        const Floats side = select(dot(w, points.ng) < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
         wo_ = lifted_above_horizon(frame_.to_local(w), side);
         throughput_ = throughput.colors();
         albedo_ = albedo.colors();
@@ -135,7 +45,7 @@ public:
                 arrivals.set(i, sample_arrival(plan_.scene, *plan_.lights, paths_[i].state->departure.receiver,
                                                *choices[i], paths_[i].numbers->light));
         const Vec wi = arrivals.wi.floats(), local = frame_.to_local(wi);
-        const Mask reflected = (wo_.z * local.z > Floats(0.0f)) & (dot(wi, points_.n) * local.z > Floats(0.0f));
+        const Mask reflected = (wo_.z * local.z > Floats(0.0f)) & (dot(wi, points_.horizon()) * local.z > Floats(0.0f));
         const Color scattered = albedo_ * Floats(kInvPi) * abs(local.z) * arrivals.radiance.colors();
         const Floats zero(0.0f);
         const Mask black = (scattered.r == zero) & (scattered.g == zero) & (scattered.b == zero);
@@ -144,7 +54,7 @@ public:
         const Floats own = arrivals.pdf.floats(), other = cosine_hemisphere_pdf(abs(local.z));
         const Floats weight = mis_weight(own, select(arrivals.delta.floats() > zero, zero, other));
         const Color sum = throughput_ * scattered * (weight / own);
-        const Columns light(Vec(sum.r, sum.g, sum.b)), origins(origin(wi)), p(points_.p);
+        const Columns light(Vec(sum.r, sum.g, sum.b)), origins(points_.origin(wi)), p(points_.p);
         for (; lit != 0; lit &= lit - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(lit));
             ++counts.shadow;
@@ -166,7 +76,7 @@ public:
         const Floats pdf = cosine_hemisphere_pdf(local.z);
         local.z = select(wo_.z < zero, -local.z, local.z);
         const Vec wi = normalize(frame_.to_world(local));
-        Mask on = dot(wi, points_.n) * local.z > zero;
+        Mask on = dot(wi, points_.horizon()) * local.z > zero;
         Color throughput = throughput_ * albedo_;
         if (plan_.russian_roulette && depth > 0) {
             const Floats probability = survival(throughput, refraction.floats(), Floats(plan_.worth));
@@ -176,7 +86,7 @@ public:
             on = on & survives;
             throughput = throughput * select(probability >= one, one, one / probability);
         }
-        const Columns origins(origin(wi)), directions(wi), throughputs(Vec(throughput.r, throughput.g, throughput.b));
+        const Columns origins(points_.origin(wi)), directions(wi), throughputs(Vec(throughput.r, throughput.g, throughput.b));
         const Column pdfs(pdf);
         const unsigned going = lane_bits(on);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -255,12 +165,8 @@ private:
 
     // The side from which the surface is seen gathers light; it is what the next ray departs from, too.
     void receivers() {
-        const Columns p(points_.p), n(select(wo_.z < Floats(0.0f), -points_.n, points_.n));
+        const Columns p(points_.p), n(select(wo_.z < Floats(0.0f), -points_.ng, points_.ng));
         for (std::size_t i = 0; i < paths_.size(); ++i) paths_[i].state->departure.receiver = {p.vec(i), n.vec(i)};
-    }
-    Vec origin(const Vec& w) const {
-        return offset_origin(points_.p, points_.p_error,
-                             select(dot(w, points_.n) < Floats(0.0f), -points_.n, points_.n));
     }
 
     const RenderPlan& plan_;
@@ -271,14 +177,24 @@ private:
     Color throughput_, albedo_;
 };
 
+template <typename Points>
+void scatter_at(const Points& points, const RenderPlan& plan, std::span<MattPath> paths, int depth, ShadowRays& shadows,
+                RayCounts& counts) {
+    Block block(plan, paths, points);
+    if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
+    if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
+}
+
 } // namespace
 
 void scatter_matt(const RenderPlan& plan, MattSurfaces::Kind kind, std::span<MattPath> paths, int depth,
                   ShadowRays& shadows, RayCounts& counts) {
-    const bool flat = kind == MattSurfaces::Kind::kFlat;
-    Block block(plan, paths, flat ? flat_points(plan.scene, paths) : round_points(plan.scene, paths));
-    if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
-    if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
+    switch (kind) {
+    case MattSurfaces::Kind::kFlat: return scatter_at(flat_points(plan.scene, paths), plan, paths, depth, shadows, counts);
+    case MattSurfaces::Kind::kSmooth: return scatter_at(smooth_points(plan.scene, paths), plan, paths, depth, shadows, counts);
+    case MattSurfaces::Kind::kRound: return scatter_at(round_points(plan.scene, paths), plan, paths, depth, shadows, counts);
+    case MattSurfaces::Kind::kNone: break;
+    }
 }
 
 #else // too few lanes: RenderPlan::matt has no surfaces

@@ -9,6 +9,7 @@
 #include "raytrace/integrator/path_gains.h"
 #include "raytrace/integrator/path_log.h"
 
+#include <array>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -255,24 +256,17 @@ private:
     PathFootprint footprint_;
 };
 
-// numbers_at of each of the paths that are going on, below the greatest depth; two at a time.
-void draw_numbers(std::span<Sampler> samplers, std::span<const Hit> hits, const std::vector<std::uint32_t>& going,
-                  int depth, std::vector<VertexNumbers>& numbers) {
-    constexpr std::uint32_t kNone = ~0u;
-    std::uint32_t waiting = kNone;
-    for (const std::uint32_t i : going) {
-        if (!hits[i].valid()) continue;
-        go_to_vertex(samplers[i], depth);
-        if (waiting == kNone) {
-            waiting = i;
-            continue;
-        }
-        const auto [first, second] = Sampler::get_blocks(samplers[waiting], samplers[i]);
-        numbers[waiting] = vertex_numbers(first);
-        numbers[i] = vertex_numbers(second);
-        waiting = kNone;
+// The numbers of the vertices of some paths, by path; two at a time.
+void draw_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> which, int depth,
+                  std::vector<VertexNumbers>& numbers) {
+    std::size_t k = 0;
+    for (const std::uint32_t i : which) go_to_vertex(samplers[i], depth);
+    for (; k + 1 < which.size(); k += 2) {
+        const auto [first, second] = Sampler::get_blocks(samplers[which[k]], samplers[which[k + 1]]);
+        numbers[which[k]] = vertex_numbers(first);
+        numbers[which[k + 1]] = vertex_numbers(second);
     }
-    if (waiting != kNone) numbers[waiting] = vertex_numbers(samplers[waiting].get_block());
+    if (k < which.size()) numbers[which[k]] = vertex_numbers(samplers[which[k]].get_block());
 }
 
 // Paths side by side. Those that stand at matt surfaces advance several at once.
@@ -289,7 +283,6 @@ public:
 
     void trace(std::span<Rgb> radiances) {
         for (int depth = 0; !going_.empty(); ++depth) {
-            if (depth < plan_.max_depth) draw_numbers(samplers_, hits_, going_, depth, numbers_);
             advance(depth);
             shadows_.send([&](std::uint32_t i, Rgb light) { paths_[i].add(light); });
             find_hits();
@@ -315,19 +308,45 @@ private:
     }
 
     void advance(int depth) {
-        flat_.clear();
-        round_.clear();
-        std::erase_if(going_, [&](std::uint32_t i) {
-            const Kind kind = hits_[i].valid() && depth < plan_.max_depth ? plan_.matt.kind(hits_[i]) : Kind::kNone;
-            if (kind == Kind::kNone) return !paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i]);
-            (kind == Kind::kRound ? round_ : flat_).push_back(i);
-            return true;
-        });
-        scatter(Kind::kFlat, flat_, depth);
-        scatter(Kind::kRound, round_, depth);
+        for (auto& list : at_matt_) list.clear();
+        others_.clear(), ends_.clear();
+        for (const std::uint32_t i : going_) {
+            if (!hits_[i].valid() || depth == plan_.max_depth) {
+                ends_.push_back(i);
+                continue;
+            }
+            const Kind kind = plan_.matt.kind(hits_[i]);
+            (kind == Kind::kNone ? others_ : at_matt(kind)).push_back(i);
+        }
+        going_.clear();
+        for (const std::uint32_t i : ends_) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
+        draw_numbers(samplers_, others_, depth, numbers_);
+        for (const std::uint32_t i : others_) advance_alone(i, depth);
+        for (const Kind kind : MattSurfaces::kKinds) scatter(kind, at_matt(kind), depth);
+    }
+    std::vector<std::uint32_t>& at_matt(Kind kind) { return at_matt_[static_cast<std::size_t>(kind) - 1]; }
+    void advance_alone(std::uint32_t i, int depth) {
+        if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
+    }
+
+    // What vertices at matt surfaces use of their numbers.
+    void draw_matt_numbers(std::span<const std::uint32_t> which, int depth) {
+        const std::uint32_t first = vertex_dimension(depth);
+        pairs_.resize(which.size());
+        const auto draw = [&](std::uint32_t dimension, const auto& set) {
+            Sampler::pairs(samplers_, which, first + dimension, pairs_);
+            for (std::size_t k = 0; k < which.size(); ++k) set(numbers_[which[k]], pairs_[k]);
+        };
+        draw(0, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
+        if (plan_.lights != nullptr) {
+            draw(2, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
+            draw(4, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x; });
+        }
+        if (plan_.russian_roulette && depth > 0) draw(6, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
     }
 
     void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
+        draw_matt_numbers(which, depth);
         for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kMattLanes))) {
             std::array<MattPath, kMattLanes> some;
             const std::size_t size = std::min(which.size(), kMattLanes);
@@ -339,8 +358,7 @@ private:
             for (std::size_t k = 0; k < size; ++k)
                 if (some[k].goes_on) going_.push_back(which[k]);
         }
-        for (const std::uint32_t i : which)
-            if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
+        for (const std::uint32_t i : which) advance_alone(i, depth);
     }
 
     const RenderPlan& plan_;
@@ -349,8 +367,10 @@ private:
     const std::span<Sampler> samplers_;
     RayCounts& counts_;
     std::vector<Path<Sum, kInsides>> paths_;
-    std::vector<std::uint32_t> going_, flat_, round_; // of all that go on, those that stand at matt surfaces
+    std::vector<std::uint32_t> going_, others_, ends_; // all that go on; of these those that do not stand at matt surfaces
+    std::array<std::vector<std::uint32_t>, MattSurfaces::kKinds.size()> at_matt_; // and those that do, by kind
     std::vector<VertexNumbers> numbers_;
+    std::vector<Vec2> pairs_;
     ShadowRays shadows_;
     std::vector<Ray> some_rays_;
     std::vector<Hit> some_hits_;

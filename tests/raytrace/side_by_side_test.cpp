@@ -75,6 +75,7 @@ Scene room(Lamp lamp, Things things, const Place& place) {
     const int levels = things == Things::kMany ? 3 : 0;
     if (things != Things::kFew) builder.add(icosphere(levels, 0.3f * s, place(0.3f, 0.6f, -0.3f), false), white);
     if (things != Things::kFew) builder.add(icosphere(levels, 0.2f * s, place(-0.5f, 1, -0.5f), true), brushed);
+    if (things != Things::kFew) builder.add(icosphere(levels, 0.35f * s, place(-0.1f, 1.2f, 0.2f), true), red);
     add_lamp(builder, lamp, place);
     builder.scene.camera.eye = Vec3d(place(0, 1, 3.2f));
     builder.scene.camera.look_at = Vec3d(place(0, 1, 0));
@@ -84,7 +85,7 @@ Scene room(Lamp lamp, Things things, const Place& place) {
 
 // How many of the paths of a small picture differ in a bit, of those that bring light at all.
 struct Differences {
-    int differ = 0, lit = 0, matt = 0; // and of those that stand at matt surfaces first
+    int differ = 0, lit = 0, matt = 0, smooth = 0; // and of those that stand at matt surfaces first, or at smooth ones
     bool same_rays = false;
 };
 Differences side_by_side_and_alone(const Scene& scene, const Settings& settings) {
@@ -116,20 +117,23 @@ Differences side_by_side_and_alone(const Scene& scene, const Settings& settings)
     for (std::size_t i = 0; i < rays.size(); ++i) {
         found.differ += together[i] != alone[i];
         found.lit += !is_black(alone[i]);
-        found.matt += first_hits[i].valid() && plan.matt.kind(first_hits[i]) != MattSurfaces::Kind::kNone;
+        const auto kind = first_hits[i].valid() ? plan.matt.kind(first_hits[i]) : MattSurfaces::Kind::kNone;
+        found.matt += kind != MattSurfaces::Kind::kNone;
+        found.smooth += kind == MattSurfaces::Kind::kSmooth;
     }
     found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow &&
                       counts.ended == alone_counts.ended;
     return found;
 }
 
-void check_same(const Scene& scene, const Settings& settings) {
+Differences check_same(const Scene& scene, const Settings& settings) {
     const Differences found = side_by_side_and_alone(scene, settings);
     CHECK(found.differ == 0);
     CHECK(found.lit > 20);
     CHECK(found.same_rays);
     const bool asked = settings.skips.shadow_rays && settings.skips.textures; // by tests: then none goes side by side
     if (kDoubleLanes >= 4) CHECK((found.matt > 100) == asked);
+    return found;
 }
 
 } // namespace
@@ -143,7 +147,8 @@ TEST_SUITE("unit") {
                 CAPTURE(static_cast<int>(things));
                 Settings settings;
                 settings.seed = 7;
-                check_same(room(lamp, things, {}), settings);
+                const Differences found = check_same(room(lamp, things, {}), settings);
+                if (kDoubleLanes >= 4) CHECK((found.smooth > 10) == (things != Things::kFew));
             }
     }
 

@@ -257,16 +257,46 @@ TEST_SUITE("unit") {
         Sampler center(SamplerKind::kCenter, 5, 16), sobol(SamplerKind::kSobol, 5, 16);
         center.start(4, 4, 9);
         sobol.start(4, 4, 9);
-        const CameraNumbers middle = center.camera_numbers(), spread = sobol.camera_numbers();
+        const CameraNumbers middle = center.camera_numbers({true, true}), spread = sobol.camera_numbers({true, true});
         CHECK(middle.pixel == Vec2(0.5f, 0.5f));
         CHECK(middle.lens == Vec2(0.5f, 0.5f));
         CHECK(middle.time == 0);
-        CHECK(spread.lens != Vec2(0.5f, 0.5f));
-        CHECK(center.dimension() == sobol.dimension());
-        CHECK(center.get_2d() == sobol.get_2d());
-        CHECK(center.get_1d() == sobol.get_1d());
-        CHECK(center.pixel_numbers() == Vec2(0.5f, 0.5f));
-        CHECK(sobol.pixel_numbers() == spread.pixel); // whether or not lens and time are asked for
+        CHECK(center.get_2d() == spread.pixel);
+        CHECK(sobol.get_2d() == spread.pixel);
+        CHECK(sobol.get_2d() == spread.lens);
+        CHECK(sobol.get_1d() == spread.time);
+    }
+
+    TEST_CASE("what the camera does not ask for moves no other number") {
+        Sampler sampler(SamplerKind::kSobol, 5, 16);
+        sampler.start(4, 4, 9);
+        const CameraNumbers all = sampler.camera_numbers({true, true}), none = sampler.camera_numbers({});
+        CHECK(none.pixel == all.pixel);
+        CHECK(none.lens == Vec2(0.5f, 0.5f));
+        CHECK(none.time == 0);
+        CHECK(sampler.camera_numbers({true, false}).lens == all.lens);
+        CHECK(sampler.camera_numbers({false, true}).time == all.time);
+    }
+
+    TEST_CASE("the pairs of many samplers at once are those of each, in any number and order") {
+        for (const SamplerKind kind : kAll)
+            for (const std::size_t count : {1u, 5u, 16u, 17u, 70u}) {
+                std::vector<Sampler> samplers(count, Sampler(kind, 3, 16, 2));
+                std::vector<std::uint32_t> which;
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    samplers[i].start(static_cast<int>(i % 7), -2, i / 3);
+                    if (i % 3 != 1) which.push_back(static_cast<std::uint32_t>(count) - 1 - i);
+                }
+                std::vector<Vec2> all(count), some(which.size());
+                Sampler::pairs(samplers, 26, all);
+                Sampler::pairs(samplers, which, 26, some);
+                for (std::size_t k = 0; k < which.size(); ++k) CHECK(some[k] == all[which[k]]);
+                for (std::size_t i = 0; i < count; ++i) {
+                    CHECK(samplers[i].dimension() == 0);
+                    samplers[i].set_dimension(26);
+                    CHECK(samplers[i].get_2d() == all[i]);
+                }
+            }
     }
 
     TEST_CASE("names") {

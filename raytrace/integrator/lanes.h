@@ -1,0 +1,56 @@
+// Numbers of several paths side by side, a lane each: how they are brought together and taken apart.
+#pragma once
+
+#include "common/image/rgb.h"
+#include "common/vec/simd.h"
+#include "raytrace/integrator/matt_vertices.h"
+
+#include <array>
+#include <span>
+
+namespace duet::raytrace::lanes {
+
+#if XSIMD_WITH_AVX
+
+constexpr std::size_t kLanes = kMattLanes;
+using Floats = FloatBatch<kLanes>;
+using Doubles = DoubleBatch;
+using Vec = Vec3T<Floats>;
+using Vecd = Vec3T<Doubles>;
+using Color = RgbT<Floats>;
+using Mask = Floats::batch_bool_type;
+
+// A number of each path, and three.
+struct Column {
+    alignas(sizeof(Doubles)) std::array<float, kLanes> of{};
+
+    Column() = default;
+    explicit Column(Floats lanes) { lanes.store_aligned(of.data()); }
+    explicit Column(Doubles lanes) { store_floats(lanes, of.data()); }
+    Floats floats() const { return Floats::load_aligned(of.data()); }
+    Doubles doubles() const { return load_doubles(of.data()); }
+};
+struct Columns {
+    Column x, y, z;
+
+    Columns() = default;
+    template <typename T> explicit Columns(const Vec3T<T>& v) : x(v.x), y(v.y), z(v.z) {}
+    void set(std::size_t i, Vec3 v) { x.of[i] = v.x, y.of[i] = v.y, z.of[i] = v.z; }
+    void set(std::size_t i, Rgb c) { set(i, Vec3(c.r, c.g, c.b)); }
+    Vec3 vec(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
+    Rgb rgb(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
+    Vec floats() const { return {x.floats(), y.floats(), z.floats()}; }
+    Vecd doubles() const { return {x.doubles(), y.doubles(), z.doubles()}; }
+    Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
+};
+
+inline Vec rounded(const Vecd& v) { return Columns(v).floats(); }
+
+// Lanes that no path has are filled with the first one's numbers.
+template <typename Set> void for_lanes(std::span<const MattPath> paths, const Set& set) {
+    for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
+}
+
+#endif
+
+} // namespace duet::raytrace::lanes

@@ -1,0 +1,104 @@
+#include "raytrace/integrator/matt_points.h"
+
+#include "common/geometry/smooth_lift.h"
+
+namespace duet::raytrace::lanes {
+
+#if XSIMD_WITH_AVX
+
+namespace {
+
+// The magnitude of the terms that p was made of bounds its error, as surface_point has it.
+FlatPoints points(const Vecd& p, const Vecd& magnitude, const Vecd& n) {
+    constexpr double kRounding = 2 * static_cast<double>(kRoundoff<float>);
+    return {rounded(p), rounded(magnitude * Doubles(kRounding)), rounded(n)};
+}
+
+// As the last steps of surface_point.
+SmoothPoints bent(const FlatPoints& flat, Vec ns, Vec lift) {
+    const Floats zero(0.0f), infinite(kInfinity);
+    const Mask finite = (abs(ns.x) < infinite) & (abs(ns.y) < infinite) & (abs(ns.z) < infinite); // and not NaN
+    ns = select(finite, ns, flat.ng);
+    ns = select(dot(ns, flat.ng) < zero, -ns, ns);
+    const Mask bulges = abs(dot(lift, flat.ng)) > dot(abs(flat.ng), flat.p_error);
+    return {flat.p, flat.p_error, flat.ng, ns, select(bulges, ns, flat.ng), select(bulges, lift, Vec(zero, zero, zero))};
+}
+
+} // namespace
+
+Vec SmoothPoints::origin(const Vec& w) const {
+    const Floats zero(0.0f), seen = dot(lift, ng);
+    const Mask lifted = dot(w, above) * seen > zero; // no lift: seen is 0
+    const Mask below = select(lifted, seen, dot(w, ng)) < zero;
+    return offset_origin(select(lifted, p + lift, p), p_error, select(below, -ng, ng));
+}
+
+FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths) {
+    Columns corner, base, a, b; // edges are a − base and b − base
+    Column u, v, quad;
+    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+        const Hit& hit = *path.hit;
+        const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
+        u.of[i] = hit.u, v.of[i] = hit.v;
+        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            const auto& [ia, ib, ic] = mesh->triangles[hit.primitive];
+            corner.set(i, mesh->positions[ia]);
+            base.set(i, mesh->positions[ia]);
+            a.set(i, mesh->positions[ib]);
+            b.set(i, mesh->positions[ic]);
+        } else {
+            const Quad& q = std::get<QuadList>(shape).quads[hit.primitive];
+            corner.set(i, q.corner);
+            a.set(i, q.u);
+            b.set(i, q.v);
+            quad.of[i] = 1;
+        }
+    });
+    const Vecd p0 = corner.doubles(), da = a.doubles() - base.doubles(), db = b.doubles() - base.doubles();
+    const Vecd p = p0 + da * u.doubles() + db * v.doubles();
+    const Vecd magnitude = select(quad.doubles() > Doubles(0.0), abs(p0) + abs(da) + abs(db), abs(p));
+    return points(p, magnitude, normalize(cross(da, db)));
+}
+
+FlatPoints round_points(const Scene& scene, std::span<const MattPath> paths) {
+    Columns origin, direction, center;
+    Column radius, t;
+    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+        const Sphere& sphere = std::get<Sphere>(scene.shapes[scene.objects[path.hit->object].shape]);
+        origin.set(i, path.ray->origin);
+        direction.set(i, path.ray->direction);
+        center.set(i, sphere.center);
+        radius.of[i] = sphere.radius, t.of[i] = path.hit->t;
+    });
+    const Vecd at = origin.doubles() + direction.doubles() * t.doubles();
+    const Vecd n = normalize(at - center.doubles()), p = center.doubles() + n * radius.doubles();
+    return points(p, abs(p), n);
+}
+
+SmoothPoints smooth_points(const Scene& scene, std::span<const MattPath> paths) {
+    Columns direction;
+    std::array<Columns, 3> corners, normals;
+    Column u_lanes, v_lanes;
+    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+        const Hit& hit = *path.hit;
+        const Mesh& mesh = std::get<Mesh>(scene.shapes[scene.objects[hit.object].shape]);
+        const auto& index = mesh.triangles[hit.primitive];
+        direction.set(i, path.ray->direction);
+        u_lanes.of[i] = hit.u, v_lanes.of[i] = hit.v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k].set(i, mesh.positions[index[k]]);
+            normals[k].set(i, mesh.normals[index[k]]);
+        }
+    });
+    const Doubles u = u_lanes.doubles(), v = v_lanes.doubles(), w = Doubles(1.0) - u - v;
+    const Vecd a = corners[0].doubles(), b = corners[1].doubles(), c = corners[2].doubles();
+    const Vecd na = normals[0].doubles(), nb = normals[1].doubles(), nc = normals[2].doubles();
+    const Vecd ab = b - a, ac = c - a, p = a + ab * u + ac * v, across = cross(ab, ac);
+    const Vecd lift = lift_to_smooth<Doubles>(p, {a, b, c}, {na, nb, nc}, {w, u, v}, across, direction.doubles());
+    const FlatPoints flat = points(p, abs(p), normalize(across));
+    return bent(flat, rounded(normalize(na * w + nb * u + nc * v)), rounded(lift));
+}
+
+#endif
+
+} // namespace duet::raytrace::lanes
