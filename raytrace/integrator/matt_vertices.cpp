@@ -5,6 +5,7 @@
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/matt_points.h"
 
+#include <algorithm>
 #include <array>
 
 namespace duet::raytrace {
@@ -166,7 +167,8 @@ private:
     // The side from which the surface is seen gathers light; it is what the next ray departs from, too.
     void receivers() {
         const Columns p(points_.p), n(select(wo_.z < Floats(0.0f), -points_.ng, points_.ng));
-        for (std::size_t i = 0; i < paths_.size(); ++i) paths_[i].state->departure.receiver = {p.vec(i), n.vec(i)};
+        const std::size_t count = std::min(paths_.size(), kLanes); // GCC 12 fears for more than there can be
+        for (std::size_t i = 0; i < count; ++i) paths_[i].state->departure.receiver = {p.vec(i), n.vec(i)};
     }
 
     const RenderPlan& plan_;
