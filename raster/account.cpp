@@ -67,6 +67,8 @@ void list_shadow_approximations(const PreparedData& data, const Settings& settin
     if (scene.needs.surface_lights)
         result.emplace_back("Soft shadows are estimated from the depths that the light's centre sees, with one width of "
                             "penumbra a point.");
+    if (std::any_of(scene.maps.begin(), scene.maps.end(), [](const SurfaceMaps& maps) { return maps.cuts_out() && !(maps.cutoff > 0); }))
+        result.emplace_back("Shadows of what stops a part of the light are dithered: it stops all of that part of a map's texels.");
     if (data.shadows->moments() > 1)
         result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
     if (data.shadows->unshadowed() > 0)

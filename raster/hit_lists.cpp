@@ -10,12 +10,12 @@ bool nearer(const Hit& a, const Hit& b) {
     return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
 }
 
+} // namespace
+
 bool touches(const Geometry& geometry, std::size_t tile) {
     return !geometry.outlines.tile(tile).empty() || !geometry.fragments.tile(tile).empty() ||
            (!geometry.spheres.empty() && !geometry.sphere_bins.tile(tile).empty());
 }
-
-} // namespace
 
 HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index, const HitTile& tile)
     : geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index), tile_(tile) {

@@ -8,6 +8,9 @@
 
 namespace duet::raster {
 
+/// Whether anything of a geometry that was set up without patches may be in a tile.
+bool touches(const Geometry& geometry, std::size_t tile);
+
 /// The surfaces of a tile's pixels, one sample each, that are nearer than what that sees: lists of Hits, sorted from the front
 /// (Carpenter 1984, «The A-buffer, an Antialiased Hidden Surface Method»). Lists hold the kKept nearest; where there are
 /// more and they are asked for, the tile is drawn again for those behind them. So memory does not grow with the number of

@@ -4,6 +4,7 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
+#include "raster/layered_nearness.h"
 #include "raster/layers.h"
 #include "raster/look.h"
 #include "raster/multisample.h"
@@ -260,17 +261,6 @@ template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
     if (image.width() != view.width || image.height() != view.height) image = Image<Pixel>(view.width, view.height);
 }
 
-/// Where surfaces have holes: what is partly there counts as not there.
-void keep_layered_nearness(const Frame& frame, const PassView& view, std::size_t index, ImageFloat& picture) {
-    const PixelRect rect = frame.grid.tile(index);
-    DepthTile depths;
-    cover(frame.geometry, view, view.samples.front(), rect, index, depths);
-    HitTile tile(depths, frame.geometry, view);
-    const Layers layers(frame.data, frame.settings, nullptr, *frame.layers, view, view.samples.front(), index, tile);
-    for (int y = rect.y0; y < rect.y1; ++y)
-        for (int x = rect.x0; x < rect.x1; ++x) picture(x, y) = tile.nearness(x, y);
-}
-
 /// A single sample a pixel, straight to what a display or a shadow map takes.
 void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                     Rendering& result) {
@@ -284,7 +274,8 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
         if (depths_only && frame.layers != nullptr)
-            keep_layered_nearness(frame, pass_view, i, result.nearness);
+            keep_layered_nearness(frame.data, frame.geometry, *frame.layers, pass_view, frame.grid.tile(i), i,
+                                  result.nearness);
         else if (depths_only)
             keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
         else

@@ -21,10 +21,14 @@ PreparedData with_objects(const PreparedData& data, const std::vector<bool>& kep
                         .spheres = {},
                         .irradiance = data.irradiance,
                         .geometries = data.geometries};
-    for (const std::uint32_t object : data.polygonal)
-        if (kept[object]) result.polygonal.push_back(object);
-    for (const std::uint32_t object : data.spheres)
-        if (kept[object]) result.spheres.push_back(object);
+    const auto keep = [&](const std::vector<std::uint32_t>& objects, std::vector<std::uint32_t>& list) {
+        for (const std::uint32_t object : objects)
+            if (kept[object]) list.push_back(object);
+    };
+    keep(data.polygonal, result.polygonal);
+    keep(data.spheres, result.spheres);
+    keep(data.open_polygonal, result.open_polygonal);
+    keep(data.open_spheres, result.open_spheres);
     return result;
 }
 
