@@ -349,8 +349,9 @@ TEST_SUITE("unit") {
         }
     }
 
-    // The texels' numbers are a fixed dither. Were they as random as their noise is wide, 0.16 rms of the light in each of
-    // 4000 and more pixels, a mean would be off by 0.0125 or more with a chance of 10^-6.
+    // The texels' numbers are a fixed dither. Were they as random as their noise is wide, 0.2 rms of the light in each of
+    // 3300 and more pixels, a mean would be off by 0.017 or more with a chance of 10^-6. The rms depends on where between the
+    // texels the pixels lie; independent numbers leave 0.27 in the mean.
     TEST_CASE("veils let the part of the light through that they do not stop, one or stacked, quads and balls, whatever the light") {
         enum { kSun, kSpot, kPoint, kLamp };
         struct Veils {
@@ -390,9 +391,9 @@ TEST_SUITE("unit") {
                 CAPTURE(veils.count);
                 CAPTURE(veils.opacity);
                 CAPTURE(veils.ball);
-                CHECK(pixels > 3000);
-                CHECK(std::abs(mean - std::pow(1 - static_cast<double>(veils.opacity), veils.ball ? 2 : veils.count)) < 0.0125);
-                CHECK(rms < 0.18);
+                CHECK(pixels >= 3300);
+                CHECK(std::abs(mean - std::pow(1 - static_cast<double>(veils.opacity), veils.ball ? 2 : veils.count)) < 0.017);
+                CHECK(rms < 0.22);
             }
     }
 
