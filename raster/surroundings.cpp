@@ -98,7 +98,13 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
         const float there = max(scenery_.all.homogeneous(look.p + look.way * hit->distance)[2], scenery_.all.near());
         const float size = max(look.size(hit->distance), kGuessBlur * hit->gap) / scenery_.all.pixel_size(there);
         const Screen::FirstLook& shown = scenery_.about(hit->x, hit->y, size).first_look();
-        return (look.lamps && hit->gap == 0 ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);
+        // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
+        // wherever what is met is guessed.
+        const auto [x, y] = scenery_.all.pixel_at({hit->x, hit->y, 0});
+        const bool is_lamp = shown.radiance.finest()(x, y) != shown.without_lamps.finest()(x, y);
+        if (is_lamp) distance = kInfinity; // it hides none
+        const bool lamps = look.lamps && hit->gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
+        return (lamps ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);
     }
     if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
     const Environment& environment = data_.scene.environment;

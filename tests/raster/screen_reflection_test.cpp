@@ -65,6 +65,39 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red + green + sky); // rays that leave the picture are guessed
     }
 
+    TEST_CASE("a mirror ball shows a lamp of the picture with its own edge: no halo where no ray near a pixel's meets it") {
+        const Sphere ball{Vec3(0, 0.5f, 0), 0.5f};
+        const Quad lamp{Vec3(-0.6f, 2, -0.6f), Vec3(1.2f, 0, 0), Vec3(0, 0, 0.6f)}; // faces down, a thin strip in the picture
+        Scene scene;
+        add(scene, ball, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-4, 2.01f, -4), Vec3(8, 0, 0), Vec3(0, 0, 8)}}}, Mat4(), Diffuse{{Rgb()}});
+        add(scene, QuadList{{lamp}}, Mat4(), Emissive{{Rgb(8.0f)}});
+        finish_scene(scene);
+        const View view{look({0, 1.2f, 4}, {0, 1.2f, 0}, 40), 240, 160};
+        const ImageRgb found = render(scene, view, plain()).radiance;
+        const Pinhole pinhole = CameraModel(view).through();
+        const auto meets_lamp = [&](int x, int y) {
+            const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
+            const Vec3d way = normalize(ray.direction), to = Vec3d(ball.center) - ray.origin;
+            const double along = dot(way, to), half = sqr(double(ball.radius)) - dot(to, to) + sqr(along);
+            if (!(half > 0)) return false;
+            const Vec3d p = ray.origin + way * (along - std::sqrt(half)), n = (p - Vec3d(ball.center)) / double(ball.radius);
+            const Vec3d mirrored = way - n * (2 * dot(way, n)), at = p + mirrored * ((lamp.corner.y - p.y) / mirrored.y);
+            return mirrored.y > 0 && std::abs(at.x) < 0.6 && at.z > -0.6 && at.z < 0;
+        };
+        int within = 0;
+        for (int y = 80; y < view.height - 1; ++y) // below the lamp itself
+            for (int x = 1; x < view.width - 1; ++x) {
+                int met = 0;
+                for (const int dy : {-1, 0, 1})
+                    for (const int dx : {-1, 0, 1}) met += meets_lamp(x + dx, y + dy);
+                if (met == 0) CHECK(found(x, y) == Rgb());
+                if (met == 9) CHECK(found(x, y).g == doctest::Approx(8));
+                within += met == 9;
+            }
+        CHECK(within > 3);
+    }
+
     TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
         Scene scene;
         const Vec3 center(0.8f, 0.7f, -0.2f);
