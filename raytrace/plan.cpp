@@ -35,13 +35,13 @@ int depth(const Settings& settings) {
 
 } // namespace
 
-RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings)
+RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth)
     : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 0) {
     const Skips& skips = settings.skips;
     const CameraModel camera(view);
     lens = camera.has_lens() || !skips.lens;
-    if (scene.needs.footprints) pixel.emplace(camera.through(), settings.samples_per_pixel);
+    if (scene.needs.footprints) pixel.emplace(camera.through(), 1);
     motion = scene.needs.motion || !skips.motion;
     bsdfs = skips.textures ? &prepared.bsdfs : &none_;
     if (!skips.textures) none_.resize(prepared.bsdfs.size());
@@ -63,7 +63,8 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     // Nothing that paths keep besides, or that tests ask for; and some lanes.
     if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays) matt = MattSurfaces(scene, *bsdfs);
     // The naive one stays as plain as it is; and paths of one scattering are not ended.
-    if (russian_roulette && max_depth > 1 && settings.integrator != Integrator::kNaive) worth = learned_worth(*this, view);
+    const bool learns = russian_roulette && max_depth > 1 && settings.integrator != Integrator::kNaive;
+    worth = known_worth ? *known_worth : learns ? learned_worth(prepared, view, settings) : kPlainWorth;
 }
 
 std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {

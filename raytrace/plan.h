@@ -11,7 +11,8 @@
 namespace duet::raytrace {
 
 struct RenderPlan {
-    RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings);
+    /// known_worth: what `worth` is; empty: it is learned.
+    RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth = {});
     RenderPlan(const RenderPlan&) = delete; // bsdfs may point into it
     RenderPlan& operator=(const RenderPlan&) = delete;
 
@@ -31,7 +32,7 @@ struct RenderPlan {
     int max_depth = 0;
     bool russian_roulette = false;
     float worth = kPlainWorth;      ///< of throughput, to roulette: see learned_worth
-    std::optional<PixelFootprint> pixel; ///< of a camera ray; empty where no texture is filtered
+    std::optional<PixelFootprint> pixel; ///< of a camera ray that stands for all of one; empty where no texture is filtered
     bool lens = false;   ///< rays start all over the lens
     bool motion = false; ///< rays have times of their own
 

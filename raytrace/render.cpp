@@ -52,12 +52,13 @@ std::int64_t film_bytes(const Film& film) {
 Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {
     check(view, settings);
     Stopwatch watch;
+    Rendering rendering;
     const RenderPlan plan(prepared.data(), view, settings);
+    rendering.statistics.seconds.emplace_back("plan", watch.lap());
     FilmKeeper keeper(plan.scene, view, settings);
     Film& film = keeper.film();
     AovBuffers aovs(plan, view, settings.aovs);
     RayCounts rays;
-    Rendering rendering;
     const PassTarget target{plan, view, settings, control, keeper, aovs, rays, rendering.statistics.first_invalid};
 
     RenderStatistics& statistics = rendering.statistics;

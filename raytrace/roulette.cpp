@@ -3,7 +3,10 @@
 #include "raytrace/integrator/path_gains.h"
 #include "raytrace/pass.h"
 
+#include "common/system/parallel.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,105 +14,146 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr float kLeastWorth = 1, kMostWorth = 16;
-constexpr int kSamples = 16;                       // of a pixel, in two replicates
-constexpr int kMostPixels = 2048 / kSamples, kFewestPixels = 512 / kSamples;
-constexpr std::uint64_t kSeed = 0x70756c6c;        // of its own: no render's samples are used twice
+constexpr int kSamples = 16;                                            // of a pixel, in two replicates
+constexpr std::size_t kMostPixels = 2048 / kSamples, kFewestPixels = 512 / kSamples;
+constexpr std::uint64_t kSeed = 0x70756c6c;                             // of its own: no render's samples are used twice
+constexpr int kOctaves = 4, kSteps = 3;                                 // of worth, from 1 on; and steps of each
 
-struct Path {
-    std::size_t end = 0;  // of its steps
-    double importance = 0; // of its light's square
+// What the paths of one pixel were like.
+struct Pixel {
+    std::vector<PathStep> steps;
+    std::array<std::size_t, kSamples> ends{}; // of each path's steps
+    double camera_rays = 0;
+    double mean = 0, variance = 0; // of one sample, as well placed as they are
+    double importance = 0;         // of its light's square
 };
 
-// What the paths of some pixels were like.
+Pixel traced_pixel(const RenderPlan& plan, const CameraModel& camera, int x, int y) {
+    Pixel pixel;
+    Sampler sampler(SamplerKind::kSobol, kSeed + 1, kSamples, 2);
+    std::array<double, 2> sums{};
+    for (std::size_t i = 0; i < kSamples; ++i) {
+        sampler.start(x, y, static_cast<std::uint32_t>(i));
+        const Ray ray = camera_ray(plan, camera, x, y, sampler);
+        PathGains path;
+        follow_path(plan, ray, plan.prepared.accelerator.closest(ray), sampler, path);
+        sums[sampler.replicate()] += path.light();
+        pixel.camera_rays += path.camera_rays();
+        pixel.steps.insert(pixel.steps.end(), path.steps().begin(), path.steps().end());
+        pixel.ends[i] = pixel.steps.size();
+    }
+    pixel.mean = (sums[0] + sums[1]) / kSamples;
+    pixel.variance = sqr(sums[0] - sums[1]) / kSamples;
+    return pixel;
+}
+
+struct Product {
+    double error = 0, cost = 0;
+
+    Product& operator+=(const Product& other) {
+        error += other.error, cost += other.cost;
+        return *this;
+    }
+    double log() const { return std::log(error) + std::log(cost); }
+};
+
+// Of a pixel with this worth.
+Product error_and_cost(const Pixel& pixel, double worth) {
+    Product sum{kSamples * pixel.importance * pixel.variance, pixel.camera_rays};
+    std::size_t k = 0;
+    for (const std::size_t end : pixel.ends) {
+        double chance = 1; // of the path to get here
+        for (; k < end; ++k) {
+            const PathStep& step = pixel.steps[k];
+            const double before = chance, weight = static_cast<double>(step.weight);
+            if (!step.first) chance *= std::min(1.0, static_cast<double>(step.throughput) / chance * worth);
+            sum.error += weight * pixel.importance * sqr(static_cast<double>(step.light)) * (1 / chance - 1 / before);
+            sum.cost += weight * chance * static_cast<double>(step.next_rays);
+        }
+    }
+    return sum;
+}
+
+// Some pixels, in groups: how much these differ tells what all together are worth.
 class Trials {
 public:
-    Trials(const RenderPlan& plan, const View& view, int pixels) {
+    Trials(const RenderPlan& plan, const View& view, std::size_t count, int threads) : pixels_(count) {
         const CameraModel camera(view);
-        Sampler places(SamplerKind::kSobol, kSeed, pixels), sampler(SamplerKind::kSobol, kSeed + 1, kSamples, 2);
-        for (int i = 0; i < pixels; ++i) {
+        parallel_for(count, threads, [&](std::size_t i) {
+            Sampler places(SamplerKind::kSobol, kSeed, static_cast<int>(count));
             places.start(0, 0, static_cast<std::uint32_t>(i));
             const Vec2 u = places.get_2d();
-            add_pixel(plan, camera, static_cast<int>(u.x * static_cast<float>(view.width)),
-                      static_cast<int>(u.y * static_cast<float>(view.height)), sampler);
-        }
+            pixels_[i] = traced_pixel(plan, camera, static_cast<int>(u.x * static_cast<float>(view.width)),
+                                      static_cast<int>(u.y * static_cast<float>(view.height)));
+        });
         weigh();
     }
 
     // Whether there is anything to learn from.
-    bool tell() const { return !steps_.empty() && absolute_ > 0 && std::isfinite(absolute_); }
+    bool tell() const { return absolute_ > 0 && std::isfinite(absolute_); }
 
-    // Of a render with this worth, up to a factor.
-    double error_times_cost(double worth) const {
-        const auto count = static_cast<double>(paths_.size());
-        double error = count, cost = camera_rays_;
-        std::size_t k = 0;
-        for (const Path& path : paths_) {
-            double chance = 1; // of the path to get here
-            for (; k < path.end; ++k) {
-                const PathStep& step = steps_[k];
-                const double before = chance, weight = static_cast<double>(step.weight);
-                if (!step.first) chance *= std::min(1.0, static_cast<double>(step.throughput) / chance * worth);
-                error += weight * path.importance * sqr(static_cast<double>(step.light)) * (1 / chance - 1 / before);
-                cost += weight * chance * static_cast<double>(step.next_rays);
-            }
-        }
-        return error * cost;
+    using Groups = std::array<Product, 16>;
+    Groups with(double worth) const {
+        Groups groups;
+        for (std::size_t i = 0; i < pixels_.size(); ++i) groups[i % groups.size()] += error_and_cost(pixels_[i], worth);
+        return groups;
     }
 
 private:
-    struct Pixel {
-        double mean, variance; // of one sample, as well placed as they are
-    };
-
-    void add_pixel(const RenderPlan& plan, const CameraModel& camera, int x, int y, Sampler& sampler) {
-        double sums[2] = {0, 0};
-        for (int i = 0; i < kSamples; ++i) {
-            sampler.start(x, y, static_cast<std::uint32_t>(i));
-            const Ray ray = camera_ray(plan, camera, x, y, sampler);
-            PathGains path;
-            follow_path(plan, ray, plan.prepared.accelerator.closest(ray), sampler, path);
-            sums[sampler.replicate()] += path.light();
-            camera_rays_ += path.camera_rays();
-            steps_.insert(steps_.end(), path.steps().begin(), path.steps().end());
-            paths_.push_back({steps_.size()});
-        }
-        pixels_.push_back({(sums[0] + sums[1]) / kSamples, sqr(sums[0] - sums[1]) / kSamples});
-    }
-
     // So that the importance × variance of all pixels, beside which roulette's own is seen, is 1 in the mean.
     void weigh() {
         double relative = 0;
+        const auto count = static_cast<double>(pixels_.size());
         for (const Pixel& pixel : pixels_) {
-            absolute_ += pixel.variance / static_cast<double>(pixels_.size());
-            relative += pixel.variance / (sqr(pixel.mean) + 0.01) / static_cast<double>(pixels_.size());
+            absolute_ += pixel.variance / count;
+            relative += pixel.variance / (sqr(pixel.mean) + 0.01) / count;
         }
         if (!tell()) return;
-        for (std::size_t i = 0; i < paths_.size(); ++i)
-            paths_[i].importance =
-                (1 / absolute_ + 1 / (relative * (sqr(pixels_[i / kSamples].mean) + 0.01))) / 2;
+        for (Pixel& pixel : pixels_)
+            pixel.importance = (1 / absolute_ + 1 / (relative * (sqr(pixel.mean) + 0.01))) / 2;
     }
 
-    std::vector<PathStep> steps_;
-    std::vector<Path> paths_;
     std::vector<Pixel> pixels_;
-    double camera_rays_ = 0, absolute_ = 0;
+    double absolute_ = 0;
 };
+
+// The logarithm of error × cost over what they are otherwise, and two standard errors, by the jackknife: leaving out a group
+// at a time (Efron and Tibshirani 1993, «An Introduction to the Bootstrap», §11).
+double certain_loss(const Trials::Groups& groups, const Trials::Groups& otherwise) {
+    const auto loss = [&](std::size_t left_out) {
+        Product one, other;
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            if (g != left_out) one += groups[g], other += otherwise[g];
+        return one.log() - other.log();
+    };
+    const auto count = static_cast<double>(groups.size());
+    double sum = 0, squares = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const double one = loss(g);
+        sum += one, squares += sqr(one);
+    }
+    const double variance = (squares - sqr(sum) / count) * (count - 1) / count;
+    return loss(groups.size()) + 2 * std::sqrt(std::max(variance, 0.0));
+}
 
 } // namespace
 
-float learned_worth(RenderPlan& plan, const View& view) {
-    const std::int64_t pixels = std::int64_t{view.width} * view.height / (4 * kSamples);
+float learned_worth(const PreparedData& prepared, const View& view, const Settings& settings) {
+    const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) / (8 * kSamples);
     if (pixels < kFewestPixels) return kPlainWorth;
-    plan.worth = kMostWorth;
-    const Trials trials(plan, view, static_cast<int>(std::min<std::int64_t>(pixels, kMostPixels)));
+    Settings trial = settings;
+    trial.skips = {};
+    const RenderPlan plan(prepared, view, trial, std::exp2(float{kOctaves}));
+    const Trials trials(plan, view, std::min(pixels, kMostPixels), settings.threads);
     if (!trials.tell()) return kPlainWorth;
+    const Trials::Groups plain = trials.with(kPlainWorth);
     float best = kPlainWorth;
-    double least = trials.error_times_cost(kPlainWorth);
-    for (float worth = kLeastWorth; worth <= kMostWorth; worth *= 1.25f) {
-        const double product = trials.error_times_cost(worth);
-        if (!(product < least)) continue;
-        least = product;
+    double least = 0;
+    for (int i = 0; i <= kOctaves * kSteps; ++i) {
+        const float worth = std::exp2(static_cast<float>(i) / kSteps);
+        const double loss = certain_loss(trials.with(static_cast<double>(worth)), plain);
+        if (!(loss < least)) continue;
+        least = loss;
         best = worth;
     }
     return best;

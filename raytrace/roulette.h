@@ -5,7 +5,8 @@
 
 namespace duet::raytrace {
 
-struct RenderPlan;
+struct PreparedData;
+struct Settings;
 
 /// Where nothing is known of the scene: a path of a quarter of its throughput goes on for certain.
 inline constexpr float kPlainWorth = 4;
@@ -15,12 +16,12 @@ inline constexpr float kPlainWorth = 4;
 /// Every path that goes on saves its successors from standing for others (their light squared is variance), and costs its
 /// rays; how both add up is known from a few paths of the picture, traced beforehand almost without roulette, which leave a
 /// record of each step (Bolin and Meyer 1997, Vorba and Křivánek 2016 and Rath et al. 2022 weigh the same two; here there is
-/// one number for all of a picture: README.md has what more would gain).
+/// one number for all of a picture: README.md has what more would gain). Few paths tell little: another worth than
+/// kPlainWorth has to be better by two standard errors.
 ///
-/// At most 2,048 paths, and no more than a quarter of the pixels; kPlainWorth for pictures so small that this tells nothing.
-/// The paths have a seed of their own, and nothing but the scene, the view and the plan decides: shards and continued films
-/// have one worth. Between 1, by which no survivor stands for more than a path from the camera does, and 16. The plan's own
-/// worth is set aside.
-float learned_worth(RenderPlan& plan, const View& view);
+/// At most 2,048 paths, and no more than an eighth of the pixels; kPlainWorth for pictures so small that this tells nothing.
+/// The paths have a seed of their own, and neither samples nor threads nor skips decide: shards and continued films have one
+/// worth. Between 1, by which no survivor stands for more than a path from the camera does, and 16.
+float learned_worth(const PreparedData& prepared, const View& view, const Settings& settings);
 
 } // namespace duet::raytrace

@@ -19,9 +19,9 @@ CameraSample SplitTracer::sample(int x, int y, std::uint32_t index) const {
     result.ray = camera_ray(plan_, camera_, x, y, sampler);
     result.hit = plan_.prepared.accelerator.closest(result.ray);
     if (result.hit.valid()) {
-        const Vertex vertex(plan_, result.ray, result.hit);
+        const Vertex vertex(plan_, result.ray, result.hit, index);
         result.surface = FirstSurface{vertex.point, vertex.bsdf};
-        if (plan_.pixel) result.footprint = plan_.pixel->at(result.ray, result.hit.t);
+        result.footprint = camera_footprint(plan_, result.ray, result.hit, index);
     }
     RayCounts counts;
     result.light = path_parts(plan_, result.ray, result.hit, sampler, counts);

@@ -9,6 +9,8 @@ namespace duet {
 /// y each (Igehy 1999, «Tracing Ray Differentials»). What of it lies along the ray is of no account.
 struct RayFootprint {
     Vec3 dx, dy;
+
+    friend RayFootprint operator*(const RayFootprint& f, float s) { return {f.dx * s, f.dy * s}; }
 };
 
 /// The steps of texture coordinates on the surface that go with those of the ray: the neighbours meet the point's tangent

@@ -159,6 +159,7 @@ Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, st
       replicates_(replicates) {}
 
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
+    sample_ = index;
     replicate_ = index % replicates_;
     index_ = index / replicates_;
     dimension_ = 0;

@@ -45,7 +45,8 @@ public:
     /// To a given dimension of the current sample: gives each bounce dimensions of its own.
     void set_dimension(std::uint32_t dimension) { dimension_ = dimension; }
     std::uint32_t dimension() const { return dimension_; }
-    /// Of the current sample.
+    /// The current sample, as start() was told, and its replicate.
+    std::uint32_t sample() const { return sample_; }
     std::uint32_t replicate() const { return replicate_; }
 
     /// The next one or two dimensions: numbers in [0, 1).
@@ -83,7 +84,7 @@ private:
     std::uint64_t seed_;
     std::uint32_t samples_per_replicate_, replicates_;
     std::uint64_t pixel_hash_ = 0;
-    std::uint32_t index_ = 0, reversed_index_ = 0, replicate_ = 0, dimension_ = 0;
+    std::uint32_t sample_ = 0, index_ = 0, reversed_index_ = 0, replicate_ = 0, dimension_ = 0;
 };
 
 } // namespace duet

@@ -81,11 +81,11 @@ public:
         Color throughput = throughput_ * albedo_;
         if (plan_.russian_roulette && depth > 0) {
             const Floats probability = survival(throughput, refraction.floats(), Floats(plan_.worth));
-            const Mask survives = (probability >= one) | (roulette.floats() < probability);
+            const Mask stays = ~(probability < one), survives = stays | (roulette.floats() < probability);
             const unsigned mine = (1u << paths_.size()) - 1;
             counts.ended += std::popcount(lane_bits(on) & ~lane_bits(survives) & mine);
             on = on & survives;
-            throughput = throughput * select(probability >= one, one, one / probability);
+            throughput = throughput * select(stays, one, one / probability);
         }
         const Columns origins(points_.origin(wi)), directions(wi), throughputs(Vec(throughput.r, throughput.g, throughput.b));
         const Column pdfs(pdf);

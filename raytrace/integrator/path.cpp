@@ -81,8 +81,8 @@ VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hi
 
 template <typename Sink, bool kInsides> class Path {
 public:
-    Path(const RenderPlan& plan, RayCounts& counts, Sink sink = {})
-        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan) {}
+    Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
+        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan, sampler.sample()) {}
 
     /// The light along a camera ray, as the sink keeps it.
     auto trace(Sampler& sampler, Ray ray, Hit hit) {
@@ -230,7 +230,7 @@ private:
 
     bool survives(float u) {
         const float probability = survival(state_.throughput, state_.refraction, plan_.worth);
-        if (probability >= 1) return true;
+        if (!(probability < 1)) return true; // nor is what is no number dropped: it is to be counted
         if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
         if (!(u < probability)) {
             ++counts_.ended;
@@ -276,7 +276,7 @@ public:
         : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()), shadows_(plan) {
         paths_.reserve(rays.size());
         for (std::uint32_t i = 0; i < rays.size(); ++i) {
-            paths_.emplace_back(plan, counts);
+            paths_.emplace_back(plan, samplers[i], counts);
             going_.push_back(i);
         }
     }
@@ -378,8 +378,8 @@ private:
 
 template <typename Sink>
 auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
-    if (plan.insides) return Path<Sink, true>(plan, counts, sink).trace(sampler, ray, hit);
-    return Path<Sink, false>(plan, counts, sink).trace(sampler, ray, hit);
+    if (plan.insides) return Path<Sink, true>(plan, sampler, counts, sink).trace(sampler, ray, hit);
+    return Path<Sink, false>(plan, sampler, counts, sink).trace(sampler, ray, hit);
 }
 
 } // namespace

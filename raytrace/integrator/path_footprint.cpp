@@ -15,10 +15,10 @@ float mean_width(const RayFootprint& footprint) { return std::sqrt(length(footpr
 const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
     if (first_) {
         first_ = false;
-        footprint_ = pixel_->at(ray, t);
+        footprint_ = pixel_->at(ray, t) * part_;
         width_ = mean_width(footprint_);
         // Straight rays widen in proportion to their length, but for an orthographic camera's, which don't.
-        spread_ = (mean_width(pixel_->at(ray, 2 * t)) - width_) / t;
+        spread_ = (mean_width(pixel_->at(ray, 2 * t) * part_) - width_) / t;
         return &footprint_;
     }
     width_ += spread_ * t;
@@ -29,7 +29,7 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
 
 void PathFootprint::spread(float pdf) {
     constexpr float kWidest = 0.5f; // radians: what is seen by way of diffuse surfaces keeps some of its detail
-    const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * pixel_->scale();
+    const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * part_;
     spread_ = max(spread_, min(angle, kWidest));
 }
 

@@ -2,7 +2,7 @@
 // Shader and Texture Level of Detail Using Ray Cones»).
 #pragma once
 
-#include "raytrace/plan.h"
+#include "raytrace/integrator/vertex.h"
 
 namespace duet::raytrace {
 
@@ -12,7 +12,9 @@ namespace duet::raytrace {
 /// so that textures seen by way of other surfaces blur less with every sample, and not at all in the end.
 class PathFootprint {
 public:
-    explicit PathFootprint(const RenderPlan& plan) : pixel_(plan.pixel ? &*plan.pixel : nullptr) {}
+    /// Of the path of a pixel's `sample`.
+    PathFootprint(const RenderPlan& plan, std::uint32_t sample)
+        : pixel_(plan.pixel ? &*plan.pixel : nullptr), part_(pixel_ ? footprint_width(sample) : 0) {}
 
     /// The footprint of the ray at a hit at distance t, or null: not needed. Once for each ray of the path, in order.
     const RayFootprint* arrive(const Ray& ray, float t) { return pixel_ == nullptr ? nullptr : widen(ray, t); }
@@ -27,6 +29,7 @@ private:
     void spread(float pdf);
 
     const PixelFootprint* pixel_;
+    float part_; ///< of the pixel's width
     RayFootprint footprint_;
     bool first_ = true;
     float width_ = 0, spread_ = 0; ///< of the cone at the last vertex, metres; its growth a metre

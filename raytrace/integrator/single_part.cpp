@@ -6,8 +6,8 @@ namespace duet::raytrace {
 
 namespace {
 
-bool is_diffuse(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
-    return duet::is_diffuse(Vertex(plan, ray, hit).bsdf);
+bool is_diffuse(const RenderPlan& plan, const Ray& ray, const Hit& hit, const Sampler& sampler) {
+    return duet::is_diffuse(Vertex(plan, ray, hit, sampler.sample()).bsdf);
 }
 
 } // namespace
@@ -20,12 +20,12 @@ Rgb lights_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Samp
 
 // The plan samples the environment alone, and ends paths after one scattering.
 Rgb environment_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    if (plan.environment == nullptr || !hit.valid() || !is_diffuse(plan, ray, hit)) return Rgb();
+    if (plan.environment == nullptr || !hit.valid() || !is_diffuse(plan, ray, hit, sampler)) return Rgb();
     return path_parts(plan, ray, hit, sampler, counts).environment;
 }
 
 Rgb reflection_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    if (!hit.valid() || is_diffuse(plan, ray, hit)) return Rgb();
+    if (!hit.valid() || is_diffuse(plan, ray, hit, sampler)) return Rgb();
     return path_parts(plan, ray, hit, sampler, counts).reflection;
 }
 

@@ -32,7 +32,7 @@ Rgb light_sampled(const RenderPlan& plan, const Vertex& vertex, const VertexNumb
 
 Rgb unshadowed_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts&) {
     if (!hit.valid()) return plan.environment ? radiance(*plan.environment, ray.direction) : Rgb();
-    const Vertex vertex(plan, ray, hit);
+    const Vertex vertex(plan, ray, hit, sampler.sample());
     const Rgb emission = emitted(vertex.material, plan.scene.textures, vertex.point, -ray.direction);
     if (plan.max_depth == 0) return emission;
     const VertexNumbers u = vertex_numbers(sampler, 0);

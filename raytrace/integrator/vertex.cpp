@@ -29,16 +29,16 @@ const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, con
 
 } // namespace
 
-std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
-    return plan.pixel ? std::optional(plan.pixel->at(ray, hit.t)) : std::nullopt;
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample) {
+    return plan.pixel ? std::optional(plan.pixel->at(ray, hit.t) * footprint_width(sample)) : std::nullopt;
 }
 
-SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
-    return surface_point(plan.scene, ray, hit, pointer(camera_footprint(plan, ray, hit)));
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample) {
+    return surface_point(plan.scene, ray, hit, pointer(camera_footprint(plan, ray, hit, sample)));
 }
 
-Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit)
-    : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit))) {}
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample)
+    : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit, sample))) {}
 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index)
     : Vertex(plan, ray, hit, footprint, relative_index, material_index(plan.scene, hit.object, hit.primitive)) {}

@@ -4,6 +4,9 @@
 #include "common/vec/frame.h"
 #include "raytrace/plan.h"
 
+#include <cmath>
+#include <cstdint>
+
 namespace duet::raytrace {
 
 class Vertex {
@@ -12,8 +15,8 @@ public:
     /// the plan.
     /// `relative_index`: of a dielectric that stands in another one, Insides'.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index = 0);
-    /// Of a camera ray.
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+    /// Of the camera ray of a pixel's `sample`.
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
     Vertex(const Vertex&) = delete; // bsdf may point into it
     Vertex& operator=(const Vertex&) = delete;
 
@@ -50,10 +53,13 @@ private:
            std::uint32_t material_index);
 };
 
-/// The footprint of a camera ray at its hit; empty where the plan needs none.
-std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit);
-/// The surface point that a camera ray hits.
-SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit);
+/// The part of a pixel's width that its `sample` stands for: the samples up to it share the pixel's area. So it is the same
+/// however many come after it: films that go on, and shards, have the bits of one run; and in the end nothing is blurred.
+inline float footprint_width(std::uint32_t sample) { return 1 / std::sqrt(static_cast<float>(sample) + 1); }
+/// The footprint of the camera ray of a pixel's `sample` at its hit; empty where the plan needs none.
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
+/// The surface point that it hits.
+SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
 
 /// A ray that leaves the vertex towards w (world, unit), starting off the surface.
 inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {

@@ -21,10 +21,15 @@ namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
 
+/// Its floor has a picture that is filtered, less and less with every sample.
 Scene small_scene() {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f, 0.6f, 0.7f)}});
-    builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
+    ImageRgb checks(64, 64);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) checks(x, y) = Rgb(((x ^ y) & 1) != 0 ? 0.9f : 0.1f);
+    builder.scene.textures = {{ImageTexture{0}}, {checks}};
+    builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), builder.material(Diffuse{{Rgb(1.0f), 0}}));
     builder.add(Sphere{{0, 0, 0}, 1}, grey);
     builder.scene.environment = SkyEnvironment{};
     return builder.finish();
@@ -95,6 +100,17 @@ TEST_SUITE("unit") {
             CHECK(whole.radiance.pixels() == expected.pixels());
             CHECK(whole.statistics.camera_rays + half.statistics.camera_rays == 40 * kWidth * kHeight);
             CHECK(rendered(scene, settings).statistics.camera_rays == 0); // nothing is left to do
+        }
+    }
+
+    TEST_CASE("a film that goes on to more samples has the bits of one in one go") {
+        const Scene scene = small_scene();
+        const ScratchFolder folder;
+        const KeptFilm whole = film_of(scene, {}, folder / "whole.exr", 0, 16);
+        for (const int first : {1, 3, 8}) {
+            film_of(scene, {}, folder / "part.exr", 0, first);
+            CHECK(same_bits(film_of(scene, {}, folder / "part.exr", 0, 16).film, whole.film));
+            std::filesystem::remove(folder / "part.exr");
         }
     }
 

@@ -59,6 +59,8 @@ TEST_SUITE("unit") {
         other.first_sample = 64;
         other.sampler = SamplerKind::kIndependent;
         CHECK(worth_of(scene, 64, other) == worth);
+        other.skips.shadow_rays = other.skips.last_bounce = other.skips.light_samples = false;
+        CHECK(worth_of(scene, 64, other) == worth);
         CHECK(worth_of(scene, 8, {}) == kPlainWorth); // too few pixels to tell
         Settings naive;
         naive.integrator = Integrator::kNaive;
