@@ -214,8 +214,10 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
     if (source_of_[light] == sources_.size()) return 1;
     const Source& source = sources_[source_of_[light]];
     const SurfacePoint& surface = point.surface;
-    const Vec3 size = abs(point.ng);
-    Receiver receiver{Vec3d(surface.p), Vec3d(point.ng), static_cast<double>(dot(size, surface.p_error))};
+    // Of a smooth mesh it is the surface that the facets stand for, as a path tracer's shadow rays start there: light comes
+    // over its horizon, to facets, too, that are turned away from it, and would be lit whatever is before them.
+    const double error = static_cast<double>(dot(abs(point.horizon), surface.p_error));
+    Receiver receiver{Vec3d(surface.p) + Vec3d(surface.lift), Vec3d(point.horizon), error};
     std::size_t moment = 0;
     if (moments_.size() > 1) {
         const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
