@@ -56,7 +56,9 @@ public:
         clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
         clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
         if (!(in <= out)) return;
-        first_ = std::max(1, static_cast<int>(std::ceil(in * pixels_))), last_ = static_cast<int>(std::floor(out * pixels_));
+        // A start far beside the picture may be any number of pixels away.
+        const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
+        first_ = std::max(1, whole(std::ceil(in * pixels_))), last_ = whole(std::floor(out * pixels_));
     }
 
     Vec3 from() const { return from_; }
