@@ -12,6 +12,7 @@
 #include "common/system/control.h"
 #include "common/system/parallel.h"
 
+#include <algorithm>
 #include <atomic>
 
 namespace duet::raster {
@@ -99,7 +100,7 @@ private:
                     if (later) with_glass_[i] = 1;
                     const std::uint32_t key = later ? 0 : FirstLookPicture::key(data_.scene, hit);
                     const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
-                    picture.set(data_.scene, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
+                    picture.set(data_, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -190,7 +191,7 @@ private:
     /// The first look of what is behind, which sees what is behind that.
     void shade_second_layer(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
         const Screen::FirstLook& bare = screen.behind()->first_look();
-        Screen::FirstLook places{bare.keys, bare.objects, {}, {}}; // which object is where, before any is shaded
+        Screen::FirstLook places{bare.keys, bare.objects, bare.lamps, {}, {}}; // which object is where, before any is shaded
         for (std::size_t i = 0; i < hits.size(); ++i)
             if (hits[i].valid()) places.objects[i] = hits[i].object;
         places.radiance = bare.radiance, places.without_lamps = bare.without_lamps;
@@ -208,7 +209,7 @@ private:
                 for (int x = rect.x0; x < rect.x1; ++x) {
                     if (!hits(x, y).valid()) continue;
                     tile.exchange(x, y, hits(x, y));
-                    picture.set(data_.scene, x, y, hits(x, y), shade(data_, settings, tile, x, y).radiance, 0);
+                    picture.set(data_, x, y, hits(x, y), shade(data_, settings, tile, x, y).radiance, 0);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -249,23 +250,22 @@ std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
     return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
 }
 
-void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
+void FirstLookPicture::set(const PreparedData& data, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
     radiance_(x, y) = radiance;
     keys_(x, y) = key;
     objects_(x, y) = hit.object;
-    lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+    const std::int64_t light = hit.valid() ? surface_light_index(data.scene, hit.object, hit.primitive) : -1;
+    lamps_(x, y) = light >= 0 && std::binary_search(data.lamps.begin(), data.lamps.end(), static_cast<std::size_t>(light));
 }
 
 FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
-    : radiance_(look.radiance.finest()), keys_(look.keys), objects_(look.objects), lamps_(look.keys.width(), look.keys.height(), 0) {
-    for (std::size_t i = 0; i < radiance_.size(); ++i) lamps_[i] = look.without_lamps.finest()[i] != radiance_[i];
-}
+    : radiance_(look.radiance.finest()), keys_(look.keys), objects_(look.objects), lamps_(look.lamps) {}
 
 Screen::FirstLook FirstLookPicture::finish() && {
     ImageRgb dark = radiance_;
     for (std::size_t i = 0; i < dark.size(); ++i)
         if (lamps_[i] != 0) dark[i] = Rgb();
-    return {std::move(keys_), std::move(objects_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
+    return {std::move(keys_), std::move(objects_), std::move(lamps_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
 }
 
 const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {

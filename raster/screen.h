@@ -106,10 +106,11 @@ public:
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
     /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
-    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; and the same at all sizes,
-    /// without the scene's lamps and with them.
+    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; whether it is a lamp that
+    /// rays look for (PreparedData::lamps); and the same at all sizes, with those lamps and without them.
     struct FirstLook {
         Image<std::uint32_t> keys, objects;
+        Image<std::uint8_t> lamps;
         RadiancePyramid radiance, without_lamps;
     };
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
