@@ -127,8 +127,9 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
-    name(refracts, "Glass mirrors and refracts what the picture shows without it, up to three objects of glass deep, its far side found in the "
-                   "picture's depths, and casts no caustics.");
+    if (refracts)
+        result.push_back(message("Glass mirrors and refracts what the picture shows without it, up to ", kGlassDeep,
+                                 " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
     name(refracts && needs.insides, "Glass overlaps as if it did not.");
     if (parts.reflection && plain)
         result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics."));

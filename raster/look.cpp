@@ -113,53 +113,75 @@ private:
         return settings;
     }
 
-    /// What there is without glass; over it, the second of the objects on each pixel's way, where that is glass, too.
+    /// What there is without glass; over it, from the back, the objects of glass that are behind other ones.
     void look_behind_glass(Screen& screen) {
         GeometryLoan geometry(*data_.geometries), glass(*data_.geometries);
         process_without_glass(data_, grid_, central_, settings_, *geometry);
-        std::unique_ptr<Screen> bare = depths_and_normals(*geometry);
+        const std::shared_ptr<Screen> bare = depths_and_normals(*geometry);
         add_occlusion(data_, settings_, *bare);
         first_look(*geometry, &screen.first_look(), *bare);
         add_shapes(false, *bare);
         process_backs_of_glass(data_, grid_, central_, settings_, true, *glass);
         const std::shared_ptr<const Screen> backs = depths_and_normals(*glass);
         process_glass(data_, grid_, central_, settings_, *glass);
-        std::shared_ptr<const Screen> behind = second_layer(screen, *geometry, *glass, std::move(bare));
-        screen.set_glass(std::move(behind), backs);
+        const std::vector<GlassLayer> layers = further_glass(screen, *geometry, *glass);
+        process_backs_of_glass(data_, grid_, central_, settings_, false, *glass);
+        std::vector<std::shared_ptr<Screen>> screens(layers.size() + 1, bare);
+        for (std::size_t i = layers.size(); i-- > 0;) screens[i] = glass_screen(layers[i], *bare, screens[i + 1], *glass, screen);
+        screen.set_glass(screens.front(), backs);
+        for (std::size_t i = layers.size(); i-- > 0;) shade_glass(*geometry, layers[i].hits, *screens[i]);
     }
 
-    std::shared_ptr<const Screen> second_layer(const Screen& front, const Geometry& bare_geometry, const Geometry& glass,
-                                               std::shared_ptr<const Screen> bare) {
-        Image<Hit> hits(width(), height()); ///< of glass behind other glass; none elsewhere
-        ImageFloat nearness = bare->nearness();
-        ImageRgb normals(width(), height());
-        std::atomic<bool> any{false};
+    /// Glass behind other glass; no hits elsewhere.
+    struct GlassLayer {
+        Image<Hit> hits;
+        ImageFloat nearness;
+    };
+
+    /// The first surfaces of the second object of glass on each pixel's way, the third …, as far as there are any.
+    std::vector<GlassLayer> further_glass(const Screen& front, const Geometry& bare_geometry, const Geometry& glass) const {
+        std::vector<GlassLayer> layers(kGlassDeep - 1, GlassLayer{Image<Hit>(width(), height()), ImageFloat(width(), height())});
+        std::atomic<std::size_t> found{0};
         for_glass_tiles(&bare_geometry, glass, [&](HitTile& tile, HitLists& lists) {
-            const auto& objects = front.first_look().objects;
             lists.for_each([&](int x, int y, const Hit& hit) {
-                if (hit.object == objects(x, y)) return false;
-                hits(x, y) = hit;
-                tile.exchange(x, y, hit);
-                nearness(x, y) = tile.nearness(x, y);
-                any = true;
-                return true;
+                if (hit.object == front.first_look().objects(x, y)) return false;
+                std::size_t i = 0;
+                for (; layers[i].hits(x, y).valid(); ++i)
+                    if (layers[i].hits(x, y).object == hit.object) return false;
+                const Hit bare = tile.exchange(x, y, hit);
+                layers[i].hits(x, y) = hit, layers[i].nearness(x, y) = tile.nearness(x, y);
+                tile.exchange(x, y, bare);
+                ++i;
+                for (std::size_t before = found; before < i && !found.compare_exchange_weak(before, i);) {}
+                return i == layers.size();
             });
         });
-        if (!any) return bare;
+        layers.resize(found);
+        return layers;
+    }
+
+    /// All but the radiance of such a layer before `behind`. `backs`: of all glass.
+    std::shared_ptr<Screen> glass_screen(const GlassLayer& layer, const Screen& bare, std::shared_ptr<const Screen> behind,
+                                         const Geometry& backs, const Screen& front) const {
+        ImageFloat nearness = bare.nearness(), thickness(width(), height());
+        ImageRgb normals(width(), height());
+        Image<std::uint32_t> objects = bare.first_look().objects;
         for (int y = 0; y < height(); ++y)
             for (int x = 0; x < width(); ++x) {
-                const Hit& hit = hits(x, y);
-                normals(x, y) = as_color(hit.valid() ? normal_of(hit, x, y) : bare->normal(x, y));
+                const Hit& hit = layer.hits(x, y);
+                normals(x, y) = as_color(hit.valid() ? normal_of(hit, x, y) : bare.normal(x, y));
+                if (hit.valid())
+                    nearness(x, y) = layer.nearness(x, y), objects(x, y) = hit.object;
+                else
+                    thickness(x, y) = bare.thickness(x, y);
             }
         auto screen = std::make_shared<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
         screen->set_normals(normals);
         screen->set_turns(normal_turns(*screen, settings_.threads));
-        ImageFloat thickness(width(), height());
-        for (int y = 0; y < height(); ++y)
-            for (int x = 0; x < width(); ++x) thickness(x, y) = hits(x, y).valid() ? 0 : bare->thickness(x, y);
         screen->set_thickness(std::move(thickness));
-        screen->set_glass(bare, backs_of(hits));
-        shade_second_layer(bare_geometry, hits, *screen);
+        screen->set_first_look({{}, std::move(objects), {}, {}, {}});
+        screen->set_glass(std::move(behind), backs_of(layer.hits, backs));
+        screen->set_front(front);
         return screen;
     }
 
@@ -169,13 +191,12 @@ private:
     static Rgb as_color(Vec3 n) { return Rgb(n.x + 1, n.y + 1, n.z + 1) * 0.5f; }
 
     /// The nearest back face of each hit's own object.
-    std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits) {
-        GeometryLoan backs(*data_.geometries);
-        process_backs_of_glass(data_, grid_, central_, settings_, false, *backs);
+    std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits, const Geometry& backs) const {
         ImageFloat nearness(width(), height());
         ImageRgb normals(width(), height());
-        for_glass_tiles(nullptr, *backs, [&](HitTile& tile, HitLists& lists) {
+        for_glass_tiles(nullptr, backs, [&](HitTile& tile, HitLists& lists) {
             lists.for_each([&](int x, int y, const Hit& hit) {
+                if (!hits(x, y).valid()) return true;
                 if (hit.object != hits(x, y).object) return false;
                 tile.exchange(x, y, hit);
                 nearness(x, y) = tile.nearness(x, y);
@@ -188,13 +209,10 @@ private:
         return screen;
     }
 
-    /// The first look of what is behind, which sees what is behind that.
-    void shade_second_layer(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
-        const Screen::FirstLook& bare = screen.behind()->first_look();
-        Screen::FirstLook places{bare.keys, bare.objects, bare.lamps, {}, {}}; // which object is where, before any is shaded
-        for (std::size_t i = 0; i < hits.size(); ++i)
-            if (hits[i].valid()) places.objects[i] = hits[i].object;
-        places.radiance = bare.radiance, places.without_lamps = bare.without_lamps;
+    /// The first look of such a layer, which sees what is behind it.
+    void shade_glass(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
+        Screen::FirstLook places = screen.behind()->first_look();
+        places.objects = screen.first_look().objects; // which object is where, before any is shaded
         screen.set_first_look(std::move(places));
         PassView pass = central_;
         pass.screen = &screen;

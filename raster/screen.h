@@ -123,6 +123,9 @@ public:
     }
     const Screen* behind() const { return behind_.get(); }
     const Screen* backs() const { return backs_.get(); }
+    /// What the view sees at once, where this is behind that; else this.
+    void set_front(const Screen& front) { front_ = &front; }
+    const Screen& front() const { return front_ != nullptr ? *front_ : *this; }
 
 private:
     Vec3d eye_;
@@ -137,6 +140,7 @@ private:
     FirstLook first_look_;
     ImageFloat turns_, thickness_;
     std::shared_ptr<const Screen> behind_, backs_;
+    const Screen* front_ = nullptr;
 };
 
 } // namespace duet::raster
