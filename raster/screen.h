@@ -127,6 +127,9 @@ public:
     void set_front(const Screen& front) { front_ = &front; }
     const Screen& front() const { return front_ != nullptr ? *front_ : *this; }
 
+    /// Of this, the nearest back faces, and what is behind.
+    std::size_t memory_bytes() const;
+
 private:
     Vec3d eye_;
     Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as Pinhole's, from pixel (0, 0)

@@ -312,6 +312,20 @@ TEST_SUITE("unit") {
             }
     }
 
+    TEST_CASE("the looks at the picture with and without glass count as memory") {
+        Scene scene = wall();
+        add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Dielectric{kIor});
+        finish_scene(scene);
+        const auto bytes = [&](bool looks) {
+            raster::Settings settings = plain();
+            settings.screen_refractions = looks;
+            return render(scene, kView, settings).statistics.memory_bytes;
+        };
+        // Of each: depth, normal, turn, thickness, key, object, whether it is a lamp, radiance with and without lamps.
+        constexpr std::int64_t kLook = 4 + 12 + 4 + 4 + 4 + 4 + 1 + 12 + 12;
+        CHECK(bytes(true) - bytes(false) >= 2 * kLook * kView.width * kView.height);
+    }
+
     TEST_CASE("normals by maps are the same in the normal shading, in strips and one by one, as in the normal picture") {
         const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / "maps.json");
         const View view{scene.camera, 160, 120};
