@@ -127,6 +127,32 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red);
     }
 
+    TEST_CASE("where a floor meets a mirror the floor goes on in it: nothing of the mirror itself is seen between") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 5, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        for (const int height : {120, 121, 122, 123, 124}) { // the line is at different places within a pixel
+            const View view{look({0, 1, 6}, {0, 0.6f, 0}, 35), 160, height};
+            raster::Settings settings = plain();
+            settings.aovs.hit = true;
+            const Rendering found = render(scene, view, settings);
+            int pixels = 0;
+            float worst = 0;
+            for (int x = 40; x < 120; ++x)
+                for (int y = 1; y + 1 < view.height; ++y) {
+                    const bool floor_below = found.hit(x, std::min(y + 3, view.height - 1)).object == 1;
+                    if (found.hit(x, y).object != 0 || !floor_below) continue;
+                    worst = std::max(worst, found.radiance(x, y).r);
+                    ++pixels;
+                }
+            CAPTURE(height);
+            CHECK(pixels == 3 * 80);
+            CHECK(worst < 0.1f); // looks are a little wider than a pixel
+        }
+    }
+
     TEST_CASE("a ray that begins beside the picture is followed through it") {
         const Scene scene = before_wall(0);
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
