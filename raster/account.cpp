@@ -4,6 +4,7 @@
 #include "common/system/error.h"
 #include "raster/glass.h"
 #include "raster/prefiltered.h"
+#include "raster/screen.h"
 #include "raster/shade.h"
 #include "raster/shadows.h"
 
@@ -127,8 +128,9 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
-    name(refracts, "Glass mirrors and refracts what the picture shows without it, up to three objects of glass deep, its far side found in the "
-                   "picture's depths, and casts no caustics.");
+    if (refracts)
+        result.push_back(message("Glass mirrors and refracts what the picture shows without it, up to ", kGlassDeep,
+                                 " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
     name(refracts && needs.insides, "Glass overlaps as if it did not.");
     if (parts.reflection && plain)
         result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics."));
@@ -154,6 +156,10 @@ void Account::add(const Geometry& geometry) {
     geometry_bytes = std::max(geometry_bytes, geometry.memory_bytes());
 }
 
+void Account::add(const Screen& screen, GeometryPool& pool) {
+    look_bytes = std::max(look_bytes, screen.memory_bytes() + pool.memory_bytes());
+}
+
 std::vector<std::pair<std::string, double>> Account::seconds() const {
     const double cover = static_cast<double>(cover_work), work = cover + static_cast<double>(shade_work);
     const double covering = work > 0 ? tiles * cover / work : 0;
@@ -176,7 +182,7 @@ void fill_statistics(RenderStatistics& statistics, const PreparedData& data, con
         statistics.samples_per_pixel += static_cast<int>(passes[i].samples.size());
     statistics.seconds = account.seconds();
     statistics.triangles = data.primitives;
-    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.picture_bytes);
+    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.look_bytes + account.picture_bytes);
     statistics.skipped = list_skipped(data, settings, account.culled);
     statistics.approximations = list_approximations(data, settings);
 }

@@ -21,9 +21,12 @@ struct Account {
     std::atomic<std::size_t> tiles_done{0};                           ///< over all passes
     CullCounts culled;                                                ///< over all passes
     std::size_t geometry_bytes = 0;                                   ///< of the pass that needed most
+    std::size_t look_bytes = 0;                                       ///< of the pass that needed most: its look at the whole picture
     std::size_t picture_bytes = 0;
 
     void add(const Geometry& geometry);
+    /// A look at the whole picture, and the memory it has given back to the pool, which that keeps.
+    void add(const Screen& screen, GeometryPool& pool);
     /// By stage. Covering and shading take turns in each tile: each gets its share of the loop's time by its work.
     std::vector<std::pair<std::string, double>> seconds() const;
 };

@@ -114,6 +114,13 @@ void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
     free_.push_back(std::move(geometry));
 }
 
+std::size_t GeometryPool::memory_bytes() {
+    const std::lock_guard lock(mutex_);
+    std::size_t sum = 0;
+    for (const auto& geometry : free_) sum += geometry->memory_bytes();
+    return sum;
+}
+
 std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
                         patches.memory_bytes() + fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);

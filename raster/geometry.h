@@ -60,6 +60,7 @@ class GeometryPool {
 public:
     std::unique_ptr<Geometry> take();
     void give_back(std::unique_ptr<Geometry> geometry);
+    std::size_t memory_bytes(); ///< of those that nobody has
 
 private:
     std::mutex mutex_;

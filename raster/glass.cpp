@@ -97,7 +97,7 @@ std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
     const auto [x, y] = screen_.pixel_at(place);
     const Screen& behind = scenery_.at(x, y);
     const float depth = behind.depth(x, y);
-    if (!(depth <= place.z * (1 + kTouching)) || !(screen_.depth(x, y) < depth)) return std::nullopt;
+    if (!(depth <= place.z * (1 + kTouching)) || !(layer(x, y).depth(x, y) < depth)) return std::nullopt;
     return behind.first_look().radiance.at(place.x, place.y, 1);
 }
 
@@ -132,9 +132,15 @@ std::optional<SeenThrough::Segment> SeenThrough::across_ball(const Segment& from
     return Segment{.p = from.p + from.way * t, .way = from.way, .n = normalize(n), .inside = from.inside + t, .lost = from.lost};
 }
 
+/// The layer that shows this object at a pixel: beside what covers a part of it, that is another than under the cover.
+const Screen& SeenThrough::layer(int x, int y) const {
+    for (const Screen* layer = &screen_.front(); layer->backs() != nullptr; layer = layer->behind())
+        if (layer->first_look().objects(x, y) == point_.surface.object) return *layer;
+    return screen_;
+}
+
 std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& from) const {
     const bool deeper = screen_.homogeneous_change(from.way)[2] > 0;
-    const Screen& far = deeper ? *screen_.backs() : screen_;
     float t = 0;
     Vec3 n;
     bool found = false;
@@ -142,6 +148,8 @@ std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& f
         const Vec3 place = screen_.project(from.p + from.way * t);
         if (!(place.z > 0)) return std::nullopt;
         const auto [x, y] = screen_.pixel_at(place);
+        const Screen& shown = layer(x, y);
+        const Screen& far = deeper ? *shown.backs() : shown;
         const std::optional<Vec3> seen = far.seen(x, y);
         if (!seen) { // past its outline: half the way back
             if (i == 0) return std::nullopt;

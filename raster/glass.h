@@ -7,9 +7,11 @@
 
 namespace duet::raster {
 
+inline constexpr int kGlassDeep = 4; ///< objects of glass on a pixel's way that are seen through each other
+
 /// Light by way of glass at a point of the picture: the mirror image on its front, and what is seen through it, each
 /// looked up along its ray in a picture of the scene without this object (Scenery). In that, other glass shows what is
-/// behind it, up to three objects deep; the last is seen as if there were no glass behind it.
+/// behind it, up to kGlassDeep objects deep; the last is seen as if there were no glass behind it.
 ///
 /// Refraction is at two boundaries (Wyman 2005, «An Approximate Image-Space Approach for Interactive Refraction»): where
 /// the ray enters, and where it leaves again. A ball's far side is found exactly. A mesh's is looked for in the depths of
@@ -44,6 +46,7 @@ private:
     Segment follow(Vec3 way, float eta) const;
     std::optional<Segment> across_ball(const Segment& from) const;
     std::optional<Segment> across_picture(const Segment& from) const;
+    const Screen& layer(int x, int y) const;
     Rgb mirror(Vec3 way, float alpha, bool lamps) const;
 
     const PreparedData& data_;

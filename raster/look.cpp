@@ -12,6 +12,7 @@
 #include "common/system/control.h"
 #include "common/system/parallel.h"
 
+#include <algorithm>
 #include <atomic>
 
 namespace duet::raster {
@@ -99,7 +100,7 @@ private:
                     if (later) with_glass_[i] = 1;
                     const std::uint32_t key = later ? 0 : FirstLookPicture::key(data_.scene, hit);
                     const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
-                    picture.set(data_.scene, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
+                    picture.set(data_, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -112,53 +113,75 @@ private:
         return settings;
     }
 
-    /// What there is without glass; over it, the second of the objects on each pixel's way, where that is glass, too.
+    /// What there is without glass; over it, from the back, the objects of glass that are behind other ones.
     void look_behind_glass(Screen& screen) {
         GeometryLoan geometry(*data_.geometries), glass(*data_.geometries);
         process_without_glass(data_, grid_, central_, settings_, *geometry);
-        std::unique_ptr<Screen> bare = depths_and_normals(*geometry);
+        const std::shared_ptr<Screen> bare = depths_and_normals(*geometry);
         add_occlusion(data_, settings_, *bare);
         first_look(*geometry, &screen.first_look(), *bare);
         add_shapes(false, *bare);
         process_backs_of_glass(data_, grid_, central_, settings_, true, *glass);
         const std::shared_ptr<const Screen> backs = depths_and_normals(*glass);
         process_glass(data_, grid_, central_, settings_, *glass);
-        std::shared_ptr<const Screen> behind = second_layer(screen, *geometry, *glass, std::move(bare));
-        screen.set_glass(std::move(behind), backs);
+        const std::vector<GlassLayer> layers = further_glass(screen, *geometry, *glass);
+        process_backs_of_glass(data_, grid_, central_, settings_, false, *glass);
+        std::vector<std::shared_ptr<Screen>> screens(layers.size() + 1, bare);
+        for (std::size_t i = layers.size(); i-- > 0;) screens[i] = glass_screen(layers[i], *bare, screens[i + 1], *glass, screen);
+        screen.set_glass(screens.front(), backs);
+        for (std::size_t i = layers.size(); i-- > 0;) shade_glass(*geometry, layers[i].hits, *screens[i]);
     }
 
-    std::shared_ptr<const Screen> second_layer(const Screen& front, const Geometry& bare_geometry, const Geometry& glass,
-                                               std::shared_ptr<const Screen> bare) {
-        Image<Hit> hits(width(), height()); ///< of glass behind other glass; none elsewhere
-        ImageFloat nearness = bare->nearness();
-        ImageRgb normals(width(), height());
-        std::atomic<bool> any{false};
+    /// Glass behind other glass; no hits elsewhere.
+    struct GlassLayer {
+        Image<Hit> hits;
+        ImageFloat nearness;
+    };
+
+    /// The first surfaces of the second object of glass on each pixel's way, the third …, as far as there are any.
+    std::vector<GlassLayer> further_glass(const Screen& front, const Geometry& bare_geometry, const Geometry& glass) const {
+        std::vector<GlassLayer> layers(kGlassDeep - 1, GlassLayer{Image<Hit>(width(), height()), ImageFloat(width(), height())});
+        std::atomic<std::size_t> found{0};
         for_glass_tiles(&bare_geometry, glass, [&](HitTile& tile, HitLists& lists) {
-            const auto& objects = front.first_look().objects;
             lists.for_each([&](int x, int y, const Hit& hit) {
-                if (hit.object == objects(x, y)) return false;
-                hits(x, y) = hit;
-                tile.exchange(x, y, hit);
-                nearness(x, y) = tile.nearness(x, y);
-                any = true;
-                return true;
+                if (hit.object == front.first_look().objects(x, y)) return false;
+                std::size_t i = 0;
+                for (; layers[i].hits(x, y).valid(); ++i)
+                    if (layers[i].hits(x, y).object == hit.object) return false;
+                const Hit bare = tile.exchange(x, y, hit);
+                layers[i].hits(x, y) = hit, layers[i].nearness(x, y) = tile.nearness(x, y);
+                tile.exchange(x, y, bare);
+                ++i;
+                for (std::size_t before = found; before < i && !found.compare_exchange_weak(before, i);) {}
+                return i == layers.size();
             });
         });
-        if (!any) return bare;
+        layers.resize(found);
+        return layers;
+    }
+
+    /// All but the radiance of such a layer before `behind`. `backs`: of all glass.
+    std::shared_ptr<Screen> glass_screen(const GlassLayer& layer, const Screen& bare, std::shared_ptr<const Screen> behind,
+                                         const Geometry& backs, const Screen& front) const {
+        ImageFloat nearness = bare.nearness(), thickness(width(), height());
+        ImageRgb normals(width(), height());
+        Image<std::uint32_t> objects = bare.first_look().objects;
         for (int y = 0; y < height(); ++y)
             for (int x = 0; x < width(); ++x) {
-                const Hit& hit = hits(x, y);
-                normals(x, y) = as_color(hit.valid() ? normal_of(hit, x, y) : bare->normal(x, y));
+                const Hit& hit = layer.hits(x, y);
+                normals(x, y) = as_color(hit.valid() ? normal_of(hit, x, y) : bare.normal(x, y));
+                if (hit.valid())
+                    nearness(x, y) = layer.nearness(x, y), objects(x, y) = hit.object;
+                else
+                    thickness(x, y) = bare.thickness(x, y);
             }
         auto screen = std::make_shared<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
         screen->set_normals(normals);
         screen->set_turns(normal_turns(*screen, settings_.threads));
-        ImageFloat thickness(width(), height());
-        for (int y = 0; y < height(); ++y)
-            for (int x = 0; x < width(); ++x) thickness(x, y) = hits(x, y).valid() ? 0 : bare->thickness(x, y);
         screen->set_thickness(std::move(thickness));
-        screen->set_glass(bare, backs_of(hits));
-        shade_second_layer(bare_geometry, hits, *screen);
+        screen->set_first_look({{}, std::move(objects), {}, {}, {}});
+        screen->set_glass(std::move(behind), backs_of(layer.hits, backs));
+        screen->set_front(front);
         return screen;
     }
 
@@ -168,13 +191,12 @@ private:
     static Rgb as_color(Vec3 n) { return Rgb(n.x + 1, n.y + 1, n.z + 1) * 0.5f; }
 
     /// The nearest back face of each hit's own object.
-    std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits) {
-        GeometryLoan backs(*data_.geometries);
-        process_backs_of_glass(data_, grid_, central_, settings_, false, *backs);
+    std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits, const Geometry& backs) const {
         ImageFloat nearness(width(), height());
         ImageRgb normals(width(), height());
-        for_glass_tiles(nullptr, *backs, [&](HitTile& tile, HitLists& lists) {
+        for_glass_tiles(nullptr, backs, [&](HitTile& tile, HitLists& lists) {
             lists.for_each([&](int x, int y, const Hit& hit) {
+                if (!hits(x, y).valid()) return true;
                 if (hit.object != hits(x, y).object) return false;
                 tile.exchange(x, y, hit);
                 nearness(x, y) = tile.nearness(x, y);
@@ -187,13 +209,10 @@ private:
         return screen;
     }
 
-    /// The first look of what is behind, which sees what is behind that.
-    void shade_second_layer(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
-        const Screen::FirstLook& bare = screen.behind()->first_look();
-        Screen::FirstLook places{bare.keys, bare.objects, {}, {}}; // which object is where, before any is shaded
-        for (std::size_t i = 0; i < hits.size(); ++i)
-            if (hits[i].valid()) places.objects[i] = hits[i].object;
-        places.radiance = bare.radiance, places.without_lamps = bare.without_lamps;
+    /// The first look of such a layer, which sees what is behind it.
+    void shade_glass(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
+        Screen::FirstLook places = screen.behind()->first_look();
+        places.objects = screen.first_look().objects; // which object is where, before any is shaded
         screen.set_first_look(std::move(places));
         PassView pass = central_;
         pass.screen = &screen;
@@ -208,7 +227,7 @@ private:
                 for (int x = rect.x0; x < rect.x1; ++x) {
                     if (!hits(x, y).valid()) continue;
                     tile.exchange(x, y, hits(x, y));
-                    picture.set(data_.scene, x, y, hits(x, y), shade(data_, settings, tile, x, y).radiance, 0);
+                    picture.set(data_, x, y, hits(x, y), shade(data_, settings, tile, x, y).radiance, 0);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -249,23 +268,22 @@ std::uint32_t FirstLookPicture::key(const Scene& scene, const Hit& hit) {
     return high_bits(hash_combine(hit.object, hit.primitive)) | 1u;
 }
 
-void FirstLookPicture::set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
+void FirstLookPicture::set(const PreparedData& data, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key) {
     radiance_(x, y) = radiance;
     keys_(x, y) = key;
     objects_(x, y) = hit.object;
-    lamps_(x, y) = hit.valid() && surface_light_index(scene, hit.object, hit.primitive) >= 0;
+    const std::int64_t light = hit.valid() ? surface_light_index(data.scene, hit.object, hit.primitive) : -1;
+    lamps_(x, y) = light >= 0 && std::binary_search(data.lamps.begin(), data.lamps.end(), static_cast<std::size_t>(light));
 }
 
 FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
-    : radiance_(look.radiance.finest()), keys_(look.keys), objects_(look.objects), lamps_(look.keys.width(), look.keys.height(), 0) {
-    for (std::size_t i = 0; i < radiance_.size(); ++i) lamps_[i] = look.without_lamps.finest()[i] != radiance_[i];
-}
+    : radiance_(look.radiance.finest()), keys_(look.keys), objects_(look.objects), lamps_(look.lamps) {}
 
 Screen::FirstLook FirstLookPicture::finish() && {
     ImageRgb dark = radiance_;
     for (std::size_t i = 0; i < dark.size(); ++i)
         if (lamps_[i] != 0) dark[i] = Rgb();
-    return {std::move(keys_), std::move(objects_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
+    return {std::move(keys_), std::move(objects_), std::move(lamps_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
 }
 
 const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {

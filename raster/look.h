@@ -23,7 +23,7 @@ public:
     explicit FirstLookPicture(const Screen::FirstLook& look);
 
     /// `key`: of the hit, or 0 where it is to be shaded again.
-    void set(const Scene& scene, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
+    void set(const PreparedData& data, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
     Screen::FirstLook finish() &&;
 
     /// Of what a pixel sees: 0 of what looks around in the picture, and of nothing.

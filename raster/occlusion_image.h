@@ -18,6 +18,7 @@ public:
     SkySeen at(int x, int y, Vec3 p, Vec3 n) const;
     /// At any point in view.
     SkySeen look(Vec3 p, Vec3 n) const;
+    std::size_t memory_bytes() const { return (found_.front().size() + smooth_.front().size()) * found_.size() * sizeof(float); }
 
     static constexpr int kLines = 2, kSteps = 12;
 

@@ -33,4 +33,10 @@ Rgb RadiancePyramid::at(float x, float y, float width) const {
     return part > 0 ? lerp(of(low), of(high), part) : of(low);
 }
 
+std::size_t RadiancePyramid::memory_bytes() const {
+    std::size_t count = 0;
+    for (const ImageRgb& level : levels_) count += level.size();
+    return count * sizeof(Rgb);
+}
+
 } // namespace duet::raster

@@ -18,6 +18,7 @@ public:
     Rgb at(float x, float y, float width) const;
     const ImageRgb& finest() const { return levels_.front(); }
     bool empty() const { return levels_.empty(); }
+    std::size_t memory_bytes() const;
 
 private:
     std::vector<ImageRgb> levels_;

@@ -86,6 +86,7 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
     const std::unique_ptr<const Screen> screen = look_at_screen(frame.data, frame.settings, frame.grid, pass_view, frame.control);
     pass_view.screen = screen.get();
     frame.account.prepass += watch.seconds();
+    if (screen) frame.account.add(*screen, *frame.data.geometries);
     const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;

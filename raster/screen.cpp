@@ -1,5 +1,7 @@
 #include "raster/screen.h"
 
+#include "raster/occlusion_image.h"
+
 namespace duet::raster {
 
 Screen::Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness)
@@ -33,6 +35,19 @@ std::optional<Vec3> Screen::seen(int x, int y) const {
     const float nearness = nearness_(x, y);
     if (!(nearness > 0)) return std::nullopt;
     return at(static_cast<float>(x), static_cast<float>(y), nearness);
+}
+
+std::size_t Screen::memory_bytes() const {
+    const auto bytes_of = [](const auto& image) { return image.size() * sizeof(image[0]); };
+    const FirstLook& look = first_look_;
+    std::size_t sum = bytes_of(nearness_) + static_cast<std::size_t>(nearest_.memory_bytes()) + bytes_of(turns_) + bytes_of(thickness_) +
+                      bytes_of(look.keys) + bytes_of(look.objects) + bytes_of(look.lamps) + look.radiance.memory_bytes() +
+                      look.without_lamps.memory_bytes();
+    for (const ImageFloat& plane : normals_) sum += bytes_of(plane);
+    if (occlusion_) sum += occlusion_->memory_bytes();
+    for (const auto& other : {behind_, backs_})
+        if (other) sum += other->memory_bytes();
+    return sum;
 }
 
 } // namespace duet::raster

@@ -106,10 +106,11 @@ public:
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
     /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
-    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; and the same at all sizes,
-    /// without the scene's lamps and with them.
+    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; whether it is a lamp that
+    /// rays look for (PreparedData::lamps); and the same at all sizes, with those lamps and without them.
     struct FirstLook {
         Image<std::uint32_t> keys, objects;
+        Image<std::uint8_t> lamps;
         RadiancePyramid radiance, without_lamps;
     };
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
@@ -122,6 +123,12 @@ public:
     }
     const Screen* behind() const { return behind_.get(); }
     const Screen* backs() const { return backs_.get(); }
+    /// What the view sees at once, where this is behind that; else this.
+    void set_front(const Screen& front) { front_ = &front; }
+    const Screen& front() const { return front_ != nullptr ? *front_ : *this; }
+
+    /// Of this, the nearest back faces, and what is behind.
+    std::size_t memory_bytes() const;
 
 private:
     Vec3d eye_;
@@ -136,6 +143,7 @@ private:
     FirstLook first_look_;
     ImageFloat turns_, thickness_;
     std::shared_ptr<const Screen> behind_, backs_;
+    const Screen* front_ = nullptr;
 };
 
 } // namespace duet::raster

@@ -56,7 +56,9 @@ public:
         clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
         clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
         if (!(in <= out)) return;
-        first_ = std::max(1, static_cast<int>(std::ceil(in * pixels_))), last_ = static_cast<int>(std::floor(out * pixels_));
+        // A start far beside the picture may be any number of pixels away.
+        const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
+        first_ = std::max(1, whole(std::ceil(in * pixels_))), last_ = whole(std::floor(out * pixels_));
     }
 
     Vec3 from() const { return from_; }
@@ -177,7 +179,19 @@ private:
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
-        return ScreenHit{line_.x(met), line_.y(met), length(step)};
+        const float fx = line_.x(met), fy = line_.y(met);
+        return touches_own(fx, fy) ? ScreenHit{middle(x), middle(y), length(step)} : ScreenHit{fx, fy, length(step)};
+    }
+
+    /// Whether a look between pixels sees the mirror that the ray has left: there it has met something in its first steps.
+    bool touches_own(float fx, float fy) const {
+        if (scenery_.without != nullptr) return false; // what the look does not see
+        for (const float dx : {-0.5f, 0.5f})
+            for (const float dy : {-0.5f, 0.5f}) {
+                const auto [x, y] = scenery_.all.pixel_at({fx + dx, fy + dy, 0});
+                if (scenery_.is_own(x, y)) return true;
+            }
+        return false;
     }
 
     std::optional<ScreenHit> beyond_edge() const {

@@ -3,6 +3,7 @@
 
 #include "common/image/same_bits.h"
 #include "common/material/fresnel.h"
+#include "raster/glass.h"
 #include "raster/screen.h"
 #include "raster/split.h"
 #include "raytrace/render.h"
@@ -53,6 +54,19 @@ Mesh round_mesh(int around, int down) {
             if (k + 1 < down) mesh.triangles.push_back({vertex(i, k), vertex(i, k + 1), vertex(i + 1, k + 1)});
         }
     return mesh;
+}
+
+/// A cube of quads about the origin, `half` its side.
+QuadList block(float half) {
+    QuadList box;
+    for (const float side : {-half, half})
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            Vec3 corner(-half, -half, -half), u, v;
+            corner[axis] = side;
+            u[(axis + (side > 0 ? 1u : 2u)) % 3] = v[(axis + (side > 0 ? 2u : 1u)) % 3] = 2 * half;
+            box.quads.push_back({corner, u, v});
+        }
+    return box;
 }
 
 /// Through a unit ball at the origin to the wall: where that is met, and how much goes on at the front; false for rays
@@ -142,6 +156,41 @@ TEST_SUITE("unit") {
                         }
                 }
             CHECK(wrong * 50 < all); // where the looks of neighbours differ
+        }
+    }
+
+    TEST_CASE("a block that a pane covers in part is seen under it as if the pane covered all") {
+        std::array<ImageRgb, 2> pictures; // half and all of it
+        for (const bool whole : {false, true}) {
+            Scene scene = wall();
+            add(scene, block(0.8f), rotation(Vec3(1, 0, 0), 0.26f) * rotation(Vec3(0, 1, 0), 0.52f), Dielectric{kIor});
+            add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 2), Vec3(whole ? 3.0f : 1.5f, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+            finish_scene(scene);
+            pictures[whole] = render(scene, kView, plain()).radiance;
+        }
+        int wrong = 0, all = 0;
+        for (int y = 30; y < 90; ++y)
+            for (int x = 45; x < 77; ++x) { // to three pixels from the pane's edge
+                const Rgb difference = pictures[0](x, y) - pictures[1](x, y);
+                ++all;
+                wrong += std::max({std::abs(difference.r), std::abs(difference.g), std::abs(difference.b)}) > 0.02f;
+            }
+        CAPTURE(wrong);
+        CHECK(wrong * 50 < all); // where what is seen is itself about the edge
+    }
+
+    TEST_CASE("panes in a row: each dims what is behind it, kGlassDeep of them, and those farther back not") {
+        for (int panes = 0; panes <= raster::kGlassDeep + 1; ++panes) {
+            CAPTURE(panes);
+            Scene scene;
+            add(scene, QuadList{{{Vec3(-9, -6, static_cast<float>(kWallZ)), Vec3(18, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(1.0f)});
+            const Dielectric tinted{.ior = kIor, .tint = {Rgb(0.5f)}, .thin = true};
+            for (int i = 0; i < panes; ++i)
+                add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 2 - 0.5f * static_cast<float>(i)), Vec3(3, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), tinted);
+            finish_scene(scene);
+            const float once = ThinDielectricBsdf{kIor, Rgb(0.5f)}.parts(1).transmitted.r;
+            const float expected = std::pow(once, static_cast<float>(std::min(panes, raster::kGlassDeep)));
+            CHECK(render(scene, kView, plain()).radiance(80, 60).r == doctest::Approx(expected).epsilon(0.005));
         }
     }
 
@@ -261,6 +310,20 @@ TEST_SUITE("unit") {
                 REQUIRE(screen != nullptr);
                 CHECK((screen->behind() != nullptr) == (glass && on));
             }
+    }
+
+    TEST_CASE("the looks at the picture with and without glass count as memory") {
+        Scene scene = wall();
+        add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Dielectric{kIor});
+        finish_scene(scene);
+        const auto bytes = [&](bool looks) {
+            raster::Settings settings = plain();
+            settings.screen_refractions = looks;
+            return render(scene, kView, settings).statistics.memory_bytes;
+        };
+        // Of each: depth, normal, turn, thickness, key, object, whether it is a lamp, radiance with and without lamps.
+        constexpr std::int64_t kLook = 4 + 12 + 4 + 4 + 4 + 4 + 1 + 12 + 12;
+        CHECK(bytes(true) - bytes(false) >= 2 * kLook * kView.width * kView.height);
     }
 
     TEST_CASE("normals by maps are the same in the normal shading, in strips and one by one, as in the normal picture") {

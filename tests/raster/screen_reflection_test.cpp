@@ -3,6 +3,7 @@
 
 #include "raster/screen_reflection.h"
 #include "raster/split.h"
+#include "raster/surroundings.h"
 
 #include <doctest/doctest.h>
 
@@ -126,6 +127,32 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red);
     }
 
+    TEST_CASE("where a floor meets a mirror the floor goes on in it: nothing of the mirror itself is seen between") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 5, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        for (const int height : {120, 121, 122, 123, 124}) { // the line is at different places within a pixel
+            const View view{look({0, 1, 6}, {0, 0.6f, 0}, 35), 160, height};
+            raster::Settings settings = plain();
+            settings.aovs.hit = true;
+            const Rendering found = render(scene, view, settings);
+            int pixels = 0;
+            float worst = 0;
+            for (int x = 40; x < 120; ++x)
+                for (int y = 1; y + 1 < view.height; ++y) {
+                    const bool floor_below = found.hit(x, std::min(y + 3, view.height - 1)).object == 1;
+                    if (found.hit(x, y).object != 0 || !floor_below) continue;
+                    worst = std::max(worst, found.radiance(x, y).r);
+                    ++pixels;
+                }
+            CAPTURE(height);
+            CHECK(pixels == 3 * 80);
+            CHECK(worst < 0.1f); // looks are a little wider than a pixel
+        }
+    }
+
     TEST_CASE("a ray that begins beside the picture is followed through it") {
         const Scene scene = before_wall(0);
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
@@ -139,6 +166,41 @@ TEST_SUITE("unit") {
         CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
         CHECK(hit->gap == 0);
         CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
+    }
+
+    TEST_CASE("lamps that are not looked for stay in the picture that mirrors see, those that are do not: of glass, too") {
+        for (const bool glass : {false, true}) {
+            Scene scene;
+            add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+            if (glass) add(scene, Sphere{Vec3(0, 0.6f, 1), 0.3f}, Mat4(), Dielectric{1.5f});
+            QuadList lamps; // the first is the weakest
+            const auto count = static_cast<int>(raster::Surroundings::kMostLamps) + 1;
+            for (int i = 0; i < count; ++i) {
+                const float size = i == 0 ? 0.04f : 0.05f;
+                lamps.quads.push_back({Vec3(-1.6f + 0.2f * static_cast<float>(i % 17), 0.2f + 0.1f * static_cast<float>(i / 17), -1.8f), Vec3(size, 0, 0), Vec3(0, size, 0)});
+            }
+            add(scene, lamps, Mat4(), Emissive{Rgb(3.0f)});
+            finish_scene(scene);
+            raster::Settings settings = plain();
+            settings.shadows = false;
+            const View large{kView.camera, 480, 360};
+            settings.aovs.hit = true;
+            const Image<Hit> hits = render(scene, large, settings).hit;
+            settings.aovs = {};
+            const auto screen = raster::screen_of(raster::prepare(scene, settings), large, settings);
+            const std::uint32_t object = glass ? 2 : 1;
+            int weak = 0, strong = 0, wrong = 0;
+            for (int y = 0; y < large.height; ++y)
+                for (int x = 0; x < large.width; ++x) {
+                    if (hits(x, y).object != object) continue;
+                    const bool is_weak = hits(x, y).primitive == 0;
+                    ++(is_weak ? weak : strong);
+                    wrong += screen->first_look().without_lamps.finest()(x, y) != (is_weak ? Rgb(3.0f) : Rgb(0.0f));
+                }
+            CHECK(weak > 2);
+            CHECK(strong > 500);
+            CHECK(wrong == 0);
+        }
     }
 
     TEST_CASE("slightly rough metal mirrors without grain: neighbours differ by 4 % at most where the wall is of one colour") {
