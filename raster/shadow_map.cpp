@@ -40,8 +40,8 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const Vec3d n = receiver.n;
     const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
-    // On the plane; where light grazes it no farther than twice the filter, or as much as stands over a facet would be lit.
-    const double reach = kFilterRadius * texel(place.z) / max(cosine, 0.5);
+    // On the plane; where light grazes it no farther than ten times the filter, or as much as stands over a facet would be lit.
+    const double reach = kFilterRadius * texel(place.z) / max(cosine, 0.1);
     const double height = kConcave * reach + 2 * receiver.error + place.z * 0x1p-22;
     const double depth_slack = height / towards;
     if (orthographic_)
