@@ -101,7 +101,7 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
         // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
         // wherever what is met is guessed.
         const auto [x, y] = scenery_.all.pixel_at({hit->x, hit->y, 0});
-        const bool is_lamp = shown.radiance.finest()(x, y) != shown.without_lamps.finest()(x, y);
+        const bool is_lamp = shown.lamps(x, y) != 0;
         if (is_lamp) distance = kInfinity; // it hides none
         const bool lamps = look.lamps && hit->gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
         return (lamps ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);

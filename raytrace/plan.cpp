@@ -37,7 +37,7 @@ int depth(const Settings& settings) {
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth)
     : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
-      russian_roulette(settings.russian_roulette && max_depth > 0) {
+      russian_roulette(settings.russian_roulette && max_depth > 1) {
     const Skips& skips = settings.skips;
     const CameraModel camera(view);
     lens = camera.has_lens() || !skips.lens;
@@ -62,8 +62,8 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
     // Nothing that paths keep besides, or that tests ask for; and some lanes.
     if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays) matt = MattSurfaces(scene, *bsdfs);
-    // The naive one stays as plain as it is; and paths of one scattering are not ended.
-    const bool learns = russian_roulette && max_depth > 1 && settings.integrator != Integrator::kNaive;
+    // The naive one stays as plain as it is.
+    const bool learns = russian_roulette && settings.integrator != Integrator::kNaive;
     worth = known_worth ? *known_worth : learns ? learned_worth(prepared, view, settings) : kPlainWorth;
 }
 
@@ -104,7 +104,7 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
     }
     if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
         skip("last bounce", "rays cannot find the lights: point, spot and sun");
-    if (plan.russian_roulette && plan.max_depth > 1)
+    if (plan.russian_roulette)
         skip("dim paths", message("roulette ends some whose throughput is below ", 1 / plan.worth));
     if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
     return list;

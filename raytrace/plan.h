@@ -30,7 +30,7 @@ struct RenderPlan {
     bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
     MattSurfaces matt;              ///< those at which paths may scatter side by side (matt_vertices.h)
     int max_depth = 0;
-    bool russian_roulette = false;
+    bool russian_roulette = false;  ///< paths of more than one scattering may be ended
     float worth = kPlainWorth;      ///< of throughput, to roulette: see learned_worth
     std::optional<PixelFootprint> pixel; ///< of a camera ray that stands for all of one; empty where no texture is filtered
     bool lens = false;   ///< rays start all over the lens

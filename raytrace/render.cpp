@@ -97,7 +97,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     statistics.invalid_samples = film.invalid_samples();
     statistics.estimated_relmse = film.estimated_relmse();
     statistics.skipped = skipped(plan, settings);
-    if (plan.russian_roulette && plan.max_depth > 1)
+    if (plan.russian_roulette)
         statistics.skipped.push_back({"paths ended by roulette", "dim ones", rays.ended});
     statistics.approximations = approximations(plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());

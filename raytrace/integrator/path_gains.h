@@ -32,7 +32,7 @@ public:
         find(light);
     }
     void scattered(const Vertex&, const BsdfSample&, Vec3, const PathState& state) {
-        steps_.push_back({first_, max_component(state.throughput) / state.refraction / weight_, weight_});
+        steps_.push_back({first_, survival(state.throughput, state.refraction, 1.0f) / weight_, weight_});
     }
     void roulette(float probability, bool survived) {
         if (!survived) return steps_.pop_back();

@@ -1,7 +1,7 @@
 // Errors fall with the number of samples as they must, to 65,536 of them, and there is no floor that they rest on: in
 // pictures whose truth is known in double precision.
 #include "tests/raytrace/estimates.h"
-#include "tests/raytrace/scene_builder.h"
+#include "tests/raytrace/integrating_sphere.h"
 
 #include <doctest/doctest.h>
 
@@ -63,22 +63,8 @@ Image<double> floor_truth() {
     return truth;
 }
 
-// The inside of a sphere with a point light in its centre: each point gets the same light from all others, however it
-// went, so the radiance is ρ E / (π (1 − ρ)) everywhere, E = I/r². Roulette is all that makes noise.
-constexpr double kIntensity = 3, kRadius = 1.5, kWhite = 0.75;
-
-Scene integrating_sphere() {
-    SceneBuilder builder;
-    builder.add(Sphere{{0, 0, 0}, static_cast<float>(kRadius)},
-                builder.material(Diffuse{{Rgb(static_cast<float>(kWhite))}}));
-    builder.scene.lights.push_back(PointLight{{0, 0, 0}, Rgb(static_cast<float>(kIntensity))});
-    builder.scene.camera.eye = {0.3, 0.2, 0.5};
-    builder.scene.camera.look_at = {0, 0, -1};
-    return builder.finish();
-}
-
 Image<double> sphere_truth() {
-    return {kSide, kSide, kWhite * kIntensity / (kRadius * kRadius) / (kPiDouble * (1 - kWhite))};
+    return {kSide, kSide, kIntegratingSphere};
 }
 
 // Mean squared error over pixels and seeds.

@@ -2,7 +2,7 @@
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/path_gains.h"
 #include "raytrace/pass.h"
-#include "tests/raytrace/scene_builder.h"
+#include "tests/raytrace/integrating_sphere.h"
 
 #include <doctest/doctest.h>
 
@@ -12,21 +12,6 @@ using namespace duet;
 using namespace duet::raytrace;
 
 namespace {
-
-// The inside of a sphere with a point light in its centre: each path brings ρ E / (π (1 − ρ)), E = I/r², however it went,
-// and roulette is all that makes noise.
-constexpr double kIntensity = 3, kRadius = 1.5, kWhite = 0.75;
-constexpr double kTruth = kWhite * kIntensity / (kRadius * kRadius) / (kPiDouble * (1 - kWhite));
-
-Scene integrating_sphere() {
-    SceneBuilder builder;
-    builder.add(Sphere{{0, 0, 0}, static_cast<float>(kRadius)},
-                builder.material(Diffuse{{Rgb(static_cast<float>(kWhite))}}));
-    builder.scene.lights.push_back(PointLight{{0, 0, 0}, Rgb(static_cast<float>(kIntensity))});
-    builder.scene.camera.eye = {0.3, 0.2, 0.5};
-    builder.scene.camera.look_at = {0, 0, -1};
-    return builder.finish();
-}
 
 float worth_of(const Scene& scene, int side, const Settings& settings) {
     const Prepared prepared = prepare(scene, settings);
@@ -104,8 +89,8 @@ TEST_SUITE("statistical") {
                 squares += light * light;
             });
             const double mean = sum / kCount, error = std::sqrt((squares / kCount - mean * mean) / kCount);
-            CHECK(std::abs(mean - kTruth) < 5 * error);
-            CHECK(error < kTruth / 500);
+            CHECK(std::abs(mean - kIntegratingSphere) < 5 * error);
+            CHECK(error < kIntegratingSphere / 500);
         }
     }
 
@@ -129,6 +114,6 @@ TEST_SUITE("statistical") {
             others += path.camera_rays() != 2 || path.steps().empty() || !path.steps().front().first;
         });
         CHECK(others == 0);
-        CHECK(light / throughput == doctest::Approx(kTruth).epsilon(0.03));
+        CHECK(light / throughput == doctest::Approx(kIntegratingSphere).epsilon(0.03));
     }
 }
