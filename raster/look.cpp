@@ -18,6 +18,11 @@
 namespace duet::raster {
 namespace {
 
+/// What a look has of a pixel, if that saw the same.
+const Rgb* known_radiance(const Screen::FirstLook& look, std::uint32_t key, int x, int y) {
+    return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
+}
+
 /// One view's look at the scene.
 class Looker {
 public:
@@ -99,8 +104,8 @@ private:
                     const bool later = screen.behind() == nullptr && hit.valid() && is_glass(data_, hit.object);
                     if (later) with_glass_[i] = 1;
                     const std::uint32_t key = later ? 0 : FirstLookPicture::key(data_.scene, hit);
-                    const bool same = known != nullptr && key != 0 && known->keys(x, y) == key;
-                    picture.set(data_, x, y, hit, same ? known->radiance.finest()(x, y) : shade(data_, settings, tile, x, y).radiance, key);
+                    const Rgb* same = known != nullptr ? known_radiance(*known, key, x, y) : nullptr;
+                    picture.set(data_, x, y, hit, same != nullptr ? *same : shade(data_, settings, tile, x, y).radiance, key);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -290,8 +295,7 @@ const Rgb* seen_before(const PreparedData& data, const Settings& settings, const
     if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() || !settings.parts.all())
         return nullptr;
     const Screen::FirstLook& look = tile.screen()->first_look();
-    const std::uint32_t key = FirstLookPicture::key(data.scene, tile.hit(x, y));
-    return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
+    return known_radiance(look, FirstLookPicture::key(data.scene, tile.hit(x, y)), x, y);
 }
 
 std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& pass,
