@@ -15,14 +15,21 @@ namespace {
 
 Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
 
-CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
-    return {Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), u.lens, u.time};
+// (Number by number, each to where it stays: a whole point read back right after its parts were written would wait for
+// them.)
+void set_point(CameraModel::Point& point, const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
+    const Vec2d offset = plan.filter.sample(u.pixel);
+    point.pixel.x = x + 0.5 + offset.x;
+    point.pixel.y = y + 0.5 + offset.y;
+    point.lens = u.lens;
+    point.time = u.time;
 }
 
 } // namespace
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler) {
-    const CameraModel::Point point = camera_point(plan, x, y, sampler.camera_numbers(camera_needs(plan)));
+    CameraModel::Point point;
+    set_point(point, plan, x, y, sampler.camera_numbers(camera_needs(plan)));
     return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
@@ -103,8 +110,7 @@ private:
         std::array<CameraNumbers, kSize> numbers;
         Sampler::camera_numbers(std::span(samplers_).first(rays.size()), camera_needs(target_.plan),
                                 std::span(numbers).first(rays.size()));
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, numbers[i]);
+        for (std::size_t i = 0; i < rays.size(); ++i) set_point(points_[i], target_.plan, samples_[i].x, samples_[i].y, numbers[i]);
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 

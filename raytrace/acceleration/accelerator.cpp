@@ -6,7 +6,7 @@
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_packet.h"
-#include "raytrace/acceleration/bvh_traverse.h"
+#include "raytrace/acceleration/bvh_stream.h"
 
 #include <algorithm>
 #include <bit>
@@ -246,6 +246,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
     }
     world_ = world.build();
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !holes_;
+    streams_ = streamable(world_) && !sabotaged(Guard::kSphereRoots);
 }
 
 // A ray in an instance's space, at its time.
@@ -410,7 +411,23 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
     for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
 }
 
+void Accelerator::closest_in_stream(std::span<const Ray> rays, std::span<Hit> hits) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        hits[i] = {};
+        hits[i].t = min(rays[i].t_max, std::numeric_limits<float>::max()); // as first() has it
+    }
+    for (std::size_t from = 0; from < rays.size(); from += RayStream::kSize) {
+        const std::size_t size = std::min(rays.size() - from, RayStream::kSize);
+        RayStream(world_, rays.subspan(from, size), hits.subspan(from, size)).run();
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].valid()) hits[i].t = kInfinity;
+        if (holes_) hits[i] = beyond_holes(rays[i], hits[i]);
+    }
+}
+
 void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const {
+    if (streams_) return closest_in_stream(rays, hits);
     for (std::size_t from = 0; from < rays.size(); from += kMostSorted) {
         const std::size_t size = std::min(rays.size() - from, kMostSorted);
         const auto some = rays.subspan(from, size);

@@ -28,6 +28,7 @@ public:
         return max(coordinates * B(0x1p-120f), B(0x1p-125f));
     }
 
+    SlabRay() = default; // of no ray
     SlabRay(const Ray& ray, const Box3& bounds) {
         // Without a branch on signs or sizes, which incoherent rays would mispredict.
         using Four = FloatBatch<4>;
@@ -43,17 +44,13 @@ public:
         const Four reciprocal = xsimd::bitwise_or(Four(1.0f) / divisor, sign);
         const Four away = xsimd::bitwise_or(error, sign);
         const Four near = -(origin + away) * reciprocal, far = -(origin - away) * reciprocal;
-        alignas(16) std::array<float, 4> scales, nears, fars;
-        reciprocal.store_aligned(scales.data());
-        near.store_aligned(nears.data());
-        far.store_aligned(fars.data());
+        reciprocal.store_aligned(scale_.data());
+        near.store_aligned(near_offset_.data());
+        far.store_aligned(far_offset_.data());
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t high = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
             near_plane_[axis] = kPlane * (axis + 3 * high);
             far_plane_[axis] = kPlane * (axis + 3 - 3 * high);
-            scale_[axis] = Batch(scales[axis]);
-            near_offset_[axis] = Batch(nears[axis]);
-            far_offset_[axis] = Batch(fars[axis]);
         }
     }
 
@@ -63,9 +60,9 @@ public:
         unsigned children;
     };
     Entered enter(const BvhNode& node, Batch t_min, Batch t_max) const {
-        const auto slab = [&](std::size_t plane, Batch scale, Batch offset) {
+        const auto slab = [&](std::size_t plane, float scale, float offset) {
             const auto* values = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
-            return fused(Batch::load_aligned(values), scale, offset);
+            return fused(Batch::load_aligned(values), Batch(scale), Batch(offset));
         };
         // A NaN (of numbers out of range) comes first in min and max, which then return the second: that slab does not
         // count.
@@ -89,7 +86,7 @@ private:
 
     static constexpr std::size_t kPlane = sizeof(BvhNode::Lanes);
     std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
-    std::array<Batch, 3> scale_, near_offset_, far_offset_;
+    alignas(16) std::array<float, 4> scale_, near_offset_, far_offset_; // x, y, z and one too many
 };
 
 } // namespace duet::raytrace

@@ -3,7 +3,7 @@
 
 #include "common/image/rgb.h"
 #include "common/vec/simd.h"
-#include "raytrace/integrator/matt_vertices.h"
+#include "raytrace/integrator/plain_vertices.h"
 
 #include <array>
 #include <span>
@@ -12,7 +12,7 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
-constexpr std::size_t kLanes = kMattLanes;
+constexpr std::size_t kLanes = kPathLanes;
 using Floats = FloatBatch<kLanes>;
 using Doubles = DoubleBatch;
 using Vec = Vec3T<Floats>;
@@ -47,7 +47,7 @@ struct Columns {
 inline Vec rounded(const Vecd& v) { return Columns(v).floats(); }
 
 // Lanes that no path has are filled with the first one's numbers.
-template <typename Set> void for_lanes(std::span<const MattPath> paths, const Set& set) {
+template <typename Set> void for_lanes(std::span<const PlainPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
 }
 

@@ -1,4 +1,4 @@
-#include "raytrace/integrator/matt_points.h"
+#include "raytrace/integrator/plain_points.h"
 
 #include "common/geometry/smooth_lift.h"
 
@@ -33,10 +33,10 @@ Vec SmoothPoints::origin(const Vec& w) const {
     return offset_origin(select(lifted, p + lift, p), p_error, select(below, -ng, ng));
 }
 
-FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths) {
+FlatPoints flat_points(const Scene& scene, std::span<const PlainPath> paths) {
     Columns corner, base, a, b; // edges are a − base and b − base
     Column u, v, quad;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
         const Hit& hit = *path.hit;
         const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
         u.of[i] = hit.u, v.of[i] = hit.v;
@@ -60,10 +60,10 @@ FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths) {
     return points(p, magnitude, normalize(cross(da, db)));
 }
 
-FlatPoints round_points(const Scene& scene, std::span<const MattPath> paths) {
+FlatPoints round_points(const Scene& scene, std::span<const PlainPath> paths) {
     Columns origin, direction, center;
     Column radius, t;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
         const Sphere& sphere = std::get<Sphere>(scene.shapes[scene.objects[path.hit->object].shape]);
         origin.set(i, path.ray->origin);
         direction.set(i, path.ray->direction);
@@ -75,11 +75,11 @@ FlatPoints round_points(const Scene& scene, std::span<const MattPath> paths) {
     return points(p, abs(p), n);
 }
 
-SmoothPoints smooth_points(const Scene& scene, std::span<const MattPath> paths) {
+SmoothPoints smooth_points(const Scene& scene, std::span<const PlainPath> paths) {
     Columns direction;
     std::array<Columns, 3> corners, normals;
     Column u_lanes, v_lanes;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
         const Hit& hit = *path.hit;
         const Mesh& mesh = std::get<Mesh>(scene.shapes[scene.objects[hit.object].shape]);
         const auto& index = mesh.triangles[hit.primitive];
