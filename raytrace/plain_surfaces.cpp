@@ -37,6 +37,7 @@ PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional
     for (const Object& object : scene.objects) {
         const auto* mesh = std::get_if<Mesh>(&scene.shapes[object.shape]);
         PlainObject& plain = objects_.emplace_back();
+        plain.shape = &scene.shapes[object.shape];
         plain.several = mesh != nullptr && !mesh->material_slots.empty();
         if (!plain.several) plain.material = materials_[object.materials[0]];
         if (plain.several || plain.material.bsdf != nullptr) plain.form = form_of(scene, object);

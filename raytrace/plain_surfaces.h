@@ -47,6 +47,7 @@ public:
         return material.bsdf == nullptr ? std::nullopt : std::optional(Kind{*object.form, material.scattering});
     }
     /// Of such a one.
+    const Shape& shape(const Hit& hit) const { return *objects_[hit.object].shape; }
     const Bsdf& bsdf(const Hit& hit) const { return *material_at(hit, objects_[hit.object]).bsdf; }
 
 private:
@@ -56,6 +57,7 @@ private:
     };
     struct PlainObject {
         std::optional<Form> form;
+        const Shape* shape = nullptr;
         bool several = false; ///< materials
         PlainMaterial material; ///< the only one
     };

@@ -5,6 +5,7 @@
 // boxes in any order. The hits are those of `find_closest`, to the bit.
 #pragma once
 
+#include "common/vec/widen.h"
 #include "raytrace/acceleration/bvh_traverse.h"
 
 #include <span>
@@ -59,42 +60,107 @@ private:
     std::size_t size_ = 0;
 };
 
+/// The slabs of rays side by side; as SlabRay.
+template <std::size_t kMost> class SlabRays {
+public:
+    using Batch = SlabRay::Batch;
+    static constexpr std::size_t kLanes = BvhNode::kWidth; // of rays, too
+
+    /// Sets those from `first` on, a lane each; returns a bit for each that is `traceable`.
+    unsigned set(std::size_t first, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
+        std::array<Batch, 3> extent;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            extent[axis] = Slabs<Batch>::extent(bounds.low[axis], bounds.high[axis], origin[axis]);
+        const Batch greatest_extent = xsimd::max(xsimd::max(extent[0], extent[1]), extent[2]);
+        const Batch greatest_size = max_component(abs(direction)), most(kLargestNumber);
+        auto in_range = greatest_size >= Batch(1 / kLargestNumber);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Slabs<Batch> slabs(origin[axis], direction[axis], extent[axis], greatest_extent, greatest_size);
+            in_range = in_range & (xsimd::abs(origin[axis]) <= most) & (xsimd::abs(direction[axis]) <= most);
+            slabs.scale.store_aligned(&scale_[axis][first]);
+            slabs.near.store_aligned(&near_[axis][first]);
+            slabs.far.store_aligned(&far_[axis][first]);
+            direction[axis].store_aligned(&sign_[axis][first]);
+        }
+        return lane_bits(in_range);
+    }
+
+    /// As SlabRay's, of one of the rays.
+    unsigned enter(std::size_t ray, const BvhNode& node, Batch t_min, Batch t_max) const {
+        Batch near = t_min, far = t_max;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t high = std::bit_cast<std::uint32_t>(sign_[axis][ray]) >> 31;
+            const auto slab = [&](std::size_t plane, float offset) {
+                return fused(Batch::load_aligned(node.planes[plane].data()), Batch(scale_[axis][ray]), Batch(offset));
+            };
+            near = xsimd::max(slab(axis + 3 * high, near_[axis][ray]), near);
+            far = xsimd::min(slab(axis + 3 - 3 * high, far_[axis][ray]), far);
+        }
+        return lane_bits(near <= far);
+    }
+
+private:
+    using Numbers = std::array<std::array<float, kMost>, 3>;
+    alignas(sizeof(Batch)) Numbers scale_, near_, far_, sign_; // without values, as the pairs
+};
+
 /// Up to kSize rays on their way through a streamable hierarchy.
 class RayStream {
 public:
     static constexpr std::size_t kSize = 64;
 
-    /// hits: each ray's end, as `find_closest` has `best`; in the end what it has found, if anything.
-    RayStream(const Bvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) : bvh_(bvh), rays_(rays), hits_(hits) {}
+    /// Of the rays with these indices; finds what `find_closest` finds for each, and leaves it at the same index.
+    RayStream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits)
+        : bvh_(bvh), rays_(rays), which_(which), hits_(hits) {}
 
     void run() {
-        for (std::uint32_t i = 0; i < rays_.size(); ++i)
-            if (traceable(rays_[i])) start(i);
+        for (std::size_t i = 0; i < which_.size(); i += kLanes) start(i);
         for (std::size_t i = 0; i < nodes_.size(); ++i) // there are more with each
             enter(nodes_.ray(i), BvhRef::from_bits(nodes_.other(i)));
         test_leaves();
         test_spheres();
+        for (std::size_t i = 0; i < which_.size(); ++i) hits_[which_[i]] = best_[i].valid() ? best_[i] : Hit();
     }
 
 private:
-    static constexpr std::size_t kLanes = kDoubleLanes; // of exact tests
-    using Batch = FloatBatch<kBlockSize>;
-    using Some = FloatBatch<kLanes>;
+    static constexpr std::size_t kLanes = kBlockSize;
+    static constexpr std::size_t kDoubles = kDoubleLanes; // of exact tests
+    using Batch = FloatBatch<kLanes>;
     struct NoInstance {
         bool operator()(const BvhInstance&, Hit&) const { return false; }
     };
 
-    void start(std::uint32_t i) {
-        const Ray& ray = rays_[i];
-        slabs_[i] = SlabRay(ray, bvh_.bounds);
-        scales_[i] = filter_scale(ray.direction);
-        nodes_.add(i, BvhRef::node(0).bits());
+    const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
+    // So many rays from `first` on, or from those others(i) of a list of pairs: their numbers, column by column.
+    template <std::size_t N, typename At> static std::array<FloatBatch<N>, 8> columns(const At& at) {
+        const auto four = [&](std::size_t first) {
+            return load_columns<N>([&](std::size_t i) { return reinterpret_cast<const float*>(&at(i)) + first; });
+        };
+        const auto [ox, oy, oz, dx] = four(0);
+        const auto [dy, dz, t_min, t_max] = four(4);
+        return {ox, oy, oz, dx, dy, dz, t_min, t_max};
+    }
+
+    void start(std::size_t first) {
+        const std::size_t size = std::min(which_.size() - first, kLanes);
+        const auto [ox, oy, oz, dx, dy, dz, t_min, t_max] =
+            columns<kLanes>([&](std::size_t i) -> const Ray& { return ray(first + (i < size ? i : 0)); });
+        const Vec3T<Batch> direction(dx, dy, dz);
+        unsigned traceable = slabs_.set(first, {ox, oy, oz}, direction, bvh_.bounds) & ((1u << size) - 1);
+        filter_scale(direction).store_aligned(&scales_[first]);
+        for (std::size_t i = first; i < first + size; ++i) {
+            best_[i] = {};
+            best_[i].t = min(ray(i).t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+        }
+        for (; traceable != 0; traceable &= traceable - 1)
+            nodes_.add(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(traceable)),
+                       BvhRef::node(0).bits());
     }
 
     void enter(std::uint32_t i, BvhRef ref) {
         if (!leaves_.has_room()) test_leaves();
         const BvhNode& node = node_at(bvh_, ref);
-        const unsigned entered = slabs_[i].enter(node, Batch(rays_[i].t_min), Batch(hits_[i].t)).children;
+        const unsigned entered = slabs_.enter(i, node, Batch(ray(i).t_min), Batch(best_[i].t));
         static_assert(sizeof(BvhRef) == sizeof(std::uint32_t));
         const auto* children = reinterpret_cast<const std::uint32_t*>(node.children.data());
         const unsigned leaves = leaf_children(children);
@@ -118,7 +184,7 @@ private:
             if (leaf.kind() == PrimitiveKind::kSphere)
                 filter(i, leaf.index());
             else
-                LeafTest<false, NoInstance>(bvh_, rays_[i], kNoObject, NoInstance())(leaf, hits_[i]);
+                LeafTest<false, NoInstance>(bvh_, ray(i), kNoObject, NoInstance())(leaf, best_[i]);
         }
         leaves_.clear();
     }
@@ -127,48 +193,40 @@ private:
     void filter(std::uint32_t i, std::uint32_t index) {
         if (!spheres_.has_room()) test_spheres();
         const SphereBlock& block = bvh_.spheres[index];
-        const Ray& ray = rays_[i];
+        const Ray& line = ray(i);
         const auto along = [&](std::size_t axis) {
-            return Batch::load_aligned(block.center[axis].data()) - Batch(ray.origin[axis]);
+            return Batch::load_aligned(block.center[axis].data()) - Batch(line.origin[axis]);
         };
-        const Vec3T<Batch> direction(Batch(ray.direction.x), Batch(ray.direction.y), Batch(ray.direction.z));
-        const unsigned met = may_meet<Batch>({along(0), along(1), along(2)}, direction, Batch(scales_[i]),
-                                      Batch::load_aligned(block.radius.data()));
-        alignas(32) static constexpr std::array<std::uint32_t, 8> kLanesOfBlock{0, 1, 2, 3, 4, 5, 6, 7};
-        // as places of the centres' x in the list of blocks
-        constexpr std::uint32_t kFloats = sizeof(SphereBlock) / sizeof(float);
-        using Whole = xsimd::make_sized_batch_t<std::uint32_t, kBlockSize>;
+        const unsigned met = may_meet<Batch>({along(0), along(1), along(2)}, spread<Batch>(line.direction), Batch(scales_[i]),
+                                             Batch::load_aligned(block.radius.data()));
+        using Whole = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
+        alignas(32) static constexpr std::array<std::uint32_t, 8> kEach{0, 1, 2, 3, 4, 5, 6, 7};
         alignas(32) BlockLanes<std::uint32_t> places;
-        (Whole::load_aligned(kLanesOfBlock.data()) + Whole(index * kFloats)).store_aligned(places.data());
+        (Whole::load_aligned(kEach.data()) + Whole(index * kBlockFloats)).store_aligned(places.data());
         spheres_.add(i, places.data(), met);
     }
 
     // In double, as SphereBlockTest.
     void test_spheres() {
         if (spheres_.size() == 0) return;
-        spheres_.pad(kLanes);
-        for (std::size_t k = 0; k < spheres_.size(); k += kLanes) {
-            const auto line = [&](std::size_t first) {
-                return load_columns<kLanes>([&](std::size_t i) {
-                    return reinterpret_cast<const float*>(&rays_[spheres_.ray(k + i)]) + first;
-                });
-            };
-            const auto [ox, oy, oz, dx] = line(0);
-            const auto [dy, dz, t_min, t_max] = line(4);
+        spheres_.pad(kDoubles);
+        for (std::size_t k = 0; k < spheres_.size(); k += kDoubles) {
+            const auto [ox, oy, oz, dx, dy, dz, t_min, t_max] =
+                columns<kDoubles>([&](std::size_t i) -> const Ray& { return ray(spheres_.ray(k + i)); });
             const auto sphere = [&](std::size_t column) {
-                return doubles(gathered(reinterpret_cast<const float*>(bvh_.spheres.data()) + column * kBlockSize,
+                return to_doubles(gathered(reinterpret_cast<const float*>(bvh_.spheres.data()) + column * kBlockSize,
                                         spheres_.others() + k));
             };
             const SphereTest<DoubleBatch> test(
-                {sphere(0) - doubles(ox), sphere(1) - doubles(oy), sphere(2) - doubles(oz)},
-                SphereLine<DoubleBatch>({doubles(dx), doubles(dy), doubles(dz)}), sphere(3));
+                {sphere(0) - to_doubles(ox), sphere(1) - to_doubles(oy), sphere(2) - to_doubles(oz)},
+                SphereLine<DoubleBatch>({to_doubles(dx), to_doubles(dy), to_doubles(dz)}), sphere(3));
             unsigned met = lane_bits(test.meets_ahead());
             if (met == 0) continue;
             const auto roots = test.roots();
-            alignas(64) std::array<float, kLanes> near, far;
+            alignas(64) std::array<float, kDoubles> near, far;
             store_floats(roots.near, near.data());
             store_floats(roots.far, far.data());
-            met &= (1u << std::min(spheres_.size() - k, kLanes)) - 1;
+            met &= (1u << std::min(spheres_.size() - k, kDoubles)) - 1;
             for (; met != 0; met &= met - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(met));
                 consider(spheres_.ray(k + lane), spheres_.other(k + lane), near[lane], far[lane]);
@@ -177,35 +235,33 @@ private:
         spheres_.clear();
     }
     void consider(std::uint32_t i, std::uint32_t place, float near, float far) {
-        constexpr std::uint32_t kFloats = sizeof(SphereBlock) / sizeof(float);
-        const Ray& ray = rays_[i];
-        const float t = near > ray.t_min ? near : far;
-        if (!(t > ray.t_min && t <= hits_[i].t)) return;
-        const Hit hit{bvh_.spheres[place / kFloats].object[place % kFloats], 0, 0, 0, t};
-        if (precedes(hit, hits_[i])) hits_[i] = hit;
+        const float t_min = ray(i).t_min, t = near > t_min ? near : far;
+        if (!(t > t_min && t <= best_[i].t)) return;
+        const Hit hit{bvh_.spheres[place / kBlockFloats].object[place % kBlockFloats], 0, 0, 0, t};
+        if (precedes(hit, best_[i])) best_[i] = hit;
     }
+
+    using Some = NarrowBatch;
     static Some gathered(const float* from, const std::uint32_t* places) {
 #if XSIMD_WITH_AVX512F
         return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), 4);
-#endif
-        alignas(sizeof(Some)) std::array<float, kLanes> lanes;
-        for (std::size_t i = 0; i < kLanes; ++i) lanes[i] = from[places[i]];
+#else
+        alignas(sizeof(Some)) std::array<float, kDoubles> lanes;
+        for (std::size_t i = 0; i < kDoubles; ++i) lanes[i] = from[places[i]];
         return Some::load_aligned(lanes.data());
-    }
-    static DoubleBatch doubles(Some floats) {
-#if XSIMD_WITH_AVX512F
-        return _mm512_cvtps_pd(floats);
 #endif
-        alignas(sizeof(Some)) std::array<float, kLanes> lanes;
-        floats.store_aligned(lanes.data());
-        return load_doubles(lanes.data());
     }
+
+    // A sphere is known by the place of its centre's x among the floats of all blocks.
+    static constexpr std::uint32_t kBlockFloats = sizeof(SphereBlock) / sizeof(float);
 
     const Bvh& bvh_;
     const std::span<const Ray> rays_;
+    const std::span<const std::uint32_t> which_;
     const std::span<Hit> hits_;
-    std::array<SlabRay, kSize> slabs_;
-    std::array<float, kSize> scales_;
+    SlabRays<kSize> slabs_;
+    alignas(64) std::array<float, kSize> scales_; // filter_scale
+    std::array<Hit, kSize> best_;
     StreamPairs<kSize * kMostStreamedNodes> nodes_; // no ray comes to one twice
     StreamPairs<512> leaves_, spheres_;             // those not tested yet
 };

@@ -297,15 +297,8 @@ private:
 
     void find_hits() {
         const Accelerator& accelerator = plan_.prepared.accelerator;
-        if (!accelerator.gathers_scattered()) {
-            for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
-            return;
-        }
-        some_rays_.clear();
-        for (const std::uint32_t i : going_) some_rays_.push_back(rays_[i]);
-        some_hits_.resize(going_.size());
-        accelerator.closest_of_scattered(some_rays_, some_hits_);
-        for (std::size_t k = 0; k < going_.size(); ++k) hits_[going_[k]] = some_hits_[k];
+        if (accelerator.gathers_scattered()) return accelerator.closest_of_scattered(rays_, going_, hits_);
+        for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
     }
 
     void advance(int depth) {
@@ -346,15 +339,16 @@ private:
         if (plan_.russian_roulette && depth > 0) draw(6, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
     }
 
+    PlainPath plain_path(std::uint32_t i) {
+        const Hit& hit = hits_[i];
+        return {i, &rays_[i], &hit, &plan_.plain.shape(hit), &plan_.plain.bsdf(hit), &numbers_[i], &paths_[i].state()};
+    }
     void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
         draw_plain_numbers(kind.scattering, which, depth);
         for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kPathLanes))) {
             std::array<PlainPath, kPathLanes> some;
             const std::size_t size = std::min(which.size(), kPathLanes);
-            for (std::size_t k = 0; k < size; ++k) {
-                const std::uint32_t i = which[k];
-                some[k] = {i, &rays_[i], &hits_[i], &plan_.plain.bsdf(hits_[i]), &numbers_[i], &paths_[i].state()};
-            }
+            for (std::size_t k = 0; k < size; ++k) some[k] = plain_path(which[k]);
             scatter_plain(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
             for (std::size_t k = 0; k < size; ++k)
                 if (some[k].goes_on) going_.push_back(which[k]);
@@ -373,8 +367,6 @@ private:
     std::vector<VertexNumbers> numbers_;
     std::vector<Vec2> pairs_;
     ShadowRays shadows_;
-    std::vector<Ray> some_rays_;
-    std::vector<Hit> some_hits_;
 };
 
 template <typename Sink>

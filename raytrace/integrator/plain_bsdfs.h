@@ -35,18 +35,11 @@ inline Mask is_black_lane(const Color& c) {
 }
 inline Floats negated_where(const Mask& condition, Floats x) { return select(condition, -x, x); }
 
-/// Brings a colour of each path's Bsdf together, or a number.
-template <typename BsdfType, typename Get>
-Color gathered_colors(std::span<const PlainPath> paths, const Get& get) {
+/// Brings a colour of each path's Bsdf together.
+template <typename BsdfType> Color colors(std::span<const PlainPath> paths, Rgb BsdfType::* color) {
     Columns columns;
-    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { columns.set(i, get(std::get<BsdfType>(*path.bsdf))); });
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { columns.set(i, std::get<BsdfType>(*path.bsdf).*color); });
     return columns.colors();
-}
-template <typename BsdfType, typename Get>
-Floats gathered_floats(std::span<const PlainPath> paths, const Get& get) {
-    Column column;
-    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { column.of[i] = get(std::get<BsdfType>(*path.bsdf)); });
-    return column.floats();
 }
 
 class MattLanes {
@@ -54,7 +47,7 @@ public:
     static constexpr bool kLit = true, kThrough = false;
 
     explicit MattLanes(std::span<const PlainPath> paths)
-        : albedo_(gathered_colors<DiffuseBsdf>(paths, [](const DiffuseBsdf& b) { return b.albedo; })) {}
+        : albedo_(colors(paths, &DiffuseBsdf::albedo)) {}
 
     /// Where wo and wi are on one side, as the caller sees to.
     Color eval(const Vec&, const Vec&) const { return albedo_ * Floats(kInvPi); }
@@ -74,9 +67,8 @@ private:
 class MetalFresnel {
 public:
     explicit MetalFresnel(std::span<const PlainPath> paths)
-        : normal_(gathered_colors<MetalBsdf>(paths, [](const MetalBsdf& b) { return b.reflectance; })),
-          n_(gathered_colors<MetalBsdf>(paths, [](const MetalBsdf& b) { return b.n; })), named_(n_.r != Floats(0.0f)) {
-        if (any(named_)) k_ = gathered_colors<MetalBsdf>(paths, [](const MetalBsdf& b) { return b.k; });
+        : normal_(colors(paths, &MetalBsdf::reflectance)), n_(colors(paths, &MetalBsdf::n)), named_(n_.r != Floats(0.0f)) {
+        if (any(named_)) k_ = colors(paths, &MetalBsdf::k);
     }
 
     Color operator()(Floats cosine) const {
@@ -114,9 +106,12 @@ public:
     static constexpr bool kLit = true, kThrough = false;
 
     explicit MetalLanes(std::span<const PlainPath> paths)
-        : fresnel_(paths), alpha_(gathered_floats<MetalBsdf>(paths, [](const MetalBsdf& b) { return b.alpha; })),
-          multiple_(gathered_colors<MetalBsdf>(paths, [](const MetalBsdf& b) { return b.multiple; })),
-          single_(is_black_lane(multiple_)), any_multiple_(lane_bits(single_) != (1u << kLanes) - 1) {}
+        : fresnel_(paths), multiple_(colors(paths, &MetalBsdf::multiple)),
+          single_(is_black_lane(multiple_)), any_multiple_(lane_bits(single_) != (1u << kLanes) - 1) {
+        Column alphas;
+        for_lanes(paths, [&](std::size_t i, const PlainPath& path) { alphas.of[i] = std::get<MetalBsdf>(*path.bsdf).alpha; });
+        alpha_ = alphas.floats();
+    }
 
     Color eval(const Vec& wo, const Vec& wi) const {
         const Vec above = upwards(wo), to = upwards(wi);
@@ -160,10 +155,10 @@ private:
     }
 
     MetalFresnel fresnel_;
-    Floats alpha_;
     Color multiple_;
     Mask single_; // no light of further reflections
     bool any_multiple_;
+    Floats alpha_;
 };
 
 class GlassLanes {
@@ -171,8 +166,11 @@ public:
     static constexpr bool kLit = false, kThrough = true;
 
     explicit GlassLanes(std::span<const PlainPath> paths)
-        : eta_(gathered_floats<DielectricBsdf>(paths, [](const DielectricBsdf& b) { return b.eta; })),
-          tint_(gathered_colors<DielectricBsdf>(paths, [](const DielectricBsdf& b) { return b.tint; })) {}
+        : tint_(colors(paths, &DielectricBsdf::tint)) {
+        Column etas;
+        for_lanes(paths, [&](std::size_t i, const PlainPath& path) { etas.of[i] = std::get<DielectricBsdf>(*path.bsdf).eta; });
+        eta_ = etas.floats();
+    }
 
     LaneSample sample(const Vec& wo, const Numbers& u) const {
         const Floats zero(0.0f), one(1.0f), cos_o = abs(wo.z);

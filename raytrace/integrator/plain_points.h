@@ -32,9 +32,9 @@ struct SmoothPoints {
 };
 
 /// All of one kind of PlainSurfaces: on quads and meshes without normals, on meshes with them, on spheres.
-FlatPoints flat_points(const Scene& scene, std::span<const PlainPath> paths);
-SmoothPoints smooth_points(const Scene& scene, std::span<const PlainPath> paths);
-FlatPoints round_points(const Scene& scene, std::span<const PlainPath> paths);
+FlatPoints flat_points(std::span<const PlainPath> paths);
+SmoothPoints smooth_points(std::span<const PlainPath> paths);
+FlatPoints round_points(std::span<const PlainPath> paths);
 
 #endif
 

@@ -21,15 +21,13 @@ template <typename Points, typename Scattering> class Block {
 public:
     Block(const RenderPlan& plan, std::span<PlainPath> paths, const Points& points)
         : plan_(plan), paths_(paths), points_(points), bsdf_(paths), frame_(frame_from_normal(points.ns())) {
-        Columns direction, throughput;
-        for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
-            direction.set(i, path.ray->direction);
-            throughput.set(i, path.state->throughput);
-        });
-        const Vec w = -direction.floats();
+        const auto [dx, dy, dz, t_min] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
+        const auto [r, g, b, refraction] = fours(paths, [](const PlainPath& path) -> const float& { return path.state->throughput.r; });
+        const Vec w = -Vec(dx, dy, dz);
         const Floats side = select(dot(w, points.ng) < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
         wo_ = lifted_above_horizon(frame_.to_local(w), side);
-        throughput_ = throughput.colors();
+        throughput_ = {r, g, b};
+        refraction_ = refraction;
     }
 
     // As Path::add_light_sample.
@@ -65,17 +63,13 @@ public:
 
     // As Path::scatter and survives.
     void scatter(int depth, RayCounts& counts) {
-        Column ux, uy, lobe, roulette, before;
-        for_lanes(paths_, [&](std::size_t i, const PlainPath& path) {
-            ux.of[i] = path.numbers->bsdf.x, uy.of[i] = path.numbers->bsdf.y;
-            lobe.of[i] = path.numbers->lobe, roulette.of[i] = path.numbers->roulette;
-            before.of[i] = path.state->refraction;
-        });
+        const auto [ux, uy, lx, ly] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->bsdf.x; });
+        const auto [y, choice, lobe, roulette] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->light.y; });
         const Floats zero(0.0f), one(1.0f);
-        const LaneSample s = bsdf_.sample(wo_, {{ux.floats(), uy.floats()}, lobe.floats()});
+        const LaneSample s = bsdf_.sample(wo_, {{ux, uy}, lobe});
         const Vec wi = normalize(frame_.to_world(s.wi));
         Vec horizon = points_.horizon();
-        Floats refraction = before.floats();
+        Floats refraction = refraction_;
         if constexpr (Scattering::kThrough) {
             horizon = select(wo_.z * s.wi.z > zero, horizon, points_.ng);
             refraction = select(s.transmitted, refraction * s.refraction, refraction);
@@ -84,7 +78,7 @@ public:
         Color throughput = throughput_ * s.weight;
         if (plan_.russian_roulette && depth > 0) {
             const Floats probability = survival(throughput, refraction, Floats(plan_.worth));
-            const Mask stays = ~(probability < one), survives = stays | (roulette.floats() < probability);
+            const Mask stays = ~(probability < one), survives = stays | (roulette < probability);
             const unsigned mine = (1u << paths_.size()) - 1;
             counts.ended += std::popcount(lane_bits(on) & ~lane_bits(survives) & mine);
             on = on & survives;
@@ -182,6 +176,7 @@ private:
     const FrameT<Floats> frame_;
     Vec wo_;
     Color throughput_;
+    Floats refraction_;
 };
 
 template <typename Scattering, typename Points>
@@ -211,9 +206,9 @@ void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<P
         scatter_by(kind.scattering, points, plan, paths, depth, shadows, counts);
     };
     switch (kind.form) {
-    case PlainSurfaces::Form::kFlat: return scatter(flat_points(plan.scene, paths));
-    case PlainSurfaces::Form::kSmooth: return scatter(smooth_points(plan.scene, paths));
-    case PlainSurfaces::Form::kRound: return scatter(round_points(plan.scene, paths));
+    case PlainSurfaces::Form::kFlat: return scatter(flat_points(paths));
+    case PlainSurfaces::Form::kSmooth: return scatter(smooth_points(paths));
+    case PlainSurfaces::Form::kRound: return scatter(round_points(paths));
     }
 }
 

@@ -18,7 +18,8 @@ struct PlainPath {
     std::uint32_t index; ///< by which its shadow rays are known
     Ray* ray;       ///< that has arrived; if the path goes on, the one that goes on
     const Hit* hit; ///< that it has found
-    const Bsdf* bsdf; ///< there
+    const Shape* shape; ///< there
+    const Bsdf* bsdf;   ///< of it
     const VertexNumbers* numbers;
     PathState* state;
     bool goes_on = false;

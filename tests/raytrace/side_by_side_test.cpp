@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <numeric>
 #include <vector>
 
 using namespace duet;
@@ -103,6 +104,12 @@ Scene room(Lamp lamp, Things things, const Place& place, Finish finish = Finish:
     builder.scene.camera.look_at = Vec3d(place(0, 1, 0));
     builder.scene.camera.fov_degrees = 45;
     return builder.finish();
+}
+
+std::vector<std::uint32_t> all_of(const std::vector<Ray>& rays) {
+    std::vector<std::uint32_t> which(rays.size());
+    std::iota(which.begin(), which.end(), 0u);
+    return which;
 }
 
 // How many of the paths of a small picture differ in a bit, of those that bring light at all.
@@ -240,7 +247,7 @@ TEST_SUITE("unit") {
             rays.push_back(ray);
         }
         std::vector<Hit> hits(rays.size());
-        accelerator.closest_of_scattered(rays, hits);
+        accelerator.closest_of_scattered(rays, all_of(rays), hits);
         int found = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             CAPTURE(i);
@@ -274,7 +281,7 @@ TEST_SUITE("unit") {
                 if (i % 11 == 0) rays.push_back(ray);
             }
             std::vector<Hit> hits(rays.size());
-            accelerator.closest_of_scattered(rays, hits);
+            accelerator.closest_of_scattered(rays, all_of(rays), hits);
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 REQUIRE(hits[i] == accelerator.closest(rays[i]));
                 found += hits[i].valid();
