@@ -32,7 +32,9 @@ PlainSurfaces::PlainMaterial PlainSurfaces::plain(const Scene& scene, std::uint3
     return scattering ? PlainMaterial{&*bsdf, *scattering} : PlainMaterial{};
 }
 
-PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs) : scene_(&scene) {
+PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs)
+    : PlainSurfaces(scene.objects.size()) {
+    scene_ = &scene;
     for (std::uint32_t i = 0; i < bsdfs.size(); ++i) materials_.push_back(plain(scene, i, bsdfs[i]));
     for (const Object& object : scene.objects) {
         const auto* mesh = std::get_if<Mesh>(&scene.shapes[object.shape]);
@@ -41,7 +43,16 @@ PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional
         plain.several = mesh != nullptr && !mesh->material_slots.empty();
         if (!plain.several) plain.material = materials_[object.materials[0]];
         if (plain.several || plain.material.bsdf != nullptr) plain.form = form_of(scene, object);
+        if (!plain.form) continue;
+        found_[objects_.size() - 1] =
+            plain.several ? kAsMaterial : static_cast<std::uint8_t>(Kind{*plain.form, plain.material.scattering}.index());
     }
+}
+
+std::size_t PlainSurfaces::found_by_material(const Hit& hit) const {
+    const PlainObject& object = objects_[hit.object];
+    const PlainMaterial& material = material_at(hit, object);
+    return material.bsdf == nullptr ? kOther : Kind{*object.form, material.scattering}.index();
 }
 
 } // namespace duet::raytrace

@@ -4,6 +4,7 @@
 #include "common/geometry/hit.h"
 #include "common/scene/scene.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -34,17 +35,22 @@ public:
         static Kind of_index(std::size_t i) { return {static_cast<Form>(i / kScatterings), static_cast<Scattering>(i % kScatterings)}; }
     };
 
-    PlainSurfaces() = default; ///< none is
+    /// None is, of so many objects.
+    explicit PlainSurfaces(std::size_t objects) : found_(objects + 1, kOther) { found_.back() = kNothing; }
     /// Those of a scene. bsdfs: by material, where it is constant; they must stay.
     PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs);
 
+    /// What a ray has found, as a number: a kind's index, or, of other surfaces, kOther, or kNothing.
+    static constexpr std::size_t kOther = Kind::kCount, kNothing = kOther + 1, kFound = kNothing + 1;
+    std::size_t found(const Hit& hit) const {
+        // Mostly without a branch: what random rays find cannot be foreseen.
+        const std::size_t known = found_[std::min<std::size_t>(hit.object, found_.size() - 1)];
+        return known == kAsMaterial ? found_by_material(hit) : known;
+    }
     /// What a valid hit has found, if it is one.
     std::optional<Kind> kind(const Hit& hit) const {
-        if (objects_.empty()) return {};
-        const PlainObject& object = objects_[hit.object];
-        if (!object.form) return {};
-        const PlainMaterial& material = material_at(hit, object);
-        return material.bsdf == nullptr ? std::nullopt : std::optional(Kind{*object.form, material.scattering});
+        const std::size_t i = found(hit);
+        return i < Kind::kCount ? std::optional(Kind::of_index(i)) : std::nullopt;
     }
     /// Of such a one.
     const Shape& shape(const Hit& hit) const { return *objects_[hit.object].shape; }
@@ -68,7 +74,12 @@ private:
         return object.several ? materials_[material_index(*scene_, hit.object, hit.primitive)] : object.material;
     }
 
+    std::size_t found_by_material(const Hit& hit) const;
+
+    static constexpr std::uint8_t kAsMaterial = 255;
+
     const Scene* scene_ = nullptr;
+    std::vector<std::uint8_t> found_;  ///< by object, and last of none
     std::vector<PlainObject> objects_; ///< empty: none is
     std::vector<PlainMaterial> materials_;
 };

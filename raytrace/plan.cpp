@@ -36,7 +36,7 @@ int depth(const Settings& settings) {
 } // namespace
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth)
-    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), plain(scene.objects.size()), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 1) {
     const Skips& skips = settings.skips;
     const CameraModel camera(view);

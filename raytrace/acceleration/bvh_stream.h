@@ -25,8 +25,8 @@ public:
     static constexpr std::size_t kLanes = kSimdLanes;
 
     std::size_t size() const { return size_; }
-    /// Whether kLanes more fit.
-    bool has_room() const { return size_ + kLanes <= kMost; }
+    /// Whether so many times kLanes more fit.
+    bool has_room(std::size_t times) const { return size_ + times * kLanes <= kMost; }
     void clear() { size_ = 0; }
     std::uint32_t ray(std::size_t i) const { return rays_[i]; }
     std::uint32_t other(std::size_t i) const { return others_[i]; }
@@ -37,18 +37,34 @@ public:
         rays_[size_] = ray;
         others_[size_++] = other;
     }
+    /// Adds many, and keeps count of them in a register.
+    class Writer {
+    public:
+        explicit Writer(StreamPairs& pairs) : pairs_(pairs), size_(pairs.size_) {}
+        ~Writer() { pairs_.size_ = size_; }
+        Writer(const Writer&) = delete;
+        Writer& operator=(const Writer&) = delete;
+
     /// The ray with those of kLanes others whose bits are set.
     void add(std::uint32_t ray, const std::uint32_t* others, unsigned which) {
 #if XSIMD_WITH_AVX512F
         const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(others));
         const auto some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), all);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&others_[size_]), some);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&rays_[size_]), _mm256_set1_epi32(static_cast<int>(ray)));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.others_[size_]), some);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.rays_[size_]), _mm256_set1_epi32(static_cast<int>(ray)));
         size_ += static_cast<std::size_t>(std::popcount(which));
 #else
-        for (; which != 0; which &= which - 1) add(ray, others[std::countr_zero(which)]);
+        for (; which != 0; which &= which - 1) {
+            pairs_.rays_[size_] = ray;
+            pairs_.others_[size_++] = others[std::countr_zero(which)];
+        }
 #endif
     }
+
+    private:
+        StreamPairs& pairs_;
+        std::size_t size_;
+    };
     /// Fills the lanes up to a multiple of `count`, with the last pair; the size stays.
     void pad(std::size_t count) {
         for (std::size_t i = size_; i % count != 0; ++i) rays_[i] = rays_[size_ - 1], others_[i] = others_[size_ - 1];
@@ -115,8 +131,7 @@ public:
 
     void run() {
         for (std::size_t i = 0; i < which_.size(); i += kLanes) start(i);
-        for (std::size_t i = 0; i < nodes_.size(); ++i) // there are more with each
-            enter(nodes_.ray(i), BvhRef::from_bits(nodes_.other(i)));
+        for (std::size_t i = 0; i < nodes_.size();) i = enter(i, std::min(i + kChunk, nodes_.size())); // there are more each time
         test_leaves();
         test_spheres();
         for (std::size_t i = 0; i < which_.size(); ++i) hits_[which_[i]] = best_[i].valid() ? best_[i] : Hit();
@@ -124,11 +139,15 @@ public:
 
 private:
     static constexpr std::size_t kLanes = kBlockSize;
+    static constexpr std::size_t kChunk = 16; // pairs looked at between looks at the room left
     static constexpr std::size_t kDoubles = kDoubleLanes; // of exact tests
     using Batch = FloatBatch<kLanes>;
     struct NoInstance {
         bool operator()(const BvhInstance&, Hit&) const { return false; }
     };
+
+    StreamPairs<kSize * kMostStreamedNodes> nodes_; // no ray comes to one twice
+    StreamPairs<512> leaves_, spheres_;             // those not tested yet
 
     const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
     // So many rays from `first` on, or from those others(i) of a list of pairs: their numbers, column by column.
@@ -141,7 +160,7 @@ private:
         return {ox, oy, oz, dx, dy, dz, t_min, t_max};
     }
 
-    void start(std::size_t first) {
+    [[gnu::flatten]] void start(std::size_t first) {
         const std::size_t size = std::min(which_.size() - first, kLanes);
         const auto [ox, oy, oz, dx, dy, dz, t_min, t_max] =
             columns<kLanes>([&](std::size_t i) -> const Ray& { return ray(first + (i < size ? i : 0)); });
@@ -157,15 +176,21 @@ private:
                        BvhRef::node(0).bits());
     }
 
-    void enter(std::uint32_t i, BvhRef ref) {
-        if (!leaves_.has_room()) test_leaves();
-        const BvhNode& node = node_at(bvh_, ref);
-        const unsigned entered = slabs_.enter(i, node, Batch(ray(i).t_min), Batch(best_[i].t));
-        static_assert(sizeof(BvhRef) == sizeof(std::uint32_t));
-        const auto* children = reinterpret_cast<const std::uint32_t*>(node.children.data());
-        const unsigned leaves = leaf_children(children);
-        nodes_.add(i, children, entered & ~leaves);
-        leaves_.add(i, children, entered & leaves);
+    std::size_t enter(std::size_t k, std::size_t end) {
+        if (!leaves_.has_room(kChunk)) test_leaves();
+        typename decltype(nodes_)::Writer nodes(nodes_);
+        typename decltype(leaves_)::Writer leaves(leaves_);
+        for (; k < end; ++k) {
+            const std::uint32_t i = nodes_.ray(k);
+            const BvhNode& node = node_at(bvh_, BvhRef::from_bits(nodes_.other(k)));
+            const unsigned entered = slabs_.enter(i, node, Batch(ray(i).t_min), Batch(best_[i].t));
+            static_assert(sizeof(BvhRef) == sizeof(std::uint32_t));
+            const auto* children = reinterpret_cast<const std::uint32_t*>(node.children.data());
+            const unsigned are_leaves = leaf_children(children);
+            nodes.add(i, children, entered & ~are_leaves);
+            leaves.add(i, children, entered & are_leaves);
+        }
+        return end;
     }
     static unsigned leaf_children(const std::uint32_t* children) {
 #if XSIMD_WITH_AVX
@@ -178,20 +203,25 @@ private:
     }
 
     void test_leaves() {
-        for (std::size_t k = 0; k < leaves_.size(); ++k) {
+        for (std::size_t k = 0; k < leaves_.size();) k = test_leaves(k, std::min(k + kChunk, leaves_.size()));
+        leaves_.clear();
+    }
+    std::size_t test_leaves(std::size_t k, std::size_t end) {
+        if (!spheres_.has_room(kChunk)) test_spheres();
+        typename decltype(spheres_)::Writer spheres(spheres_);
+        for (; k < end; ++k) {
             const std::uint32_t i = leaves_.ray(k);
             const BvhRef leaf = BvhRef::from_bits(leaves_.other(k));
             if (leaf.kind() == PrimitiveKind::kSphere)
-                filter(i, leaf.index());
+                filter(i, leaf.index(), spheres);
             else
                 LeafTest<false, NoInstance>(bvh_, ray(i), kNoObject, NoInstance())(leaf, best_[i]);
         }
-        leaves_.clear();
+        return end;
     }
 
     // Spheres that the ray's line does not surely miss.
-    void filter(std::uint32_t i, std::uint32_t index) {
-        if (!spheres_.has_room()) test_spheres();
+    template <typename Writer> [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, Writer& spheres) const {
         const SphereBlock& block = bvh_.spheres[index];
         const Ray& line = ray(i);
         const auto along = [&](std::size_t axis) {
@@ -203,11 +233,11 @@ private:
         alignas(32) static constexpr std::array<std::uint32_t, 8> kEach{0, 1, 2, 3, 4, 5, 6, 7};
         alignas(32) BlockLanes<std::uint32_t> places;
         (Whole::load_aligned(kEach.data()) + Whole(index * kBlockFloats)).store_aligned(places.data());
-        spheres_.add(i, places.data(), met);
+        spheres.add(i, places.data(), met);
     }
 
     // In double, as SphereBlockTest.
-    void test_spheres() {
+    [[gnu::flatten]] void test_spheres() {
         if (spheres_.size() == 0) return;
         spheres_.pad(kDoubles);
         for (std::size_t k = 0; k < spheres_.size(); k += kDoubles) {
@@ -262,8 +292,6 @@ private:
     SlabRays<kSize> slabs_;
     alignas(64) std::array<float, kSize> scales_; // filter_scale
     std::array<Hit, kSize> best_;
-    StreamPairs<kSize * kMostStreamedNodes> nodes_; // no ray comes to one twice
-    StreamPairs<512> leaves_, spheres_;             // those not tested yet
 };
 
 } // namespace duet::raytrace

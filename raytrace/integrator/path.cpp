@@ -273,8 +273,10 @@ void draw_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> wh
 template <bool kInsides> class Paths {
 public:
     Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
-        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()), shadows_(plan) {
+        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), found_(rays.size()), sorted_(rays.size()),
+          numbers_(rays.size()), shadows_(plan) {
         paths_.reserve(rays.size());
+        going_.reserve(rays.size());
         for (std::uint32_t i = 0; i < rays.size(); ++i) {
             paths_.emplace_back(plan, samplers[i], counts);
             going_.push_back(i);
@@ -302,22 +304,32 @@ private:
     }
 
     void advance(int depth) {
-        for (auto& list : at_plain_) list.clear();
-        others_.clear(), ends_.clear();
-        for (const std::uint32_t i : going_) {
-            if (!hits_[i].valid() || depth == plan_.max_depth) {
-                ends_.push_back(i);
-                continue;
-            }
-            const std::optional<Kind> kind = plan_.plain.kind(hits_[i]);
-            (kind ? at_plain_[kind->index()] : others_).push_back(i);
+        sort_by_found(depth);
+        for (const std::uint32_t i : found(PlainSurfaces::kNothing)) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
+        const auto others = found(PlainSurfaces::kOther);
+        draw_numbers(samplers_, others, depth, numbers_);
+        for (const std::uint32_t i : others) advance_alone(i, depth);
+        for (std::size_t k = 0; k < Kind::kCount; ++k)
+            if (!found(k).empty()) scatter(Kind::of_index(k), found(k), depth);
+    }
+
+    // The paths by what they have found; those that end there like those that have found nothing.
+    void sort_by_found(int depth) {
+        const auto size = static_cast<std::uint32_t>(going_.size());
+        ends_.fill(0);
+        for (std::uint32_t k = 0; k < size; ++k) {
+            const std::size_t what = depth == plan_.max_depth ? PlainSurfaces::kNothing : plan_.plain.found(hits_[going_[k]]);
+            found_[k] = static_cast<std::uint8_t>(what);
+            ++ends_[what];
         }
+        std::uint32_t begin = 0;
+        for (std::uint32_t& end : ends_) begin += std::exchange(end, begin);
+        for (std::uint32_t k = 0; k < size; ++k) sorted_[ends_[found_[k]]++] = going_[k];
         going_.clear();
-        for (const std::uint32_t i : ends_) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
-        draw_numbers(samplers_, others_, depth, numbers_);
-        for (const std::uint32_t i : others_) advance_alone(i, depth);
-        for (std::size_t k = 0; k < at_plain_.size(); ++k)
-            if (!at_plain_[k].empty()) scatter(Kind::of_index(k), at_plain_[k], depth);
+    }
+    std::span<const std::uint32_t> found(std::size_t what) const {
+        const std::uint32_t begin = what == 0 ? 0 : ends_[what - 1];
+        return std::span(sorted_).subspan(begin, ends_[what] - begin);
     }
     void advance_alone(std::uint32_t i, int depth) {
         if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
@@ -362,8 +374,10 @@ private:
     const std::span<Sampler> samplers_;
     RayCounts& counts_;
     std::vector<Path<Sum, kInsides>> paths_;
-    std::vector<std::uint32_t> going_, others_, ends_; // all that go on; of these those that do not stand at plain surfaces
-    std::array<std::vector<std::uint32_t>, Kind::kCount> at_plain_; // and those that do, by kind
+    std::vector<std::uint32_t> going_;
+    std::vector<std::uint8_t> found_;                         // by each of these
+    std::vector<std::uint32_t> sorted_;                       // they, by that
+    std::array<std::uint32_t, PlainSurfaces::kFound> ends_{}; // in it
     std::vector<VertexNumbers> numbers_;
     std::vector<Vec2> pairs_;
     ShadowRays shadows_;

@@ -61,8 +61,8 @@ public:
         }
     }
 
-    // As Path::scatter and survives.
-    void scatter(int depth, RayCounts& counts) {
+    // As Path::scatter and survives. (Flat: batches are handed to functions by memory.)
+    [[gnu::flatten]] void scatter(int depth, RayCounts& counts) {
         const auto [ux, uy, lx, ly] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->bsdf.x; });
         const auto [y, choice, lobe, roulette] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->light.y; });
         const Floats zero(0.0f), one(1.0f);
