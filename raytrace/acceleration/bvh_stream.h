@@ -45,21 +45,21 @@ public:
         Writer(const Writer&) = delete;
         Writer& operator=(const Writer&) = delete;
 
-    /// The ray with those of kLanes others whose bits are set.
-    void add(std::uint32_t ray, const std::uint32_t* others, unsigned which) {
+        /// The ray with those of kLanes others whose bits are set.
+        void add(std::uint32_t ray, const std::uint32_t* others, unsigned which) {
 #if XSIMD_WITH_AVX512F
-        const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(others));
-        const auto some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), all);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.others_[size_]), some);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.rays_[size_]), _mm256_set1_epi32(static_cast<int>(ray)));
-        size_ += static_cast<std::size_t>(std::popcount(which));
+            const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(others));
+            const auto some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), all);
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.others_[size_]), some);
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.rays_[size_]), _mm256_set1_epi32(static_cast<int>(ray)));
+            size_ += static_cast<std::size_t>(std::popcount(which));
 #else
-        for (; which != 0; which &= which - 1) {
-            pairs_.rays_[size_] = ray;
-            pairs_.others_[size_++] = others[std::countr_zero(which)];
-        }
+            for (; which != 0; which &= which - 1) {
+                pairs_.rays_[size_] = ray;
+                pairs_.others_[size_++] = others[std::countr_zero(which)];
+            }
 #endif
-    }
+        }
 
     private:
         StreamPairs& pairs_;
@@ -150,7 +150,7 @@ private:
     StreamPairs<512> leaves_, spheres_;             // those not tested yet
 
     const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
-    // So many rays from `first` on, or from those others(i) of a list of pairs: their numbers, column by column.
+    // Of so many rays at(i) their numbers, column by column.
     template <std::size_t N, typename At> static std::array<FloatBatch<N>, 8> columns(const At& at) {
         const auto four = [&](std::size_t first) {
             return load_columns<N>([&](std::size_t i) { return reinterpret_cast<const float*>(&at(i)) + first; });
