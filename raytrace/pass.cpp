@@ -15,14 +15,21 @@ namespace {
 
 Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
 
-CameraModel::Point camera_point(const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
-    return {Vec2d(x + 0.5, y + 0.5) + plan.filter.sample(u.pixel), u.lens, u.time};
+// (Number by number, each to where it stays: a whole point read back right after its parts were written would wait for
+// them.)
+void set_point(CameraModel::Point& point, const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
+    const Vec2d offset = plan.filter.sample(u.pixel);
+    point.pixel.x = x + 0.5 + offset.x;
+    point.pixel.y = y + 0.5 + offset.y;
+    point.lens = u.lens;
+    point.time = u.time;
 }
 
 } // namespace
 
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler) {
-    const CameraModel::Point point = camera_point(plan, x, y, sampler.camera_numbers(camera_needs(plan)));
+    CameraModel::Point point;
+    set_point(point, plan, x, y, sampler.camera_numbers(camera_needs(plan)));
     return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
@@ -55,21 +62,23 @@ private:
 // Camera rays are traced some at a time: those of neighbouring pixels, and of one pixel's samples, run close together.
 class CameraBatch {
 public:
-    CameraBatch(const PassTarget& target, const CameraModel& camera)
-        : target_(target), camera_(camera),
-          samplers_(kSize, target.settings.make_sampler()) {
-        samples_.reserve(kSize);
+    /// most: samples to come.
+    CameraBatch(const PassTarget& target, const CameraModel& camera, std::size_t most)
+        : target_(target), camera_(camera), size_(std::min(most, kMost)),
+          samplers_(size_, target.settings.make_sampler()), points_(size_), rays_(size_), hits_(size_), radiances_(size_) {
+        samples_.reserve(size_);
     }
 
     void add(int x, int y, std::uint32_t index) {
         samplers_[samples_.size()].start(x, y, index);
         samples_.push_back({x, y, index});
-        if (samples_.size() == kSize) finish();
+        if (samples_.size() == size_) finish();
     }
 
     // Renders what has been added and not been rendered yet.
     void finish() {
         const std::size_t size = samples_.size();
+        if (size == 0) return;
         const auto rays = std::span(rays_).first(size);
         const auto hits = std::span(hits_).first(size);
         start_rays(rays);
@@ -92,7 +101,8 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    static constexpr std::size_t kSize = 512;
+    // So many that few are left alone at what seldom is found, and that all of them stay at hand.
+    static constexpr std::size_t kMost = 2048;
     struct Sample {
         int x, y;
         std::uint32_t index;
@@ -100,11 +110,17 @@ private:
 
     // As camera_ray has them.
     void start_rays(std::span<Ray> rays) {
-        std::array<CameraNumbers, kSize> numbers;
-        Sampler::camera_numbers(std::span(samplers_).first(rays.size()), camera_needs(target_.plan),
-                                std::span(numbers).first(rays.size()));
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            points_[i] = camera_point(target_.plan, samples_[i].x, samples_[i].y, numbers[i]);
+        constexpr std::size_t kSome = 256;
+        std::array<CameraNumbers, kSome> numbers;
+        for (std::size_t done = 0; done < rays.size(); done += kSome) {
+            const std::size_t size = std::min(rays.size() - done, kSome);
+            Sampler::camera_numbers(std::span(samplers_).subspan(done, size), camera_needs(target_.plan),
+                                    std::span(numbers).first(size));
+            for (std::size_t i = 0; i < size; ++i) {
+                const Sample& sample = samples_[done + i];
+                set_point(points_[done + i], target_.plan, sample.x, sample.y, numbers[i]);
+            }
+        }
         camera_.rays(std::span(points_).first(rays.size()), rays);
     }
 
@@ -112,12 +128,13 @@ private:
     const CameraModel& camera_;
     RayCounts counts_;
     std::optional<InvalidSample> first_invalid_;
+    const std::size_t size_; // at once
     std::vector<Sample> samples_; // so many of those below
     std::vector<Sampler> samplers_;
-    std::array<CameraModel::Point, kSize> points_;
-    std::array<Ray, kSize> rays_;
-    std::array<Hit, kSize> hits_;
-    std::array<Rgb, kSize> radiances_;
+    std::vector<CameraModel::Point> points_;
+    std::vector<Ray> rays_;
+    std::vector<Hit> hits_;
+    std::vector<Rgb> radiances_;
 };
 
 // The bits at even places of a number below 2¹⁶, together: a Morton code's x, or y after a shift.
@@ -133,15 +150,19 @@ struct TileTally {
 };
 
 TileTally render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile) {
-    CameraBatch batch(target, camera);
-    for (unsigned code = 0; code < kTile * kTile; ++code) { // along a Z-curve: pixels near in order are near
-        const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
-        if (x >= tile.x1 || y >= tile.y1) continue;
-        const Film& film = target.keeper.film();
-        const std::uint32_t end = film.pixels()(x, y).target;
-        for (std::uint32_t index = film.taken(x, y); index < end; ++index)
-            batch.add(x, y, target.settings.first_sample + index);
-    }
+    const Film& film = target.keeper.film();
+    const auto for_pixels = [&](const auto& visit) { // along a Z-curve: pixels near in order are near
+        for (unsigned code = 0; code < kTile * kTile; ++code) {
+            const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
+            if (x < tile.x1 && y < tile.y1) visit(x, y, film.taken(x, y), film.pixels()(x, y).target);
+        }
+    };
+    std::size_t all = 0;
+    for_pixels([&](int, int, std::uint32_t begin, std::uint32_t end) { all += end > begin ? end - begin : 0; });
+    CameraBatch batch(target, camera, all);
+    for_pixels([&](int x, int y, std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t index = begin; index < end; ++index) batch.add(x, y, target.settings.first_sample + index);
+    });
     batch.finish();
     return {batch.counts(), batch.first_invalid()};
 }

@@ -36,7 +36,7 @@ int depth(const Settings& settings) {
 } // namespace
 
 RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth)
-    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), max_depth(depth(settings)),
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), plain(scene.objects.size()), max_depth(depth(settings)),
       russian_roulette(settings.russian_roulette && max_depth > 1) {
     const Skips& skips = settings.skips;
     const CameraModel camera(view);
@@ -61,7 +61,8 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
     const bool any_use = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
     // Nothing that paths keep besides, or that tests ask for; and some lanes.
-    if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays) matt = MattSurfaces(scene, *bsdfs);
+    if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays && !mirror_light)
+        plain = PlainSurfaces(scene, *bsdfs);
     // The naive one stays as plain as it is.
     const bool learns = russian_roulette && settings.integrator != Integrator::kNaive;
     worth = known_worth ? *known_worth : learns ? learned_worth(prepared, view, settings) : kPlainWorth;

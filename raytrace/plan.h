@@ -3,7 +3,7 @@
 
 #include "common/camera/pixel_footprint.h"
 #include "common/film/rendering.h"
-#include "raytrace/matt_surfaces.h"
+#include "raytrace/plain_surfaces.h"
 #include "raytrace/prepare.h"
 #include "raytrace/render.h"
 #include "raytrace/roulette.h"
@@ -28,7 +28,7 @@ struct RenderPlan {
     bool mirror_light = false;      ///< light is sampled at mirrors and glass, too, which cannot reflect it
     bool insides = false;           ///< some dielectric absorbs, or knows of others that it may stand in
     bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
-    MattSurfaces matt;              ///< those at which paths may scatter side by side (matt_vertices.h)
+    PlainSurfaces plain;            ///< those at which paths may scatter side by side (plain_vertices.h)
     int max_depth = 0;
     bool russian_roulette = false;  ///< paths of more than one scattering may be ended
     float worth = kPlainWorth;      ///< of throughput, to roulette: see learned_worth

@@ -6,7 +6,7 @@
 // tangent: nothing divides by a cosine that may be tiny.
 #pragma once
 
-#include "common/sampling/warp.h"
+#include "common/sampling/warp_batch.h"
 #include "common/system/sabotage.h"
 #include "common/vec/vec.h"
 
@@ -20,7 +20,8 @@ template <typename T> T sin2_theta(Vec3T<T> w) { return w.x * w.x + w.y * w.y; }
 template <typename T> T ggx_d(Vec3T<T> h, T alpha) {
     // (cos² (α² − 1) + 1) = sin² + α² cos²; divided by α once more so that its square neither overflows nor vanishes.
     const T a = sin2_theta(h) / alpha + alpha * h.z * h.z;
-    return T(1.0 / kPiDouble) / (a * a);
+    using Number = std::conditional_t<std::is_same_v<T, double>, double, float>;
+    return T(static_cast<Number>(1.0 / kPiDouble)) / (a * a);
 }
 
 /// √(cos² + α² sin²) = cos·(1 + 2Λ), with Smith's Λ (Heitz 2014, eq. 72).
@@ -56,7 +57,7 @@ template <typename T> T ggx_reflection_pdf(Vec3T<T> wo, Vec3T<T> h, T alpha) {
 /// A microfacet normal with density G₁(wo) max(0, wo·h) D(h) / cos θₒ: stretched to the hemisphere, visible normals are
 /// the halfway vectors of a uniform spherical cap (Dupuy and Benyoub 2023, «Sampling Visible GGX Normals with
 /// Spherical Caps», listing 3). u in [0, 1)². The result has z > 0, also for grazing wo.
-template <Arithmetic T> Vec3T<T> ggx_sample_visible_normal(Vec3T<T> wo, T alpha, Vec2T<T> u) {
+template <typename T> Vec3T<T> ggx_sample_visible_normal(Vec3T<T> wo, T alpha, Vec2T<T> u) {
     const Vec3T<T> w = normalize(Vec3T<T>(alpha * wo.x, alpha * wo.y, wo.z));
     // A point c of the cap, c.z = 1 − gap in (−w.z, 1]. c.z + w.z is written out: as a sum it would cancel at grazing
     // wo.

@@ -7,18 +7,19 @@
 namespace duet {
 
 /// Both sides of an opaque surface are alike: the formulas see them from above.
-inline Vec3 upwards(Vec3 w) { return {w.x, w.y, abs(w.z)}; }
+template <typename T> Vec3T<T> upwards(Vec3T<T> w) { return {w.x, w.y, abs(w.z)}; }
 
 /// The microfacet that reflects wo into wi. Both lie strictly above the surface, so their sum has z > 0.
-struct Microfacet {
-    Vec3 normal;
+template <typename T> struct MicrofacetT {
+    Vec3T<T> normal;
     /// wo·h = wi·h = |wo + wi|/2: the dot products differ where rounding left wo and wi of unequal length.
-    float cosine;
+    T cosine;
 };
-inline Microfacet microfacet(Vec3 wo, Vec3 wi) {
-    const Vec3 sum = wo + wi;
-    const float size = length(sum);
-    return {sum / size, 0.5f * size};
+using Microfacet = MicrofacetT<float>;
+template <typename T> MicrofacetT<T> microfacet(Vec3T<T> wo, Vec3T<T> wi) {
+    const Vec3T<T> sum = wo + wi;
+    const T size = length(sum);
+    return {sum / size, T(0.5f) * size};
 }
 
 /// Where a microfacet h sends what comes from wo, refracted; cos_o = wo·h > 0, `relative` the index beyond over that on wo's

@@ -58,10 +58,4 @@ double PixelFilter::sample_axis(double u) const {
     return lerp(quantiles_[i], quantiles_[i + 1], place - static_cast<double>(i));
 }
 
-Vec2d PixelFilter::sample(Vec2 u) const {
-    const Vec2d exact(u);
-    if (quantiles_.empty()) return {exact.x - 0.5, exact.y - 0.5};
-    return {sample_axis(exact.x), sample_axis(exact.y)};
-}
-
 } // namespace duet

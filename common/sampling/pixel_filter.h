@@ -23,7 +23,11 @@ public:
     explicit PixelFilter(FilterKind kind);
 
     /// Where a sample lies, relative to the pixel's centre, in pixels; u in [0, 1)². (½, ½) is the centre.
-    Vec2d sample(Vec2 u) const;
+    Vec2d sample(Vec2 u) const {
+        const Vec2d exact(u);
+        if (quantiles_.empty()) return {exact.x - 0.5, exact.y - 0.5};
+        return {sample_axis(exact.x), sample_axis(exact.y)};
+    }
 
 private:
     double sample_axis(double u) const;

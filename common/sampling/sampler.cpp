@@ -160,8 +160,8 @@ Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, st
 
 void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
     sample_ = index;
-    replicate_ = index % replicates_;
-    index_ = index / replicates_;
+    replicate_ = index & (replicates_ - 1); // 1 or 2: index mod replicates_, without a division
+    index_ = index >> (replicates_ - 1);
     dimension_ = 0;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);

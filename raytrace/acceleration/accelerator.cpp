@@ -6,7 +6,7 @@
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_packet.h"
-#include "raytrace/acceleration/bvh_traverse.h"
+#include "raytrace/acceleration/bvh_stream.h"
 
 #include <algorithm>
 #include <bit>
@@ -246,6 +246,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
     }
     world_ = world.build();
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !holes_;
+    streams_ = streamable(world_) && !sabotaged(Guard::kSphereRoots);
 }
 
 // A ray in an instance's space, at its time.
@@ -377,13 +378,14 @@ constexpr std::size_t kMostSorted = 512;
 
 // The indices of some rays, class after class.
 struct ByClass {
-    explicit ByClass(std::span<const Ray> rays) {
+    ByClass(std::span<const Ray> rays, std::span<const std::uint32_t> which) {
         std::array<std::uint8_t, kMostSorted> classes;
         std::array<std::size_t, 7> next{};
-        for (std::size_t i = 0; i < rays.size(); ++i) ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[i]))];
+        for (std::size_t i = 0; i < which.size(); ++i)
+            ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[which[i]]))];
         std::size_t begin = 0;
         for (std::size_t& count : next) begin += std::exchange(count, begin);
-        for (std::uint32_t i = 0; i < rays.size(); ++i) order[next[classes[i]]++] = i;
+        for (std::size_t i = 0; i < which.size(); ++i) order[next[classes[i]]++] = which[i];
         ends = next;
     }
     std::array<std::uint32_t, kMostSorted> order;
@@ -410,21 +412,30 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
     for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
 }
 
-void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const {
-    for (std::size_t from = 0; from < rays.size(); from += kMostSorted) {
-        const std::size_t size = std::min(rays.size() - from, kMostSorted);
-        const auto some = rays.subspan(from, size);
-        const auto their_hits = hits.subspan(from, size);
-        const ByClass sorted(some);
-        std::size_t done = 0;
-        for (std::size_t c = 0; c < 6; ++c)
-            while (done < sorted.ends[c]) {
-                const std::size_t taken = std::min(RayPacket::kSize, sorted.ends[c] - done);
-                closest_in_list(some, std::span(sorted.order).subspan(done, taken), their_hits);
-                done += taken;
-            }
-        for (; done < size; ++done) their_hits[sorted.order[done]] = first(some[sorted.order[done]]);
+void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
+                                       std::span<Hit> hits) const {
+    const std::size_t most = streams_ ? RayStream::kSize : kMostSorted;
+    for (std::size_t from = 0; from < which.size(); from += most) {
+        const auto some = which.subspan(from, std::min(which.size() - from, most));
+        if (streams_)
+            RayStream(world_, rays, some, hits).run();
+        else
+            closest_by_class(rays, some, hits);
     }
+    if (holes_)
+        for (const std::uint32_t i : which) hits[i] = beyond_holes(rays[i], hits[i]);
+}
+
+void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const {
+    const ByClass sorted(rays, which);
+    std::size_t done = 0;
+    for (std::size_t c = 0; c < 6; ++c)
+        while (done < sorted.ends[c]) {
+            const std::size_t taken = std::min(RayPacket::kSize, sorted.ends[c] - done);
+            closest_in_list(rays, std::span(sorted.order).subspan(done, taken), hits);
+            done += taken;
+        }
+    for (; done < which.size(); ++done) hits[sorted.order[done]] = first(rays[sorted.order[done]]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {

@@ -24,8 +24,11 @@ public:
     /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
     /// neighbouring pixels do. As many hits as rays.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
-    /// The same of rays that run anywhere, where there are few_primitives().
-    void closest_of_scattered(std::span<const Ray> rays, std::span<Hit> hits) const;
+    /// The same of some rays, those with these indices, which may run anywhere, in a scene that gathers_scattered(). Other
+    /// hits stay.
+    void closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
+    /// Whether many rays that run anywhere are sooner there together than one by one.
+    bool gathers_scattered() const { return few_primitives_ || streams_; }
     /// Whether there are few, and nothing but primitives: then the nearest hit of many rays costs less than a look for any
     /// hit of each.
     bool few_primitives() const { return few_primitives_; }
@@ -40,6 +43,7 @@ public:
 
 private:
     Hit first(const Ray& ray) const;
+    void closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
     void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
     Hit beyond_holes(const Ray& ray, Hit hit) const;
     bool occluded_beyond_holes(Ray ray, const Hit& end) const;
@@ -54,6 +58,7 @@ private:
     std::int64_t primitives_ = 0;
     bool holes_; ///< some material has
     bool few_primitives_ = false;
+    bool streams_ = false; ///< rays may go through the world side by side
 };
 
 } // namespace duet::raytrace

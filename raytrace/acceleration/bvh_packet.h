@@ -148,12 +148,12 @@ private:
                    sizes = max(abs(origins.low), abs(origins.high));
         const float largest = max_component(extents);
         Vec3 ahead, behind;
-        const Batch smallest = Batch(SlabRay::kSmallest) * xsimd::abs(direction[shear_.kz]);
+        const Batch smallest = Batch(SlabError::kSmallest) * xsimd::abs(direction[shear_.kz]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float error = (2 * extents[axis] + largest + sizes[axis]) * SlabRay::relative_error() +
+            const float error = (2 * extents[axis] + largest + sizes[axis]) * SlabError::relative() +
                                 std::numeric_limits<float>::min();
             const float sign = backwards_[axis] ? -1.0f : 1.0f, away = error * sign;
-            const Batch least(SlabRay::least_divisor(extents[axis] + sizes[axis]));
+            const Batch least(SlabError::least_divisor(extents[axis] + sizes[axis]));
             scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
             near_offset_[axis] = -(origin[axis] + Batch(away)) * scale_[axis];
             far_offset_[axis] = -(origin[axis] - Batch(away)) * scale_[axis];

@@ -9,16 +9,13 @@
 
 namespace duet::raytrace {
 
-/// A ray made ready for box tests. Its slab distances are lower and upper bounds of the distances which the primitives'
-/// tests compute: the origin is moved by more than the rounding of both tests, by the size of the whole hierarchy as
+/// What makes box tests conservative: slab distances are lower and upper bounds of the distances which the primitives'
+/// tests compute. The origin is moved by more than the rounding of both tests, by the size of the whole hierarchy as
 /// seen from there (Woop et al. have 5 roundings, the triangle's distance 6 more, and the fused form plane·(1/d) −
 /// origin·(1/d) another of each; here is room for 16).
-class SlabRay {
-public:
-    using Batch = FloatBatch<BvhNode::kWidth>;
-
+struct SlabError {
     /// Of the sizes at hand, the room that boxes get.
-    static float relative_error() { return sabotaged(Guard::kEnlargedBoxes) ? 0.0f : 0x1p-20f; }
+    static float relative() { return sabotaged(Guard::kEnlargedBoxes) ? 0.0f : 0x1p-20f; }
     /// No reciprocal is infinite: a direction's component of 0 counts as this part of the largest, so small that the
     /// ray leaves a slab that it is in (by more than the error that the slab is widened by) beyond all that lies in the
     /// box.
@@ -27,26 +24,47 @@ public:
     template <typename B> static B least_divisor(B coordinates) {
         return max(coordinates * B(0x1p-120f), B(0x1p-125f));
     }
+};
+
+/// The slabs of one axis, as a ray meets them: a plane that it runs into at plane·scale + near or later, one that it leaves
+/// at plane·scale + far or sooner. B has an axis a lane, or a ray.
+template <typename B> struct Slabs {
+    B scale, near, far;
+
+    /// extent: how far the hierarchy reaches from the origin; the greatest of all three axes.
+    Slabs(B origin, B direction, B extent, B greatest_extent, B greatest_size) {
+        const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction), place = xsimd::abs(origin);
+        const B error = (extent + extent + greatest_extent + place) * B(SlabError::relative()) +
+                        B(std::numeric_limits<float>::min());
+        const B divisor = xsimd::max(xsimd::max(size, greatest_size * B(SlabError::kSmallest)),
+                                     SlabError::least_divisor(extent + place));
+        const B away = xsimd::bitwise_or(error, sign);
+        scale = xsimd::bitwise_or(B(1.0f) / divisor, sign);
+        near = -(origin + away) * scale;
+        far = -(origin - away) * scale;
+    }
+    /// How far bounds reach from an origin, along an axis.
+    static B extent(float low, float high, B origin) {
+        return xsimd::max(xsimd::abs(B(low) - origin), xsimd::abs(B(high) - origin));
+    }
+};
+
+/// A ray made ready for box tests.
+class SlabRay {
+public:
+    using Batch = FloatBatch<BvhNode::kWidth>;
 
     SlabRay(const Ray& ray, const Box3& bounds) {
         // Without a branch on signs or sizes, which incoherent rays would mispredict.
         using Four = FloatBatch<4>;
         const auto four = [](Vec3 v) { return Four(_mm_setr_ps(v.x, v.y, v.z, 0.0f)); };
-        const float relative = relative_error();
         const Four origin = four(ray.origin), direction = four(ray.direction);
         const Four extent = xsimd::max(xsimd::abs(four(bounds.low) - origin), xsimd::abs(four(bounds.high) - origin));
-        const Four sign = xsimd::bitwise_and(direction, Four(-0.0f)), size = xsimd::abs(direction);
-        const Four error = (extent + extent + greatest(extent) + xsimd::abs(origin)) * Four(relative) +
-                           Four(std::numeric_limits<float>::min());
-        const Four divisor = xsimd::max(xsimd::max(size, greatest(size) * Four(kSmallest)),
-                                        least_divisor(extent + xsimd::abs(origin)));
-        const Four reciprocal = xsimd::bitwise_or(Four(1.0f) / divisor, sign);
-        const Four away = xsimd::bitwise_or(error, sign);
-        const Four near = -(origin + away) * reciprocal, far = -(origin - away) * reciprocal;
+        const Slabs<Four> slabs(origin, direction, extent, greatest(extent), greatest(xsimd::abs(direction)));
         alignas(16) std::array<float, 4> scales, nears, fars;
-        reciprocal.store_aligned(scales.data());
-        near.store_aligned(nears.data());
-        far.store_aligned(fars.data());
+        slabs.scale.store_aligned(scales.data());
+        slabs.near.store_aligned(nears.data());
+        slabs.far.store_aligned(fars.data());
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t high = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
             near_plane_[axis] = kPlane * (axis + 3 * high);

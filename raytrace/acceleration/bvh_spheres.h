@@ -77,30 +77,39 @@ private:
 /// The lines of N rays, a number a lane: origins x, y, z, then directions.
 template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
 
+/// 1 / d·d of a line's direction, for may_meet. NaN where a square may be rounded to nothing or to infinity: such rays may
+/// meet all. T is float or a batch of floats.
+template <typename T> T filter_scale(const Vec3T<T>& direction) {
+    const T squared = dot(direction, direction);
+    const auto in_range = (squared > T(1e-20f)) & (squared < T(1e20f));
+    return select(in_range, T(1.0f) / squared, T(std::numeric_limits<float>::quiet_NaN()));
+}
+/// A bit for each lane whose line may meet its sphere; the others surely miss it. In float, u being its unit roundoff and
+/// g = centre − origin: the nearest point's place along the line is off by less than 10u|g|, and so is that point; its
+/// distance from the centre by less than 14u|g|. (Where those numbers get too large, both sides are infinite; a radius
+/// that is NaN, of an absent sphere, is none.)
+template <typename Batch>
+unsigned may_meet(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, Batch scale, Batch radius) {
+    const Vec3T<Batch> closest = direction * (dot(to_center, direction) * scale) - to_center;
+    const Batch far = xsimd::abs(to_center.x) + xsimd::abs(to_center.y) + xsimd::abs(to_center.z) + radius;
+    const Batch reach = radius + far * Batch(16 * kRoundoff<float>) + Batch(std::numeric_limits<float>::min());
+    constexpr unsigned kAll = (1u << (sizeof(Batch) / sizeof(float))) - 1;
+    return ~lane_bits(dot(closest, closest) > reach * reach) & lane_bits(radius == radius) & kAll;
+}
+
 /// N rays against one sphere after the other.
 template <std::size_t N> class SphereFilter {
 public:
     using Batch = FloatBatch<N>;
 
     explicit SphereFilter(const LineLanes<N>& lines)
-        : origin_(load(lines, 0)), direction_(load(lines, 3)) {
-        const Batch squared = dot(direction_, direction_);
-        // NaN where a square may be rounded to nothing or to infinity: such rays may meet all.
-        const auto in_range = (squared > Batch(1e-20f)) & (squared < Batch(1e20f));
-        scale_ = xsimd::select(in_range, Batch(1.0f) / squared, Batch(std::numeric_limits<float>::quiet_NaN()));
-    }
+        : origin_(load(lines, 0)), direction_(load(lines, 3)), scale_(filter_scale(direction_)) {}
 
-    /// A bit for each ray whose line may meet the sphere; the others surely miss it. In float, u being its unit roundoff and
-    /// g = centre − origin: the nearest point's place along the line is off by less than 10u|g|, and so is that point; its
-    /// distance from the centre by less than 14u|g|. (Where those numbers get too large, both sides are infinite.)
+    /// A bit for each ray whose line may meet the sphere.
     unsigned may_meet(const Sphere& sphere) const {
-        const Batch radius(sphere.radius);
         const Vec3T<Batch> to_center(Batch(sphere.center.x) - origin_.x, Batch(sphere.center.y) - origin_.y,
                                      Batch(sphere.center.z) - origin_.z);
-        const Vec3T<Batch> closest = direction_ * (dot(to_center, direction_) * scale_) - to_center;
-        const Batch far = xsimd::abs(to_center.x) + xsimd::abs(to_center.y) + xsimd::abs(to_center.z) + radius;
-        const Batch reach = radius + far * Batch(16 * kRoundoff<float>) + Batch(std::numeric_limits<float>::min());
-        return ~lane_bits(dot(closest, closest) > reach * reach) & ((1u << N) - 1);
+        return raytrace::may_meet(to_center, direction_, scale_, Batch(sphere.radius));
     }
 
 private:

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "common/image/rgb.h"
-#include "common/vec/simd.h"
-#include "raytrace/integrator/matt_vertices.h"
+#include "common/vec/widen.h"
+#include "raytrace/integrator/plain_vertices.h"
 
 #include <array>
 #include <span>
@@ -12,7 +12,7 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
-constexpr std::size_t kLanes = kMattLanes;
+constexpr std::size_t kLanes = kPathLanes;
 using Floats = FloatBatch<kLanes>;
 using Doubles = DoubleBatch;
 using Vec = Vec3T<Floats>;
@@ -44,11 +44,17 @@ struct Columns {
     Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
 };
 
-inline Vec rounded(const Vecd& v) { return Columns(v).floats(); }
+inline Vec rounded(const Vecd& v) { return {to_floats(v.x), to_floats(v.y), to_floats(v.z)}; }
+inline Vecd widened(const Vec& v) { return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)}; }
 
 // Lanes that no path has are filled with the first one's numbers.
-template <typename Set> void for_lanes(std::span<const MattPath> paths, const Set& set) {
+template <typename Set> void for_lanes(std::span<const PlainPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
+}
+
+// Of each path four numbers that lie one after the other from first(path) on: a column each.
+template <typename First> std::array<Floats, 4> fours(std::span<const PlainPath> paths, const First& first) {
+    return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }
 
 #endif

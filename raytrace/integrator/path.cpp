@@ -4,7 +4,7 @@
 #include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
-#include "raytrace/integrator/matt_vertices.h"
+#include "raytrace/integrator/plain_vertices.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_gains.h"
 #include "raytrace/integrator/path_log.h"
@@ -269,12 +269,14 @@ void draw_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> wh
     if (k < which.size()) numbers[which[k]] = vertex_numbers(samplers[which[k]].get_block());
 }
 
-// Paths side by side. Those that stand at matt surfaces advance several at once.
+// Paths side by side. Those that stand at plain surfaces of one kind advance several at once.
 template <bool kInsides> class Paths {
 public:
     Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
-        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), numbers_(rays.size()), shadows_(plan) {
+        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), found_(rays.size()), sorted_(rays.size()),
+          numbers_(rays.size()), shadows_(plan) {
         paths_.reserve(rays.size());
+        going_.reserve(rays.size());
         for (std::uint32_t i = 0; i < rays.size(); ++i) {
             paths_.emplace_back(plan, samplers[i], counts);
             going_.push_back(i);
@@ -291,70 +293,75 @@ public:
     }
 
 private:
-    using Kind = MattSurfaces::Kind;
+    using Kind = PlainSurfaces::Kind;
+    using Scattering = PlainSurfaces::Scattering;
     static constexpr std::size_t kFewest = 3; // to go side by side
 
     void find_hits() {
         const Accelerator& accelerator = plan_.prepared.accelerator;
-        if (!accelerator.few_primitives()) {
-            for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
-            return;
-        }
-        some_rays_.clear();
-        for (const std::uint32_t i : going_) some_rays_.push_back(rays_[i]);
-        some_hits_.resize(going_.size());
-        accelerator.closest_of_scattered(some_rays_, some_hits_);
-        for (std::size_t k = 0; k < going_.size(); ++k) hits_[going_[k]] = some_hits_[k];
+        if (accelerator.gathers_scattered()) return accelerator.closest_of_scattered(rays_, going_, hits_);
+        for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
     }
 
     void advance(int depth) {
-        for (auto& list : at_matt_) list.clear();
-        others_.clear(), ends_.clear();
-        for (const std::uint32_t i : going_) {
-            if (!hits_[i].valid() || depth == plan_.max_depth) {
-                ends_.push_back(i);
-                continue;
-            }
-            const Kind kind = plan_.matt.kind(hits_[i]);
-            (kind == Kind::kNone ? others_ : at_matt(kind)).push_back(i);
-        }
-        going_.clear();
-        for (const std::uint32_t i : ends_) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
-        draw_numbers(samplers_, others_, depth, numbers_);
-        for (const std::uint32_t i : others_) advance_alone(i, depth);
-        for (const Kind kind : MattSurfaces::kKinds) scatter(kind, at_matt(kind), depth);
+        sort_by_found(depth);
+        for (const std::uint32_t i : found(PlainSurfaces::kNothing)) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
+        const auto others = found(PlainSurfaces::kOther);
+        draw_numbers(samplers_, others, depth, numbers_);
+        for (const std::uint32_t i : others) advance_alone(i, depth);
+        for (std::size_t k = 0; k < Kind::kCount; ++k)
+            if (!found(k).empty()) scatter(Kind::of_index(k), found(k), depth);
     }
-    std::vector<std::uint32_t>& at_matt(Kind kind) { return at_matt_[static_cast<std::size_t>(kind) - 1]; }
+
+    // The paths by what they have found; those that end there like those that have found nothing.
+    void sort_by_found(int depth) {
+        const auto size = static_cast<std::uint32_t>(going_.size());
+        ends_.fill(0);
+        for (std::uint32_t k = 0; k < size; ++k) {
+            const std::size_t what = depth == plan_.max_depth ? PlainSurfaces::kNothing : plan_.plain.found(hits_[going_[k]]);
+            found_[k] = static_cast<std::uint8_t>(what);
+            ++ends_[what];
+        }
+        std::uint32_t begin = 0;
+        for (std::uint32_t& end : ends_) begin += std::exchange(end, begin);
+        for (std::uint32_t k = 0; k < size; ++k) sorted_[ends_[found_[k]]++] = going_[k];
+        going_.clear();
+    }
+    std::span<const std::uint32_t> found(std::size_t what) const {
+        const std::uint32_t begin = what == 0 ? 0 : ends_[what - 1];
+        return std::span(sorted_).subspan(begin, ends_[what] - begin);
+    }
     void advance_alone(std::uint32_t i, int depth) {
         if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
     }
 
-    // What vertices at matt surfaces use of their numbers.
-    void draw_matt_numbers(std::span<const std::uint32_t> which, int depth) {
+    // What vertices at plain surfaces use of their numbers.
+    void draw_plain_numbers(Scattering scattering, std::span<const std::uint32_t> which, int depth) {
         const std::uint32_t first = vertex_dimension(depth);
         pairs_.resize(which.size());
         const auto draw = [&](std::uint32_t dimension, const auto& set) {
             Sampler::pairs(samplers_, which, first + dimension, pairs_);
             for (std::size_t k = 0; k < which.size(); ++k) set(numbers_[which[k]], pairs_[k]);
         };
-        draw(0, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
-        if (plan_.lights != nullptr) {
-            draw(2, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
-            draw(4, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x; });
-        }
+        const bool lit = scattering == Scattering::kMatt || scattering == Scattering::kMetal; // and spread by two numbers
+        const bool lights = lit && plan_.lights != nullptr, lobes = scattering == Scattering::kMetal || scattering == Scattering::kGlass;
+        if (lit) draw(0, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
+        if (lights) draw(2, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
+        if (lights || lobes) draw(4, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x, u.lobe = pair.y; });
         if (plan_.russian_roulette && depth > 0) draw(6, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
     }
 
+    PlainPath plain_path(std::uint32_t i) {
+        const Hit& hit = hits_[i];
+        return {i, &rays_[i], &hit, &plan_.plain.shape(hit), &plan_.plain.bsdf(hit), &numbers_[i], &paths_[i].state()};
+    }
     void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
-        draw_matt_numbers(which, depth);
-        for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kMattLanes))) {
-            std::array<MattPath, kMattLanes> some;
-            const std::size_t size = std::min(which.size(), kMattLanes);
-            for (std::size_t k = 0; k < size; ++k) {
-                const std::uint32_t i = which[k];
-                some[k] = {i, &rays_[i], &hits_[i], &numbers_[i], &paths_[i].state()};
-            }
-            scatter_matt(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+        draw_plain_numbers(kind.scattering, which, depth);
+        for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kPathLanes))) {
+            std::array<PlainPath, kPathLanes> some;
+            const std::size_t size = std::min(which.size(), kPathLanes);
+            for (std::size_t k = 0; k < size; ++k) some[k] = plain_path(which[k]);
+            scatter_plain(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
             for (std::size_t k = 0; k < size; ++k)
                 if (some[k].goes_on) going_.push_back(which[k]);
         }
@@ -367,13 +374,13 @@ private:
     const std::span<Sampler> samplers_;
     RayCounts& counts_;
     std::vector<Path<Sum, kInsides>> paths_;
-    std::vector<std::uint32_t> going_, others_, ends_; // all that go on; of these those that do not stand at matt surfaces
-    std::array<std::vector<std::uint32_t>, MattSurfaces::kKinds.size()> at_matt_; // and those that do, by kind
+    std::vector<std::uint32_t> going_;
+    std::vector<std::uint8_t> found_;                         // by each of these
+    std::vector<std::uint32_t> sorted_;                       // they, by that
+    std::array<std::uint32_t, PlainSurfaces::kFound> ends_{}; // in it
     std::vector<VertexNumbers> numbers_;
     std::vector<Vec2> pairs_;
     ShadowRays shadows_;
-    std::vector<Ray> some_rays_;
-    std::vector<Hit> some_hits_;
 };
 
 template <typename Sink>

@@ -2,13 +2,17 @@
 
 #include "raytrace/acceleration/bvh_leaf.h"
 
+#include <numeric>
+
 namespace duet::raytrace {
 
 void ShadowRays::look() {
     if (!plan_.prepared.accelerator.few_primitives()) return;
     for (std::size_t i = 0; i < rays_.size(); ++i) rays_[i].t_max = waiting_[i].end.about().t;
     hits_.resize(rays_.size());
-    plan_.prepared.accelerator.closest_of_scattered(rays_, hits_);
+    all_.resize(rays_.size());
+    std::iota(all_.begin(), all_.end(), 0u);
+    plan_.prepared.accelerator.closest_of_scattered(rays_, all_, hits_);
     for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may lie behind
 }
 

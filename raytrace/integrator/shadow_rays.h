@@ -39,6 +39,7 @@ private:
     std::vector<Waiting> waiting_;
     std::vector<Ray> rays_;  ///< parallel to it
     std::vector<Hit> hits_;  ///< the nearest, where they have been looked for
+    std::vector<std::uint32_t> all_; ///< indices of all
 };
 
 } // namespace duet::raytrace

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <numeric>
 #include <vector>
 
 using namespace duet;
@@ -59,8 +61,28 @@ void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
 // How many things are in the room: so few that rays test them all, or so many that they look for their way through a tree.
 enum class Things { kFew, kSome, kMany };
 
+// Metal narrow and wide, coloured and by name, mirrors and glass: on quads, spheres and meshes with normals of their own.
+void add_shiny_things(SceneBuilder& builder, int levels, const Place& place) {
+    const float s = place.scale;
+    const Material materials[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f}, Metal{{Rgb(0.8f)}, 0.1f},
+                                  Metal{{}, 0.5f, *find_conductor("gold")},   Metal{{}, 0, *find_conductor("copper")},
+                                  Metal{{Rgb(0.7f, 0.8f, 0.9f)}, 0},    Dielectric{1.5f, {Rgb(0.95f, 0.9f, 1)}},
+                                  Dielectric{1.33f, {Rgb(1.0f)}}};
+    float x = -0.85f;
+    for (const Material& material : materials) {
+        const std::uint32_t it = builder.material(material);
+        builder.add(Sphere{place(x, 0.12f, 0.85f), 0.11f * s}, it);
+        builder.add(icosphere(levels, 0.11f * s, place(x, 0.4f, 0.6f), true), it);
+        builder.add(quad(place(x - 0.1f, 0.6f, -0.2f), {0.2f * s, 0, 0.05f * s}, {0, 0.25f * s, 0.02f * s}), it);
+        x += 0.28f;
+    }
+}
+
+// What walls and things are of: matt for the most part, or that with metal and glass of all sorts.
+enum class Finish { kMatt, kShiny };
+
 // A room without a front, in it things of each kind of surface that goes side by side and of others.
-Scene room(Lamp lamp, Things things, const Place& place) {
+Scene room(Lamp lamp, Things things, const Place& place, Finish finish = Finish::kMatt) {
     SceneBuilder builder;
     const float s = place.scale;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}), red = builder.material(Diffuse{{Rgb(0.6f, 0.1f, 0.1f)}});
@@ -73,6 +95,7 @@ Scene room(Lamp lamp, Things things, const Place& place) {
     builder.add(Sphere{place(-0.4f, 0.35f, 0.3f), 0.35f * s}, red);
     builder.add(Sphere{place(0.5f, 0.2f, 0.6f), 0.2f * s}, builder.material(Dielectric{1.5f, {Rgb(0.95f)}}));
     const int levels = things == Things::kMany ? 3 : 0;
+    if (finish == Finish::kShiny) add_shiny_things(builder, levels, place);
     if (things != Things::kFew) builder.add(icosphere(levels, 0.3f * s, place(0.3f, 0.6f, -0.3f), false), white);
     if (things != Things::kFew) builder.add(icosphere(levels, 0.2f * s, place(-0.5f, 1, -0.5f), true), brushed);
     if (things != Things::kFew) builder.add(icosphere(levels, 0.35f * s, place(-0.1f, 1.2f, 0.2f), true), red);
@@ -83,9 +106,16 @@ Scene room(Lamp lamp, Things things, const Place& place) {
     return builder.finish();
 }
 
+std::vector<std::uint32_t> all_of(const std::vector<Ray>& rays) {
+    std::vector<std::uint32_t> which(rays.size());
+    std::iota(which.begin(), which.end(), 0u);
+    return which;
+}
+
 // How many of the paths of a small picture differ in a bit, of those that bring light at all.
 struct Differences {
-    int differ = 0, lit = 0, matt = 0, smooth = 0; // and of those that stand at matt surfaces first, or at smooth ones
+    int differ = 0, lit = 0, plain = 0, smooth = 0; // and of those that stand at plain surfaces first, or at smooth ones
+    std::array<int, PlainSurfaces::Kind::kCount> kinds{}; // by kind
     bool same_rays = false;
 };
 Differences side_by_side_and_alone(const Scene& scene, const Settings& settings) {
@@ -117,9 +147,10 @@ Differences side_by_side_and_alone(const Scene& scene, const Settings& settings)
     for (std::size_t i = 0; i < rays.size(); ++i) {
         found.differ += together[i] != alone[i];
         found.lit += !is_black(alone[i]);
-        const auto kind = first_hits[i].valid() ? plan.matt.kind(first_hits[i]) : MattSurfaces::Kind::kNone;
-        found.matt += kind != MattSurfaces::Kind::kNone;
-        found.smooth += kind == MattSurfaces::Kind::kSmooth;
+        const auto kind = first_hits[i].valid() ? plan.plain.kind(first_hits[i]) : std::nullopt;
+        found.plain += kind.has_value();
+        found.smooth += kind && kind->form == PlainSurfaces::Form::kSmooth;
+        if (kind) ++found.kinds[kind->index()];
     }
     found.same_rays = counts.indirect == alone_counts.indirect && counts.shadow == alone_counts.shadow &&
                       counts.ended == alone_counts.ended;
@@ -132,7 +163,7 @@ Differences check_same(const Scene& scene, const Settings& settings) {
     CHECK(found.lit > 20);
     CHECK(found.same_rays);
     const bool asked = settings.skips.shadow_rays && settings.skips.textures; // by tests: then none goes side by side
-    if (kDoubleLanes >= 4) CHECK((found.matt > 100) == asked);
+    if (kDoubleLanes >= 4) CHECK((found.plain > 100) == asked);
     return found;
 }
 
@@ -150,6 +181,80 @@ TEST_SUITE("unit") {
                 const Differences found = check_same(room(lamp, things, {}), settings);
                 if (kDoubleLanes >= 4) CHECK((found.smooth > 10) == (things != Things::kFew));
             }
+    }
+
+    TEST_CASE("and at metal, mirrors and glass of every form") {
+        std::array<int, PlainSurfaces::Kind::kCount> kinds{};
+        for (const Lamp lamp : kLamps)
+            for (const Things things : {Things::kFew, Things::kMany})
+                for (const int depth : {1, 64}) {
+                    CAPTURE(static_cast<int>(lamp));
+                    CAPTURE(static_cast<int>(things));
+                    Settings settings;
+                    settings.seed = 9;
+                    settings.max_depth = depth;
+                    const Differences found = check_same(room(lamp, things, {}, Finish::kShiny), settings);
+                    for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += found.kinds[k];
+                }
+        if (kDoubleLanes >= 4)
+            for (const int count : kinds) CHECK(count > 10); // all have been seen
+        for (const bool roulette : {false, true}) {
+            Settings settings;
+            settings.russian_roulette = roulette;
+            settings.sampler = SamplerKind::kIndependent;
+            check_same(room(Lamp::kMany, Things::kSome, {1e-3f, {1, 2, 3}}, Finish::kShiny), settings);
+        }
+        Settings settings;
+        settings.skips.mirror_light = false;
+        CHECK(side_by_side_and_alone(room(Lamp::kBall, Things::kFew, {}, Finish::kShiny), settings).differ == 0);
+    }
+
+    TEST_CASE("many spheres: rays stream through their tree") {
+        SceneBuilder builder;
+        const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
+        const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f)}, 0.3f}), glass = builder.material(Dielectric{});
+        Sampler random(SamplerKind::kIndependent, 5, 1);
+        for (int i = 0; i < 300; ++i) {
+            random.start(i, 0, 0);
+            const Vec2 at = random.get_2d();
+            builder.add(Sphere{Vec3(6 * at.x - 3, 0.15f, 6 * at.y - 3), 0.15f}, i % 3 == 0 ? white : i % 3 == 1 ? brushed : glass);
+        }
+        builder.add(Sphere{Vec3(0, -1000, 0), 1000}, white);
+        builder.add(quad(Vec3(-3, 0.5f, -1), {6, 0, 0}, {0, 1, 0.1f}), brushed);
+        builder.add(icosphere(0, 0.5f, Vec3(0, 0.6f, 0), true), white);
+        builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)};
+        builder.scene.camera.eye = Vec3d(0, 1.5, 6);
+        builder.scene.camera.look_at = Vec3d(0, 0, 0);
+        builder.scene.camera.fov_degrees = 50;
+        const Scene scene = builder.finish();
+        Settings settings;
+        const Prepared prepared = prepare(scene, settings);
+        const Accelerator& accelerator = prepared.data().accelerator;
+        REQUIRE(accelerator.gathers_scattered());
+        REQUIRE(!accelerator.few_primitives());
+        check_same(scene, settings);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 3000; ++i) {
+            random.start(i, 1, 0);
+            const Vec2 at = random.get_2d();
+            Ray ray{Vec3(8 * at.x - 4, 2 * random.get_1d() - 0.2f, 8 * at.y - 4), uniform_sphere(random.get_2d())};
+            if (i % 5 == 0) ray.direction = Vec3(i % 2 == 0 ? 1.0f : -1.0f, 0, 0);
+            if (i % 7 == 0) ray.t_max = 3 * random.get_1d();
+            if (i % 11 == 0) ray.t_min = random.get_1d();
+            if (i % 13 == 0) ray.direction = ray.direction * (i % 2 == 0 ? 1e-12f : 1e12f);
+            if (i % 31 == 30) ray.direction = {};
+            if (i % 37 == 36) ray.t_max = std::numeric_limits<float>::quiet_NaN();
+            rays.push_back(ray);
+        }
+        std::vector<Hit> hits(rays.size());
+        accelerator.closest_of_scattered(rays, all_of(rays), hits);
+        int found = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            CAPTURE(i);
+            REQUIRE(hits[i] == accelerator.closest(rays[i]));
+            found += hits[i].valid();
+        }
+        CHECK(found > 1000);
     }
 
     TEST_CASE("rays that run anywhere, in any number, hit what each alone does") {
@@ -176,7 +281,7 @@ TEST_SUITE("unit") {
                 if (i % 11 == 0) rays.push_back(ray);
             }
             std::vector<Hit> hits(rays.size());
-            accelerator.closest_of_scattered(rays, hits);
+            accelerator.closest_of_scattered(rays, all_of(rays), hits);
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 REQUIRE(hits[i] == accelerator.closest(rays[i]));
                 found += hits[i].valid();

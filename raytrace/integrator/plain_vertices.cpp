@@ -1,9 +1,10 @@
-#include "raytrace/integrator/matt_vertices.h"
+#include "raytrace/integrator/plain_vertices.h"
 
 #include "common/light/area_sampling.h"
 #include "common/light/solid_angle.h"
 #include "raytrace/integrator/light_sampling.h"
-#include "raytrace/integrator/matt_points.h"
+#include "raytrace/integrator/plain_bsdfs.h"
+#include "raytrace/integrator/plain_points.h"
 
 #include <algorithm>
 #include <array>
@@ -16,21 +17,17 @@ using namespace lanes;
 
 namespace {
 
-template <typename Points> class Block {
+template <typename Points, typename Scattering> class Block {
 public:
-    Block(const RenderPlan& plan, std::span<MattPath> paths, const Points& points)
-        : plan_(plan), paths_(paths), points_(points), frame_(frame_from_normal(points.ns())) {
-        Columns direction, throughput, albedo;
-        for_lanes(paths, [&](std::size_t i, const MattPath& path) {
-            direction.set(i, path.ray->direction);
-            throughput.set(i, path.state->throughput);
-            albedo.set(i, plan.matt.albedo(*path.hit));
-        });
-        const Vec w = -direction.floats();
+    Block(const RenderPlan& plan, std::span<PlainPath> paths, const Points& points)
+        : plan_(plan), paths_(paths), points_(points), bsdf_(paths), frame_(frame_from_normal(points.ns())) {
+        const auto [dx, dy, dz, t_min] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
+        const auto [r, g, b, refraction] = fours(paths, [](const PlainPath& path) -> const float& { return path.state->throughput.r; });
+        const Vec w = -Vec(dx, dy, dz);
         const Floats side = select(dot(w, points.ng) < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
         wo_ = lifted_above_horizon(frame_.to_local(w), side);
-        throughput_ = throughput.colors();
-        albedo_ = albedo.colors();
+        throughput_ = {r, g, b};
+        refraction_ = refraction;
     }
 
     // As Path::add_light_sample.
@@ -47,12 +44,11 @@ public:
                                                *choices[i], paths_[i].numbers->light));
         const Vec wi = arrivals.wi.floats(), local = frame_.to_local(wi);
         const Mask reflected = (wo_.z * local.z > Floats(0.0f)) & (dot(wi, points_.horizon()) * local.z > Floats(0.0f));
-        const Color scattered = albedo_ * Floats(kInvPi) * abs(local.z) * arrivals.radiance.colors();
+        const Color scattered = bsdf_.eval(wo_, local) * abs(local.z) * arrivals.radiance.colors();
         const Floats zero(0.0f);
-        const Mask black = (scattered.r == zero) & (scattered.g == zero) & (scattered.b == zero);
-        unsigned lit = arrivals.some & lane_bits(reflected) & ~lane_bits(black);
+        unsigned lit = arrivals.some & lane_bits(reflected) & ~lane_bits(is_black_lane(scattered));
         if (lit == 0) return;
-        const Floats own = arrivals.pdf.floats(), other = cosine_hemisphere_pdf(abs(local.z));
+        const Floats own = arrivals.pdf.floats(), other = bsdf_.pdf(wo_, local);
         const Floats weight = mis_weight(own, select(arrivals.delta.floats() > zero, zero, other));
         const Color sum = throughput_ * scattered * (weight / own);
         const Columns light(Vec(sum.r, sum.g, sum.b)), origins(points_.origin(wi)), p(points_.p);
@@ -65,33 +61,34 @@ public:
         }
     }
 
-    // As Path::scatter and survives.
-    void scatter(int depth, RayCounts& counts) {
-        Column ux, uy, roulette, refraction;
-        for_lanes(paths_, [&](std::size_t i, const MattPath& path) {
-            ux.of[i] = path.numbers->bsdf.x, uy.of[i] = path.numbers->bsdf.y;
-            roulette.of[i] = path.numbers->roulette, refraction.of[i] = path.state->refraction;
-        });
+    // As Path::scatter and survives. (Flat: batches are handed to functions by memory.)
+    [[gnu::flatten]] void scatter(int depth, RayCounts& counts) {
+        const auto [ux, uy, lx, ly] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->bsdf.x; });
+        const auto [y, choice, lobe, roulette] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->light.y; });
         const Floats zero(0.0f), one(1.0f);
-        Vec local = cosine_hemisphere(Vec2T<Floats>(ux.floats(), uy.floats()));
-        const Floats pdf = cosine_hemisphere_pdf(local.z);
-        local.z = select(wo_.z < zero, -local.z, local.z);
-        const Vec wi = normalize(frame_.to_world(local));
-        Mask on = dot(wi, points_.horizon()) * local.z > zero;
-        Color throughput = throughput_ * albedo_;
+        const LaneSample s = bsdf_.sample(wo_, {{ux, uy}, lobe});
+        const Vec wi = normalize(frame_.to_world(s.wi));
+        Vec horizon = points_.horizon();
+        Floats refraction = refraction_;
+        if constexpr (Scattering::kThrough) {
+            horizon = select(wo_.z * s.wi.z > zero, horizon, points_.ng);
+            refraction = select(s.transmitted, refraction * s.refraction, refraction);
+        }
+        Mask on = s.some & ~is_black_lane(s.weight) & (dot(wi, horizon) * s.wi.z > zero);
+        Color throughput = throughput_ * s.weight;
         if (plan_.russian_roulette && depth > 0) {
-            const Floats probability = survival(throughput, refraction.floats(), Floats(plan_.worth));
-            const Mask stays = ~(probability < one), survives = stays | (roulette.floats() < probability);
+            const Floats probability = survival(throughput, refraction, Floats(plan_.worth));
+            const Mask stays = ~(probability < one), survives = stays | (roulette < probability);
             const unsigned mine = (1u << paths_.size()) - 1;
             counts.ended += std::popcount(lane_bits(on) & ~lane_bits(survives) & mine);
             on = on & survives;
             throughput = throughput * select(stays, one, one / probability);
         }
         const Columns origins(points_.origin(wi)), directions(wi), throughputs(Vec(throughput.r, throughput.g, throughput.b));
-        const Column pdfs(pdf);
+        const Column pdfs(s.pdf), refractions(refraction);
         const unsigned going = lane_bits(on);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
-            MattPath& path = paths_[i];
+            PlainPath& path = paths_[i];
             path.goes_on = (going >> i & 1u) != 0;
             if (!path.goes_on) continue;
             ++counts.indirect;
@@ -99,8 +96,9 @@ public:
             path.ray->direction = directions.vec(i);
             path.ray->t_min = 0;
             path.state->throughput = throughputs.rgb(i);
+            if constexpr (Scattering::kThrough) path.state->refraction = refractions.of[i];
             path.state->departure.pdf = pdfs.of[i];
-            path.state->departure.certain = plan_.lights == nullptr;
+            path.state->departure.certain = !Scattering::kLit || plan_.lights == nullptr;
         }
     }
 
@@ -172,36 +170,51 @@ private:
     }
 
     const RenderPlan& plan_;
-    const std::span<MattPath> paths_;
+    const std::span<PlainPath> paths_;
     const Points points_;
+    const Scattering bsdf_;
     const FrameT<Floats> frame_;
     Vec wo_;
-    Color throughput_, albedo_;
+    Color throughput_;
+    Floats refraction_;
 };
 
-template <typename Points>
-void scatter_at(const Points& points, const RenderPlan& plan, std::span<MattPath> paths, int depth, ShadowRays& shadows,
+template <typename Scattering, typename Points>
+void scatter_at(const Points& points, const RenderPlan& plan, std::span<PlainPath> paths, int depth, ShadowRays& shadows,
                 RayCounts& counts) {
-    Block block(plan, paths, points);
-    if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
+    Block<Points, Scattering> block(plan, paths, points);
+    if constexpr (Scattering::kLit)
+        if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
     if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
+}
+
+template <typename Points, typename... Rest>
+void scatter_by(PlainSurfaces::Scattering scattering, const Points& points, Rest&&... rest) {
+    switch (scattering) {
+    case PlainSurfaces::Scattering::kMatt: return scatter_at<MattLanes>(points, rest...);
+    case PlainSurfaces::Scattering::kMetal: return scatter_at<MetalLanes>(points, rest...);
+    case PlainSurfaces::Scattering::kMirror: return scatter_at<MirrorLanes>(points, rest...);
+    case PlainSurfaces::Scattering::kGlass: return scatter_at<GlassLanes>(points, rest...);
+    }
 }
 
 } // namespace
 
-void scatter_matt(const RenderPlan& plan, MattSurfaces::Kind kind, std::span<MattPath> paths, int depth,
-                  ShadowRays& shadows, RayCounts& counts) {
-    switch (kind) {
-    case MattSurfaces::Kind::kFlat: return scatter_at(flat_points(plan.scene, paths), plan, paths, depth, shadows, counts);
-    case MattSurfaces::Kind::kSmooth: return scatter_at(smooth_points(plan.scene, paths), plan, paths, depth, shadows, counts);
-    case MattSurfaces::Kind::kRound: return scatter_at(round_points(plan.scene, paths), plan, paths, depth, shadows, counts);
-    case MattSurfaces::Kind::kNone: break;
+void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<PlainPath> paths, int depth,
+                   ShadowRays& shadows, RayCounts& counts) {
+    const auto scatter = [&](const auto& points) {
+        scatter_by(kind.scattering, points, plan, paths, depth, shadows, counts);
+    };
+    switch (kind.form) {
+    case PlainSurfaces::Form::kFlat: return scatter(flat_points(paths));
+    case PlainSurfaces::Form::kSmooth: return scatter(smooth_points(paths));
+    case PlainSurfaces::Form::kRound: return scatter(round_points(paths));
     }
 }
 
-#else // too few lanes: RenderPlan::matt has no surfaces
+#else // too few lanes: RenderPlan::plain has no surfaces
 
-void scatter_matt(const RenderPlan&, MattSurfaces::Kind, std::span<MattPath>, int, ShadowRays&,
+void scatter_plain(const RenderPlan&, PlainSurfaces::Kind, std::span<PlainPath>, int, ShadowRays&,
                   RayCounts&) {}
 
 #endif

@@ -1,4 +1,4 @@
-// The points of matt surfaces that paths side by side stand at: of a SurfacePoint, what such a surface has, to the same
+// The points of plain surfaces that paths side by side stand at: of a SurfacePoint, what such a surface has, to the same
 // bits.
 #pragma once
 
@@ -31,10 +31,10 @@ struct SmoothPoints {
     Vec origin(const Vec& w) const;
 };
 
-/// All of one kind of MattSurfaces: on quads and meshes without normals, on meshes with them, on spheres.
-FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths);
-SmoothPoints smooth_points(const Scene& scene, std::span<const MattPath> paths);
-FlatPoints round_points(const Scene& scene, std::span<const MattPath> paths);
+/// All of one kind of PlainSurfaces: on quads and meshes without normals, on meshes with them, on spheres.
+FlatPoints flat_points(std::span<const PlainPath> paths);
+SmoothPoints smooth_points(std::span<const PlainPath> paths);
+FlatPoints round_points(std::span<const PlainPath> paths);
 
 #endif
 

@@ -1,4 +1,4 @@
-#include "raytrace/integrator/matt_points.h"
+#include "raytrace/integrator/plain_points.h"
 
 #include "common/geometry/smooth_lift.h"
 
@@ -33,21 +33,20 @@ Vec SmoothPoints::origin(const Vec& w) const {
     return offset_origin(select(lifted, p + lift, p), p_error, select(below, -ng, ng));
 }
 
-FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths) {
+FlatPoints flat_points(std::span<const PlainPath> paths) {
     Columns corner, base, a, b; // edges are a − base and b − base
     Column u, v, quad;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
         const Hit& hit = *path.hit;
-        const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
         u.of[i] = hit.u, v.of[i] = hit.v;
-        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+        if (const auto* mesh = std::get_if<Mesh>(path.shape)) {
             const auto& [ia, ib, ic] = mesh->triangles[hit.primitive];
             corner.set(i, mesh->positions[ia]);
             base.set(i, mesh->positions[ia]);
             a.set(i, mesh->positions[ib]);
             b.set(i, mesh->positions[ic]);
         } else {
-            const Quad& q = std::get<QuadList>(shape).quads[hit.primitive];
+            const Quad& q = std::get<QuadList>(*path.shape).quads[hit.primitive];
             corner.set(i, q.corner);
             a.set(i, q.u);
             b.set(i, q.v);
@@ -60,28 +59,26 @@ FlatPoints flat_points(const Scene& scene, std::span<const MattPath> paths) {
     return points(p, magnitude, normalize(cross(da, db)));
 }
 
-FlatPoints round_points(const Scene& scene, std::span<const MattPath> paths) {
-    Columns origin, direction, center;
-    Column radius, t;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
-        const Sphere& sphere = std::get<Sphere>(scene.shapes[scene.objects[path.hit->object].shape]);
-        origin.set(i, path.ray->origin);
-        direction.set(i, path.ray->direction);
-        center.set(i, sphere.center);
-        radius.of[i] = sphere.radius, t.of[i] = path.hit->t;
-    });
-    const Vecd at = origin.doubles() + direction.doubles() * t.doubles();
-    const Vecd n = normalize(at - center.doubles()), p = center.doubles() + n * radius.doubles();
+FlatPoints round_points(std::span<const PlainPath> paths) {
+    const auto sphere = [](const PlainPath& path) -> const Sphere& { return std::get<Sphere>(*path.shape); };
+    const auto [ox, oy, oz, dx] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->origin.x; });
+    const auto [wx, wy, wz, t_min] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
+    const auto [cx, cy, cz, radius] = fours(paths, [&](const PlainPath& path) -> const float& { return sphere(path).center.x; });
+    Column t;
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { t.of[i] = path.hit->t; });
+    const Vecd center = widened(Vec(cx, cy, cz));
+    const Vecd at = widened(Vec(ox, oy, oz)) + widened(Vec(wx, wy, wz)) * t.doubles();
+    const Vecd n = normalize(at - center), p = center + n * to_doubles(radius);
     return points(p, abs(p), n);
 }
 
-SmoothPoints smooth_points(const Scene& scene, std::span<const MattPath> paths) {
+SmoothPoints smooth_points(std::span<const PlainPath> paths) {
     Columns direction;
     std::array<Columns, 3> corners, normals;
     Column u_lanes, v_lanes;
-    for_lanes(paths, [&](std::size_t i, const MattPath& path) {
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) {
         const Hit& hit = *path.hit;
-        const Mesh& mesh = std::get<Mesh>(scene.shapes[scene.objects[hit.object].shape]);
+        const Mesh& mesh = std::get<Mesh>(*path.shape);
         const auto& index = mesh.triangles[hit.primitive];
         direction.set(i, path.ray->direction);
         u_lanes.of[i] = hit.u, v_lanes.of[i] = hit.v;

@@ -1,0 +1,20 @@
+// Of warp.h, what has no number type of its own, for batches of floats.
+#pragma once
+
+#include "common/sampling/warp.h"
+#include "common/vec/simd.h"
+
+namespace duet {
+
+/// As unit_circle of each lane, to the same bits.
+template <typename Arch> Vec2T<xsimd::batch<float, Arch>> unit_circle(xsimd::batch<float, Arch> u) {
+    using Floats = xsimd::batch<float, Arch>;
+    const Floats minus(-0.0f), quarter = xsimd::trunc(Floats(4.0f) * u + Floats(0.5f)); // 0 to 4
+    const Vec2T<Floats> p = unit_circle_near((Floats(4.0f) * u - quarter) * Floats(static_cast<float>(kPiDouble / 2)));
+    const auto third = quarter == Floats(3.0f), odd = third | (quarter == Floats(1.0f)),
+               behind = third | (quarter == Floats(2.0f));
+    const Vec2T<Floats> turned{xsimd::select(odd, p.y ^ minus, p.x), xsimd::select(odd, p.x, p.y)};
+    return {xsimd::select(behind, turned.x ^ minus, turned.x), xsimd::select(behind, turned.y ^ minus, turned.y)};
+}
+
+} // namespace duet

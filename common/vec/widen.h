@@ -1,0 +1,31 @@
+// Batches of floats and of doubles, made of each other.
+#pragma once
+
+#include "common/vec/simd.h"
+
+namespace duet {
+
+/// As many floats as there are lanes of doubles.
+using NarrowBatch = FloatBatch<kDoubleLanes>;
+
+inline DoubleBatch to_doubles(NarrowBatch floats) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_cvtps_pd(floats);
+#else
+    alignas(sizeof(DoubleBatch)) std::array<float, sizeof(NarrowBatch) / sizeof(float)> lanes;
+    floats.store_aligned(lanes.data());
+    return load_doubles(lanes.data());
+#endif
+}
+/// Rounded.
+inline NarrowBatch to_floats(DoubleBatch doubles) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_cvtpd_ps(doubles);
+#else
+    alignas(sizeof(DoubleBatch)) std::array<float, sizeof(NarrowBatch) / sizeof(float)> lanes{};
+    store_floats(doubles, lanes.data());
+    return NarrowBatch::load_aligned(lanes.data());
+#endif
+}
+
+} // namespace duet
