@@ -25,16 +25,20 @@ template <typename F> std::array<float, OcclusionPattern::kPatterns> each_patter
     return result;
 }
 
-/// A place in 4 × 4 pixels, row by row, to a number whose reversed bits differ most for those next to each other (Bayer
-/// 1973, «An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures»).
-std::uint32_t bayer(std::uint32_t place) {
-    const std::uint32_t x = place & 3u, y = place >> 2;
-    return ((x ^ y) & 1u) | (y & 1u) << 1 | ((x ^ y) >> 1) << 2 | (y >> 1) << 3;
-}
+/// Of each place in 8 × 8 pixels, row by row, its pattern: a number whose reversed bits differ most for those next to each
+/// other (Bayer 1973, «An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures»). Aligned parts have
+/// consecutive ones, which are parts of the net below.
+const std::array<std::int32_t, OcclusionPattern::kPatterns> kPatternOf = [] {
+    std::array<std::int32_t, OcclusionPattern::kPatterns> result{};
+    for (std::uint32_t place = 0; place < result.size(); ++place)
+        for (std::uint32_t x = place % OcclusionPattern::kSide, y = place / OcclusionPattern::kSide, bit = 0; bit < 3; ++bit)
+            result[place] |= static_cast<std::int32_t>((((x ^ y) >> bit & 1u) | (y >> bit & 1u) << 1) << 2 * bit);
+    return result;
+}();
 /// Of each pattern, in [0, 1): how far its lines are turned, and where between two steps they look; together a
 /// (0,2)-net.
-const std::array<float, 16> kTurn = each_pattern([](std::uint32_t i) { return net_point(bayer(i), 16).x; });
-const std::array<float, 16> kJitter = each_pattern([](std::uint32_t i) { return net_point(bayer(i), 16).y; });
+const auto kTurn = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).x; });
+const auto kJitter = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).y; });
 
 /// arccos, to 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
@@ -123,11 +127,12 @@ struct HemispherePoints {
 const HemispherePoints& hemisphere_points() {
     static const HemispherePoints points = [] {
         HemispherePoints result;
+        constexpr int kAll = OcclusionPattern::kPatterns * kPoints;
         for (std::uint32_t pattern = 0; pattern < OcclusionPattern::kPatterns; ++pattern)
             for (std::uint32_t i = 0; i < kPoints; ++i) {
                 const std::uint32_t index = pattern * kPoints + i;
-                const Vec2 u = net_point(index, OcclusionPattern::kPatterns * kPoints);
-                const float part = (static_cast<float>(index * 77u % 256u) + 0.5f) / 256;
+                const Vec2 u = net_point(index, kAll);
+                const float part = (static_cast<float>(index * 77u % kAll) + 0.5f) / kAll;
                 const Vec3 q = cosine_hemisphere(u) * sqr(part);
                 result.x[i][pattern] = q.x, result.y[i][pattern] = q.y, result.z[i][pattern] = q.z;
             }
@@ -140,7 +145,7 @@ const HemispherePoints& hemisphere_points() {
 
 OcclusionPattern OcclusionPattern::of_row(int x, int y) {
     alignas(64) std::array<std::int32_t, Ints::size> which;
-    for (int i = 0; i < static_cast<int>(Ints::size); ++i) which[static_cast<std::size_t>(i)] = (x + i) % kSide + y % kSide * kSide;
+    for (int i = 0; i < static_cast<int>(Ints::size); ++i) which[static_cast<std::size_t>(i)] = kPatternOf[static_cast<std::size_t>((x + i) % kSide + y % kSide * kSide)];
     return {Ints::load_aligned(which.data())};
 }
 OcclusionPattern OcclusionPattern::of_point(int first) {

@@ -12,10 +12,11 @@ struct OcclusionPoints {
     Vec3T<Floats> p, n, to_viewer;
 };
 
-/// Where points look: each has one of kPatterns ways to, so that those of a block of 4 × 4 pixels together look
-/// everywhere, evenly.
+/// Where points look: each has one of kPatterns ways to, so that those of a block of 8 × 8 pixels together look
+/// everywhere, evenly; and so, as well as so few can, do those of each aligned part of it of 4 × 4 or 2 × 2.
 struct OcclusionPattern {
-    static constexpr int kSide = 4, kPatterns = kSide * kSide;
+    static constexpr int kSide = 8, kPatterns = kSide * kSide;
+    static constexpr int kOfPoint = 16; ///< the first so many look everywhere, too: enough for a point by itself
 
     Ints which; ///< in [0, kPatterns)
 

@@ -12,31 +12,69 @@
 namespace duet::raster {
 namespace {
 
-struct Outline {
-    std::array<Vec3, 8> v;
-    std::size_t count = 0;
-};
-Outline outline(const SurfaceLight::Triangle& t, Vec3) { return {{t.a, t.b, t.c}, 3}; }
-Outline outline(const Quad& q, Vec3) {
-    Outline result{{}, 4};
-    const std::array<Vec3, 4> c = corners(q);
-    std::copy(c.begin(), c.end(), result.v.begin());
-    return result;
-}
-/// The disk that fills the sphere's cone, as an octagon of its area: ½·8·sin 45°·R² = π r².
-Outline outline(const Sphere& s, Vec3 p) {
-    const Vec3 way = s.center - p;
-    const float distance = length(way);
-    if (!(distance > s.radius)) return {};
-    const float disk = s.radius / std::sqrt(1 - sqr(s.radius / distance));
-    const float radius = disk * std::sqrt(kPi / (2 * std::sqrt(2.0f)));
-    const Frame frame = frame_from_normal(way / distance);
-    Outline result{{}, 8};
-    for (std::size_t i = 0; i < 8; ++i) {
-        const float turn = kPi / 4 * static_cast<float>(i);
-        result.v[i] = s.center + (frame.s * std::cos(turn) + frame.t * std::sin(turn)) * radius;
+/// Takes places relative to a point to the cosine's space, in the frame of the viewer's side, the viewer in the plane y = 0.
+class ToCosine {
+public:
+    ToCosine(const ShadingPoint& point, float alpha) : point_(point), flip_(point.wo.z < 0 ? -1.0f : 1.0f) {
+        const float flat = std::sqrt(sin2_theta(point.wo));
+        if (flat > 1e-6f) turn_ = {point.wo.x / flat, point.wo.y / flat};
+        lobe_ = ggx_lobe(alpha, std::abs(point.wo.z));
     }
-    return result;
+    Vec3 operator()(Vec3 way) const {
+        const Vec3 w = point_.frame.to_local(way);
+        return lobe_.to_cosine({turn_.x * w.x + turn_.y * w.y, turn_.x * w.y - turn_.y * w.x, flip_ * w.z});
+    }
+
+private:
+    const ShadingPoint& point_;
+    float flip_;
+    Vec2 turn_{1, 0};
+    LobeMatrix lobe_;
+};
+
+// The part of the cosine that each shape fills, times π.
+
+double filled(std::span<Vec3> corners, const ToCosine& to_cosine, Vec3 p) {
+    for (Vec3& corner : corners) corner = to_cosine(corner - p);
+    return polygon_form_factor_times_pi({}, {0, 0, 1}, corners);
+}
+double filled(const SurfaceLight::Triangle& t, const ToCosine& to_cosine, Vec3 p) {
+    std::array<Vec3, 3> all{t.a, t.b, t.c};
+    return filled(all, to_cosine, p);
+}
+double filled(const Quad& quad, const ToCosine& to_cosine, Vec3 p) {
+    std::array<Vec3, 4> all = corners(quad);
+    return filled(all, to_cosine, p);
+}
+/// A sphere fills a cone about the direction d, in which (w·d)² ≥ cos²σ w². In the cosine's space that is an elliptical
+/// cone, whose form factor and axis an eigenvalue and its vector give (Heitz and Hill 2017, «Real-Time Line- and Disk-Light
+/// Shading with Linearly Transformed Cosines»; here of the cone itself, without a disk). The horizon cuts it as it does the
+/// round cone of the same axis and form factor (Hill and Heitz 2016, «Real-Time Area Lighting: a Journey from Research to
+/// Production»).
+double filled(const Sphere& sphere, const ToCosine& to_cosine, Vec3 p) {
+    const Vec3 way = sphere.center - p;
+    const double squared = dot(Vec3d(way), Vec3d(way)), sine2 = std::min(sqr(static_cast<double>(sphere.radius)) / squared, 1 - 1e-6);
+    // The dual cone's matrix B = u uᵀ − sin²σ (a aᵀ + b bᵀ + c cᵀ) has one eigenvalue μ > 0.
+    const Vec3d u(to_cosine(way / static_cast<float>(std::sqrt(squared)))), a(to_cosine({1, 0, 0})), b(to_cosine({0, 1, 0})), c(to_cosine({0, 0, 1}));
+    const auto row = [&](std::size_t i) { return u * u[i] - (a * a[i] + b * b[i] + c * c[i]) * sine2; };
+    std::array<Vec3d, 3> rows{row(0), row(1), row(2)};
+    const double trace = rows[0].x + rows[1].y + rows[2].z, determinant = sqr(sine2 * dot(a, cross(b, c))) * (1 - sine2);
+    const double minors = rows[0].x * rows[1].y - sqr(rows[0].y) + rows[0].x * rows[2].z - sqr(rows[0].z) + rows[1].y * rows[2].z - sqr(rows[1].z);
+    double mu = dot(u, u); // an upper bound: from there Newton's steps go down to the greatest root
+    for (int i = 0; i < 32; ++i) {
+        const double value = ((mu - trace) * mu + minors) * mu - determinant, slope = (3 * mu - 2 * trace) * mu + minors;
+        if (!(value > 1e-12 * mu * slope)) break;
+        mu -= value / slope;
+    }
+    for (std::size_t i = 0; i < 3; ++i) rows[i][i] -= mu;
+    Vec3d axis;
+    for (const Vec3d& across : {cross(rows[0], rows[1]), cross(rows[1], rows[2]), cross(rows[2], rows[0])})
+        if (dot(across, across) > dot(axis, axis)) axis = across;
+    const double size = length(axis);
+    if (!(size > 0)) return 0;
+    axis = axis * ((dot(axis, u) < 0 ? -1 : 1) / size);
+    const double form_factor = 1 / std::sqrt(1 + sqr(mu) * (2 * mu - trace) / determinant);
+    return sphere_form_factor_times_pi({}, {0, 0, 1}, Sphere{Vec3(axis), static_cast<float>(std::sqrt(form_factor))});
 }
 
 } // namespace
@@ -45,22 +83,10 @@ Rgb area_reflection(const SurfaceLight& light, const MetalBsdf& bsdf, const Shad
     const SurfacePoint& surface = point.surface;
     if (light.object == surface.object && light.primitive == surface.primitive) return {};
     if (!emits_towards(light, surface.p)) return {};
-    Outline polygon = std::visit([&](const auto& shape) { return outline(shape, surface.p); }, light.shape);
-    if (polygon.count == 0) return {};
-
-    // The frame of the viewer's side, the viewer in the plane y = 0.
-    const Vec3 wo(point.wo.x, point.wo.y, std::abs(point.wo.z));
-    const float flat = std::sqrt(sin2_theta(wo)), flip = point.wo.z < 0 ? -1.0f : 1.0f;
-    const Vec2 turn = flat > 1e-6f ? Vec2(wo.x / flat, wo.y / flat) : Vec2(1, 0);
-    const LobeMatrix lobe = ggx_lobe(bsdf.alpha, wo.z);
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-        Vec3 w = point.frame.to_local(polygon.v[i] - surface.p);
-        w.z *= flip;
-        polygon.v[i] = lobe.to_cosine({turn.x * w.x + turn.y * w.y, turn.x * w.y - turn.y * w.x, w.z});
-    }
-    const double part = polygon_form_factor_times_pi({}, {0, 0, 1}, std::span<const Vec3>(polygon.v.data(), polygon.count));
+    const ToCosine to_cosine(point, bsdf.alpha);
+    const double part = std::visit([&](const auto& shape) { return filled(shape, to_cosine, surface.p); }, light.shape);
     // Further reflections leave evenly enough to be taken for diffuse.
-    const GgxAlbedo single = ggx_albedo(bsdf.alpha, wo.z);
+    const GgxAlbedo single = ggx_albedo(bsdf.alpha, std::abs(point.wo.z));
     const Rgb further = bsdf.multiple * ((1 - single.energy) * ggx_means(bsdf.alpha).lost);
     return light.radiance * single.of(bsdf.reflectance) * static_cast<float>(part / kPiDouble) + irradiance(light, point) * further;
 }

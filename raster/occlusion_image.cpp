@@ -10,8 +10,10 @@ namespace {
 
 constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
 constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
-/// A box of 4 pixels about the middle of a fifth: each of 4 × 4 patterns counts alike.
-constexpr std::array<float, 5> kBox{0.125f, 0.25f, 0.25f, 0.25f, 0.125f};
+/// A box of 8 pixels, in which each of the patterns counts alike, softened by one of 4: so what one of them meets comes and
+/// goes slowly. By the distance from the middle.
+constexpr int kReach = 6;
+constexpr std::array<float, kReach + 1> kSoftBox{4, 4, 3.75f, 3, 2, 1, 0.25f};
 constexpr int kLanesWide = static_cast<int>(Floats::size);
 
 /// 1 on the same plane facing the same way, 0 off it.
@@ -40,11 +42,11 @@ OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, floa
     : screen_(screen), kind_(kind), radius_(radius) {
     if (screen.width() < kLanesWide) return; // every point is looked at by itself
     const auto rows = static_cast<std::size_t>(screen.height());
-    for (ImageFloat& plane : found_) plane = ImageFloat(screen.width(), screen.height());
-    for (ImageFloat& plane : smooth_) plane = ImageFloat(screen.width(), screen.height());
+    Planes along_rows;
+    for (std::size_t k = 0; k < found_.size(); ++k) found_[k] = along_rows[k] = ImageFloat(screen.width(), screen.height());
     parallel_for(rows, threads, [&](std::size_t y) { look_row(static_cast<int>(y)); });
-    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y)); });
-    found_ = {};
+    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), false, found_, along_rows); });
+    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), true, along_rows, found_); });
 }
 
 SkySeenT<Floats> OcclusionImage::look(const OcclusionPoints& points, const OcclusionPattern& pattern) const {
@@ -68,40 +70,35 @@ void OcclusionImage::look_row(int y) {
     });
 }
 
-void OcclusionImage::smooth_row(int y) {
+void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to) const {
     const int width = screen_.width(), height = screen_.height();
-    const Floats none(0.0f);
+    const Floats none(0.0f), last(static_cast<float>(width - 1));
     for_batches(width, [&](int x) {
         const Floats nearness = load_from(screen_.nearness(), x, y);
         if (xsimd::all(nearness <= none)) return;
-        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0), last(static_cast<float>(width - 1));
+        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
         const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
         const Vec3T<Floats> n = normals_from(screen_, x, y);
         const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / any_nearness(nearness));
         Floats weights(0.0f);
         std::array<Floats, 4> sums{none, none, none, none};
-        for (int dy = -2; dy <= 2; ++dy) {
-            const int row = y + dy;
+        for (int step = -kReach; step <= kReach; ++step) {
+            const int dx = down ? 0 : step, row = down ? y + step : y;
             if (row < 0 || row >= height) continue;
-            for (int dx = -2; dx <= 2; ++dx) {
-                const Floats at = column + Floats(static_cast<float>(dx));
-                const bool within = x + dx >= 0 && x + dx + kLanesWide <= width;
-                const Ints places = truncated(min(max(at, none), last));
-                const auto of = [&](const ImageFloat& image) {
-                    return within ? load_from(image, x + dx, row) : gather(&image(0, row), places);
-                };
-                const Floats other = of(screen_.nearness());
-                const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
-                const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
-                const auto counts = (other > none) & (at >= none) & (at <= last);
-                const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance), none) *
-                                      Floats(kBox[static_cast<std::size_t>(dx + 2)] * kBox[static_cast<std::size_t>(dy + 2)]);
-                weights += weight;
-                for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(found_[k]), none);
-            }
+            const Floats at = column + Floats(static_cast<float>(dx));
+            const bool within = x + dx >= 0 && x + dx + kLanesWide <= width;
+            const Ints places = truncated(min(max(at, none), last));
+            const auto of = [&](const ImageFloat& image) { return within ? load_from(image, x + dx, row) : gather(&image(0, row), places); };
+            const Floats other = of(screen_.nearness());
+            const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
+            const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
+            const auto counts = (other > none) & (at >= none) & (at <= last);
+            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kSoftBox[static_cast<std::size_t>(std::abs(step))]), none);
+            weights += weight;
+            for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(from[k]), none);
         }
         const Floats over = Floats(1.0f) / max(weights, Floats(1e-20f));
-        for (std::size_t k = 0; k < 4; ++k) (sums[k] * over).store_unaligned(&smooth_[k](x, y));
+        for (std::size_t k = 0; k < 4; ++k) (sums[k] * over).store_unaligned(&to[k](x, y));
     });
 }
 
@@ -112,10 +109,10 @@ float OcclusionImage::likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) co
 }
 
 SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
-    if (smooth_[0].empty()) return look(p, n);
+    if (found_[0].empty()) return look(p, n);
     const float depth = screen_.homogeneous(p)[2], tolerance = screen_.pixel_size(kPixels * depth);
     const auto found = [&](int column, int row) {
-        return SkySeen{smooth_[0](column, row), {smooth_[1](column, row), smooth_[2](column, row), smooth_[3](column, row)}};
+        return SkySeen{found_[0](column, row), {found_[1](column, row), found_[2](column, row), found_[3](column, row)}};
     };
     if (likeness(x, y, p, n, tolerance) > 0.5f) return found(x, y);
     float weights = 0;
@@ -136,12 +133,12 @@ SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
 SkySeen OcclusionImage::look(Vec3 p, Vec3 n) const {
     const OcclusionPoints points{spread<Floats>(p), spread<Floats>(n), spread<Floats>(screen_.to_viewer(p))};
     SkySeen sum{0, {}};
-    for (int first = 0; first < OcclusionPattern::kPatterns; first += kLanesWide) {
+    for (int first = 0; first < OcclusionPattern::kOfPoint; first += kLanesWide) {
         const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_point(first));
         sum.visible += xsimd::hadd(seen.visible);
         sum.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
     }
-    return {sum.visible / OcclusionPattern::kPatterns, sum.hidden / static_cast<float>(OcclusionPattern::kPatterns)};
+    return {sum.visible / OcclusionPattern::kOfPoint, sum.hidden / static_cast<float>(OcclusionPattern::kOfPoint)};
 }
 
 } // namespace duet::raster

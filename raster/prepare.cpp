@@ -78,6 +78,28 @@ std::vector<Texels> pack_texels(const Scene& scene, const Settings& settings) {
     return raster::pack_texels(scene.textures, wanted, settings.threads);
 }
 
+/// Whether quads enclose a space, as a box's six do, and face outwards: each side of one is a side of another the other way
+/// round. Places count as one that are apart by rounding.
+bool encloses(const QuadList& list) {
+    struct Side {
+        Vec3 from, to;
+    };
+    std::vector<Side> sides;
+    double volume = 0;
+    float size = 0;
+    for (const Quad& quad : list.quads) {
+        const std::array<Vec3, 4> c = corners(quad);
+        for (std::size_t i = 0; i < 4; ++i) sides.push_back({c[i], c[(i + 1) % 4]});
+        volume += dot(Vec3d(c[0] + c[2] - list.quads.front().corner * 2.0f), cross(Vec3d(quad.u), Vec3d(quad.v)));
+        size = std::max({size, length(quad.u), length(quad.v)});
+    }
+    const auto same = [&](Vec3 a, Vec3 b) { return length(a - b) <= 1e-5f * size; };
+    return volume > 0 && std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
+               return std::count_if(sides.begin(), sides.end(),
+                                    [&](const Side& other) { return same(side.from, other.to) && same(side.to, other.from); }) == 1;
+           });
+}
+
 PreparedObject prepare_object(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
     const Shape& shape = scene.shapes[object.shape];
     PreparedObject result;
@@ -90,8 +112,8 @@ PreparedObject prepare_object(const Scene& scene, const Object& object, const st
         if (image < texels.size() && !texels[image].empty()) result.one_texture = slot;
     }
     const Mesh* mesh = std::get_if<Mesh>(&shape);
-    const auto* quads = std::get_if<QuadList>(&shape); // one, or a box's six
-    result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || quads->quads.size() == 6;
+    const auto* quads = std::get_if<QuadList>(&shape);
+    result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);
     result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
     return result;
 }

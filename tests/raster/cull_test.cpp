@@ -2,6 +2,7 @@
 #include "tests/raster/scenes.h"
 
 #include "raster/cull.h"
+#include "raster/prepare.h"
 
 #include <doctest/doctest.h>
 
@@ -137,6 +138,20 @@ TEST_SUITE("unit") {
             CAPTURE(agreement.first);
             CHECK(agreement.unexplained == 0);
         }
+    }
+
+    TEST_CASE("six quads are closed where they enclose a space and face outwards, not for being six") {
+        QuadList box = box_quads(Vec3(-0.1f, 0.3f, 7), Vec3(1, 0.7f, 7.3f)), open = box, inside_out = box, twice = box;
+        open.quads[2].corner.y -= 0.1f; // a box whose lid is off
+        for (Quad& quad : inside_out.quads) std::swap(quad.u, quad.v);
+        twice.quads[1] = twice.quads[0];
+        QuadList sheets = box; // six beside each other
+        for (std::size_t i = 0; i < 6; ++i) sheets.quads[i] = {Vec3(static_cast<float>(i), 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+        Scene scene;
+        for (const QuadList& quads : {box, open, inside_out, twice, sheets}) add(scene, quads);
+        finish_scene(scene);
+        const raster::Prepared prepared = raster::prepare(scene, {});
+        for (std::size_t i = 0; i < 5; ++i) CHECK(prepared.data().objects[i].closed == (i == 0));
     }
 
     TEST_CASE("a box is outside the frustum only if no point of it can be seen") {

@@ -118,6 +118,27 @@ TEST_SUITE("unit") {
             }
     }
 
+    // Seen head on the lobe is the same all round, so a ball whose edge lies in its middle gives the same wherever that is.
+    TEST_CASE("a round lamp is round: the same from all sides, and half of it where its edge is mirrored") {
+        SurfacePoint surface;
+        surface.ng = surface.ns = {0, 0, 1};
+        surface.object = 5;
+        const raster::ShadingPoint point(surface, {0, 0, 1});
+        const MetalBsdf bsdf{Rgb(0.9f), 0.01f};
+        SurfaceLight lamp;
+        lamp.radiance = Rgb(1.0f);
+        const auto found = [&](double tilt, double turn) {
+            lamp.shape = Sphere{Vec3(Vec3d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)) * 2.0), 1};
+            return static_cast<double>(raster::area_reflection(lamp, bsdf, point).g);
+        };
+        const double edge = kPiDouble / 6, whole = found(0, 0);
+        for (int i = 0; i < 32; ++i) {
+            CHECK(found(edge, i * 0.2) == doctest::Approx(found(edge, 0)).epsilon(1e-3));
+            CHECK(found(edge, i * 0.2) == doctest::Approx(whole / 2).epsilon(0.05)); // the edge is bent a little
+        }
+        CHECK(found(edge + 0.15, 1) < 0.01 * whole);
+    }
+
     TEST_CASE("what fills the hemisphere is reflected by the albedo; the light's back, and its own surface, not at all") {
         SurfacePoint surface;
         surface.ng = surface.ns = {0, 1, 0};
