@@ -38,9 +38,11 @@ public:
         if (!glass && !needs_screen_radiance(data_, settings_)) return screen;
         first_look(*geometry, nullptr, *screen);
         add_shapes(true, *screen);
+        screen->set_flat_look(flat_look(*screen));
         if (!glass) return screen;
         look_behind_glass(*screen);
         first_look(*geometry, &screen->first_look(), *screen);
+        screen->set_flat_look(flat_look(*screen));
         return screen;
     }
 
@@ -126,6 +128,7 @@ private:
         add_occlusion(data_, settings_, *bare);
         first_look(*geometry, &screen.first_look(), *bare);
         add_shapes(false, *bare);
+        bare->set_flat_look(flat_look(*bare));
         process_backs_of_glass(data_, grid_, central_, settings_, true, *glass);
         const std::shared_ptr<const Screen> backs = depths_and_normals(*glass);
         process_glass(data_, grid_, central_, settings_, *glass);
@@ -182,9 +185,9 @@ private:
             }
         auto screen = std::make_shared<Screen>(central_.pinhole, central_.samples.front(), std::move(nearness));
         screen->set_normals(normals);
-        screen->set_turns(normal_turns(*screen, settings_.threads));
         screen->set_thickness(std::move(thickness));
         screen->set_first_look({{}, std::move(objects), {}, {}, {}});
+        screen->set_turns(normal_turns(*screen, settings_.threads));
         screen->set_glass(std::move(behind), backs_of(layer.hits, backs));
         screen->set_front(front);
         return screen;
@@ -236,6 +239,7 @@ private:
                 }
         });
         screen.set_first_look(std::move(picture).finish());
+        screen.set_flat_look(flat_look(screen));
     }
 
     /// The tiles that show glass: their hits of one geometry, or none, and the lists of another's before them.

@@ -3,6 +3,7 @@
 
 #include "common/image/image.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace duet::raster {
@@ -12,6 +13,9 @@ class RadiancePyramid {
 public:
     RadiancePyramid() = default;
     explicit RadiancePyramid(ImageRgb picture);
+    /// Of those pixels alone that are `known`, not 0; the others are filled from what is known about them (Gortler et al.
+    /// 1996, «The Lumigraph», §3.4: pull and push). Empty where none is.
+    RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known);
 
     /// About (x, y), in pixels, over about `width` of them: between levels and between pixels linearly. At the picture's
     /// edge what is there goes on.

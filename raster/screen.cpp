@@ -42,7 +42,7 @@ std::size_t Screen::memory_bytes() const {
     const FirstLook& look = first_look_;
     std::size_t sum = bytes_of(nearness_) + static_cast<std::size_t>(nearest_.memory_bytes()) + bytes_of(turns_) + bytes_of(thickness_) +
                       bytes_of(look.keys) + bytes_of(look.objects) + bytes_of(look.lamps) + look.radiance.memory_bytes() +
-                      look.without_lamps.memory_bytes();
+                      look.without_lamps.memory_bytes() + flat_look_.memory_bytes();
     for (const ImageFloat& plane : normals_) sum += bytes_of(plane);
     if (occlusion_) sum += occlusion_->memory_bytes();
     for (const auto& other : {behind_, backs_})

@@ -115,6 +115,10 @@ public:
     };
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
     const FirstLook& first_look() const { return first_look_; }
+    /// The same of flat surfaces alone, which go on behind what stands before them (raster/screen_reflection.h), once it is
+    /// there; else, and where there are none, empty.
+    void set_flat_look(RadiancePyramid look) { flat_look_ = std::move(look); }
+    const RadiancePyramid& flat_look() const { return flat_look_; }
 
     /// The same view where each pixel sees the next object behind its glass, with a first look, in turn with what is behind
     /// that; and the nearest back faces of glass. Else null.
@@ -141,6 +145,7 @@ private:
     std::array<ImageFloat, 3> normals_;
     std::shared_ptr<const OcclusionImage> occlusion_;
     FirstLook first_look_;
+    RadiancePyramid flat_look_;
     ImageFloat turns_, thickness_;
     std::shared_ptr<const Screen> behind_, backs_;
     const Screen* front_ = nullptr;

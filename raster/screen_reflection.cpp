@@ -10,9 +10,8 @@ namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
 constexpr float kSameSurface = 0.05f; ///< of the depth: how far neighbouring pixels of one surface may be apart
-constexpr float kFlat = 0.01f;        ///< radians from pixel to pixel: what turns less goes on as its plane does
 constexpr int kBlock = 16;            ///< pixels: blocks of the picture before which a ray is are passed at once
-constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve
+constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve; and of a pixel alone
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
 float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
@@ -23,7 +22,12 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
 }
 
-bool is_flat(const Screen& screen, int x, int y) { return screen.turn(x, y) < kFlat; }
+/// Whether what a pixel shows goes on as its plane does: its radius of curvature is more than its depth, however fine the
+/// picture.
+bool is_flat(const Screen& screen, int x, int y) {
+    const float depth = screen.depth(x, y);
+    return depth < kInfinity && screen.turn(x, y) * depth < screen.pixel_size(depth);
+}
 
 /// How many of at most `most` steps (sx, sy) from a place stay in its block of kBlock × kBlock pixels, or fewer.
 int steps_in_block(float x, float y, float sx, float sy, int most) {
@@ -133,29 +137,28 @@ private:
     }
 
     /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays.
-    int passed_at_once(int i, float& before) const {
+    int passed_at_once(int i, float& before) {
         if (i <= 2) return 0;
         const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t);
         if (!scenery_.all.contains(fx, fy)) return 0;
         const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), line_.last() - i);
         if (more <= 0) return 0;
         const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
-        const bool passes = block_is_beyond(scenery_.all, fx, fy, deepest);
-        if (passes) before = last_depth;
-        return passes ? more : 0;
+        if (!block_is_beyond(scenery_.all, fx, fy, deepest)) return 0;
+        before = last_depth;
+        hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
+        return more;
     }
 
     /// A step, over which the ray's depth goes from `before` to `depth`.
     std::optional<ScreenHit> visit(int i, float t, float fx, float fy, float before, float depth) {
         const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
-        last_ = {x, y};
         if (from_picture_ && i < 2) return std::nullopt;
         const Screen& screen = scenery_.at(x, y);
         const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
         const float distance = line_.distance(t, depth);
         if (far < seen_depth) {
             hidden_from_ = -1, in_front_ = distance;
-            if (is_flat(screen, x, y) && seen_depth < kInfinity) flat_ = last_;
             return std::nullopt;
         }
         const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
@@ -163,7 +166,7 @@ private:
         if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
         if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
             const float crossed = meets_plane(screen, p_, way_, x, y);
-            if (crossed > hidden_from_ && crossed <= distance) return beside_edge(guess(screen, fx, fy, crossed), seen_depth);
+            if (crossed > hidden_from_ && crossed <= distance) return of_hidden(beside_edge(guess(screen, fx, fy, crossed), seen_depth));
         }
         if (behind) return std::nullopt;
         return meet(screen, i, t, x, y, near, known > 0);
@@ -177,6 +180,7 @@ private:
         const float depth = screen.depth(x, y);
         const bool inside = closed && near > depth; // it has come from behind or beside
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
+        if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
         if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         const float fx = line_.x(met), fy = line_.y(met);
@@ -194,23 +198,45 @@ private:
         return false;
     }
 
+    /// The last pixel that it has come to.
+    Pixel last() const {
+        for (int i = line_.last(); i >= line_.first(); --i)
+            if (const Pixel at = pixel(i); at.valid()) return at;
+        const auto [x, y] = scenery_.all.pixel_at(line_.from());
+        return {x, y};
+    }
+    /// The last one that shows a flat surface that it is before.
+    Pixel last_flat() const {
+        for (int i = line_.last(); i >= line_.first(); --i) {
+            const Pixel at = pixel(i);
+            if (!at.valid() || scenery_.is_own(at.x, at.y) || !is_flat(scenery_.at(at.x, at.y), at.x, at.y)) continue;
+            const float depth = scenery_.at(at.x, at.y).depth(at.x, at.y);
+            if (std::max(line_.depth(line_.part(i - 1)), line_.depth(line_.part(i))) < depth) return at;
+        }
+        return {};
+    }
+    /// None where rounding takes it out of the picture.
+    Pixel pixel(int step) const {
+        const float t = line_.part(step), fx = line_.x(t), fy = line_.y(t);
+        return scenery_.all.contains(fx, fy) ? Pixel{static_cast<int>(fx), static_cast<int>(fy)} : Pixel{};
+    }
+
     std::optional<ScreenHit> beyond_edge() const {
-        const Pixel last = last_.valid() ? last_ : Pixel{scenery_.all.pixel_at(line_.from()).first, scenery_.all.pixel_at(line_.from()).second};
+        const Pixel end = last();
         const auto goes_on = [&](Pixel at, float from) -> std::optional<ScreenHit> {
+            if (!at.valid()) return std::nullopt;
             const Screen& screen = scenery_.at(at.x, at.y);
             const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
             if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
-            return guess(screen, middle(at.x), middle(at.y), crossed);
+            return of_hidden(guess(screen, middle(at.x), middle(at.y), crossed));
         };
         if (hidden_from_ >= 0) {
-            if (flat_.valid())
-                if (const auto hit = goes_on(flat_, hidden_from_)) return hit;
-            return guess(scenery_.at(last.x, last.y), middle(last.x), middle(last.y), hidden_from_);
+            if (const auto hit = goes_on(last_flat(), hidden_from_)) return hit;
+            return of_hidden(guess(scenery_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_from_));
         }
-        const Screen& screen = scenery_.at(last.x, last.y);
-        if (scenery_.is_own(last.x, last.y) || !screen.seen(last.x, last.y)) return std::nullopt;
-        if (is_flat(screen, last.x, last.y)) return goes_on(last, 0);
-        return flat_.valid() ? goes_on(flat_, 0) : std::nullopt; // something round stands before it there
+        const Screen& screen = scenery_.at(end.x, end.y);
+        if (scenery_.is_own(end.x, end.y) || !screen.seen(end.x, end.y)) return std::nullopt;
+        return is_flat(screen, end.x, end.y) ? goes_on(end, 0) : goes_on(last_flat(), 0); // something round stands before it there
     }
 
     /// What a pixel shows stands for what is met at a distance.
@@ -225,6 +251,10 @@ private:
         if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
         return hit;
     }
+    static ScreenHit of_hidden(ScreenHit hit) {
+        hit.hidden = true;
+        return hit;
+    }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;
@@ -233,7 +263,6 @@ private:
     bool from_picture_;
     Crossing line_;
     float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
-    Pixel last_, flat_;                     ///< where it is; the last flat surface that it was before
 };
 
 } // namespace
@@ -246,15 +275,16 @@ float normal_turn(const Screen& screen, int x, int y) {
     const Vec3 n = screen.normal(x, y);
     const float depth = screen.depth(x, y);
     if (!(depth < kInfinity)) return 0; // nothing is seen
-    float most = 0;
+    const Image<std::uint32_t>& objects = screen.first_look().objects;
+    float most = -1;
     for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
         const int i = x + dx, k = y + dy;
         if (i < 0 || k < 0 || i >= screen.width() || k >= screen.height()) continue;
-        if (!(std::abs(screen.depth(i, k) - depth) <= kSameSurface * depth)) continue;
+        if (objects(i, k) != objects(x, y) || !(std::abs(screen.depth(i, k) - depth) <= kSameSurface * depth)) continue;
         const float turn = length(screen.normal(i, k) - n);
         if (turn < kSmallTurn) most = std::max(most, turn);
     }
-    return most;
+    return most < 0 ? kSmallTurn : most; // alone it is small, and any way round
 }
 
 ImageFloat normal_turns(const Screen& screen, int threads) {
@@ -263,6 +293,14 @@ ImageFloat normal_turns(const Screen& screen, int threads) {
         for (int x = 0; x < screen.width(); ++x) turns(x, static_cast<int>(row)) = normal_turn(screen, x, static_cast<int>(row));
     });
     return turns;
+}
+
+RadiancePyramid flat_look(const Screen& screen) {
+    const Screen::FirstLook& look = screen.first_look();
+    Image<std::uint8_t> flat(screen.width(), screen.height(), 0);
+    for (int y = 0; y < screen.height(); ++y)
+        for (int x = 0; x < screen.width(); ++x) flat(x, y) = is_flat(screen, x, y) && look.lamps(x, y) == 0;
+    return RadiancePyramid(look.radiance.finest(), flat);
 }
 
 } // namespace duet::raster

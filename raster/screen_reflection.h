@@ -35,6 +35,7 @@ struct ScreenHit {
     float x, y;     ///< in pixels
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
+    bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it, if there is one
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
@@ -53,11 +54,13 @@ struct ScreenHit {
 /// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
 
-/// By how much the normal turns from pixel (x, y) to the next one on its surface, radians at most: twice that is what a
-/// mirror's rays spread by.
+/// By how much the normal turns from pixel (x, y) to the next one on its surface, radians at most, of a screen that knows its
+/// objects: twice that is what a mirror's rays spread by. Half a radian where no neighbour is of its surface.
 float normal_turn(const Screen& screen, int x, int y);
 /// Of all pixels: Screen::set_turns.
 ImageFloat normal_turns(const Screen& screen, int threads);
+/// Screen::set_flat_look: the first look at flat surfaces, the turns being known. Empty where there are none.
+RadiancePyramid flat_look(const Screen& screen);
 
 inline constexpr float kThickness = 0.02f;
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.

@@ -103,6 +103,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
         const auto [x, y] = scenery_.all.pixel_at({hit->x, hit->y, 0});
         const bool is_lamp = shown.lamps(x, y) != 0;
         if (is_lamp) distance = kInfinity; // it hides none
+        const RadiancePyramid& flat = scenery_.about(hit->x, hit->y, size).flat_look();
+        if (hit->hidden && !flat.empty()) return flat.at(hit->x, hit->y, size);
         const bool lamps = look.lamps && hit->gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
         return (lamps ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);
     }

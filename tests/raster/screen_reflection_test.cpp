@@ -153,6 +153,47 @@ TEST_SUITE("unit") {
         }
     }
 
+    // What rays meet behind something is looked up blurred, and must be of the floor, not of what stands on it.
+    TEST_CASE("what is hidden is seen as the flat surfaces about it: no ball is flat, however fine the picture") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        add(scene, Sphere{Vec3(0, 0.6f, 0.5f), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        for (const int height : {60, 240, 720}) {
+            const View view{look({0, 1.5, 4}, {0, 0.6, 0}, 50), height * 4 / 3, height};
+            const auto screen = raster::screen_of(raster::prepare(scene, plain()), view, plain());
+            const raster::RadiancePyramid& flat = screen->flat_look();
+            CAPTURE(height);
+            REQUIRE_FALSE(flat.empty());
+            for (const float wide : {1.0f, 4.0f, 30.0f})
+                for (const float part : {0.1f, 0.3f, 0.5f, 0.7f}) {
+                    const Rgb seen = flat.at(part * static_cast<float>(view.width), 0.55f * static_cast<float>(height), wide);
+                    CHECK(seen.g > 0.2f);
+                    CHECK(seen.r < 0.01f);
+                }
+        }
+    }
+
+    TEST_CASE("a picture known in part: what is known stays, the rest is filled from what is about it; of nothing, nothing") {
+        ImageRgb picture(37, 21, Rgb(5.0f));
+        Image<std::uint8_t> known(37, 21, 0);
+        CHECK(raster::RadiancePyramid(picture, known).empty());
+        for (int y = 0; y < 21; ++y)
+            for (int x = 0; x < 37; ++x)
+                if (x < 6 || x > 30) known(x, y) = 1, picture(x, y) = Rgb(x < 6 ? 1.0f : 2.0f);
+        const raster::RadiancePyramid filled(picture, known);
+        CHECK(filled.at(3, 10, 1).g == doctest::Approx(1));
+        CHECK(filled.at(34, 10, 1).g == doctest::Approx(2));
+        for (float x = 6; x < 31; ++x)
+            for (const float wide : {1.0f, 3.0f, 9.0f}) {
+                CHECK(filled.at(x, 10, wide).g > 0.99f);
+                CHECK(filled.at(x, 10, wide).g < 2.01f);
+            }
+        CHECK(filled.at(10, 10, 1).g < filled.at(26, 10, 1).g);
+    }
+
     TEST_CASE("a ray that begins beside the picture is followed through it") {
         const Scene scene = before_wall(0);
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
