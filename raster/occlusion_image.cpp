@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace duet::raster {
 namespace {
 
 constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
 constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
-/// A box of 8 pixels, in which each of the patterns counts alike, softened by one of 4: so what one of them meets comes and
-/// goes slowly. By the distance from the middle.
-constexpr int kReach = 6;
-constexpr std::array<float, kReach + 1> kSoftBox{4, 4, 3.75f, 3, 2, 1, 0.25f};
+constexpr int kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are little
+/// By the distance from the middle: a box of 4 pixels; and one of 8, softened by one of 4, so that what a pattern meets comes
+/// and goes slowly. In both each pattern counts alike.
+constexpr std::array<float, 3> kBox{1, 1, 0.5f};
+constexpr std::array<float, 7> kSoftBox{4, 4, 3.75f, 3, 2, 1, 0.25f};
 constexpr int kLanesWide = static_cast<int>(Floats::size);
 
 /// 1 on the same plane facing the same way, 0 off it.
@@ -39,7 +41,7 @@ template <typename F> void for_batches(int width, const F& use) {
 } // namespace
 
 OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads)
-    : screen_(screen), kind_(kind), radius_(radius) {
+    : screen_(screen), kind_(kind), radius_(radius), side_(std::min(screen.width(), screen.height()) < kFine ? 4 : 8) {
     if (screen.width() < kLanesWide) return; // every point is looked at by itself
     const auto rows = static_cast<std::size_t>(screen.height());
     Planes along_rows;
@@ -63,7 +65,7 @@ void OcclusionImage::look_row(int y) {
         points.p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
         points.n = normals_from(screen_, x, y);
         points.to_viewer = screen_.to_viewer(points.p);
-        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y, side_));
         const std::array<Floats, 4> numbers{seen.visible, seen.hidden.x, seen.hidden.y, seen.hidden.z};
         for (std::size_t k = 0; k < 4; ++k)
             xsimd::select(nearness > Floats(0.0f), numbers[k], Floats(0.0f)).store_unaligned(&found_[k](x, y));
@@ -72,6 +74,8 @@ void OcclusionImage::look_row(int y) {
 
 void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to) const {
     const int width = screen_.width(), height = screen_.height();
+    const std::span<const float> kernel = side_ == 4 ? std::span<const float>(kBox) : std::span<const float>(kSoftBox);
+    const int reach = static_cast<int>(kernel.size()) - 1;
     const Floats none(0.0f), last(static_cast<float>(width - 1));
     for_batches(width, [&](int x) {
         const Floats nearness = load_from(screen_.nearness(), x, y);
@@ -82,7 +86,7 @@ void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to
         const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / any_nearness(nearness));
         Floats weights(0.0f);
         std::array<Floats, 4> sums{none, none, none, none};
-        for (int step = -kReach; step <= kReach; ++step) {
+        for (int step = -reach; step <= reach; ++step) {
             const int dx = down ? 0 : step, row = down ? y + step : y;
             if (row < 0 || row >= height) continue;
             const Floats at = column + Floats(static_cast<float>(dx));
@@ -93,7 +97,7 @@ void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to
             const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
             const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
             const auto counts = (other > none) & (at >= none) & (at <= last);
-            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kSoftBox[static_cast<std::size_t>(std::abs(step))]), none);
+            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kernel[static_cast<std::size_t>(std::abs(step))]), none);
             weights += weight;
             for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(from[k]), none);
         }
