@@ -59,7 +59,7 @@ private:
     std::unique_ptr<Screen> depths_and_normals(const Geometry& geometry) const {
         ImageFloat nearness(width(), height());
         ImageRgb normals(width(), height());
-        const std::unique_ptr<Program> normal = program(Shading::kNormal);
+        const std::unique_ptr<Program> normal = normal_program();
         for_tiles([&](std::size_t i, const PixelRect& rect) {
             keep_nearness_and_colors(data_, geometry, central_, *normal, rect, i, nearness, normals);
         });

@@ -323,7 +323,7 @@ std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& vi
 }
 
 void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
-    const std::unique_ptr<Program> built_in = program(settings.shading);
+    const std::unique_ptr<Program> built_in = program(settings.shading, view.camera);
     render_with(prepared, view, settings, built_in.get(), control, result);
 }
 

@@ -24,7 +24,7 @@ enum class Shading {
     kEdges,     ///< ink on paper: Settings::edges alone
     kNormal,    ///< the shading normal as a colour: (n + 1)/2
     kAlbedo,    ///< base colours
-    kDepth,     ///< near / depth
+    kDepth,     ///< d / (d + depth), d the distance from the camera to what it looks at
 };
 /// "lit", "phong" …, as shading_names() lists them; throws Error for another name.
 Shading shading(std::string_view name);

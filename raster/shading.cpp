@@ -9,18 +9,21 @@ namespace {
 struct Known {
     std::string_view name;
     Shading shading;
-    std::unique_ptr<Program> (*program)();
+    std::unique_ptr<Program> (*program)(const Camera&);
 };
+// Of those to which the camera is all one.
+template <std::unique_ptr<Program> (*make)()> std::unique_ptr<Program> any(const Camera&) { return make(); }
+
 constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
-                          Known{"phong", Shading::kPhong, phong_program},
-                          Known{"gouraud", Shading::kGouraud, gouraud_program},
-                          Known{"flat", Shading::kFlat, flat_program},
-                          Known{"toon", Shading::kToon, toon_program},
-                          Known{"wireframe", Shading::kWireframe, wireframe_program},
+                          Known{"phong", Shading::kPhong, any<phong_program>},
+                          Known{"gouraud", Shading::kGouraud, any<gouraud_program>},
+                          Known{"flat", Shading::kFlat, any<flat_program>},
+                          Known{"toon", Shading::kToon, any<toon_program>},
+                          Known{"wireframe", Shading::kWireframe, any<wireframe_program>},
                           Known{"lines", Shading::kLines, depth_program}, // none of its colours are kept, as of the next
                           Known{"edges", Shading::kEdges, depth_program},
-                          Known{"normal", Shading::kNormal, normal_program},
-                          Known{"albedo", Shading::kAlbedo, albedo_program},
+                          Known{"normal", Shading::kNormal, any<normal_program>},
+                          Known{"albedo", Shading::kAlbedo, any<albedo_program>},
                           Known{"depth", Shading::kDepth, depth_program}};
 
 } // namespace
@@ -38,9 +41,9 @@ Shading shading(std::string_view name) {
     throw Error(message("shading: found ", name, ", expected ", shading_names()));
 }
 
-std::unique_ptr<Program> program(Shading shading) {
+std::unique_ptr<Program> program(Shading shading, const Camera& camera) {
     for (const Known& known : kAll)
-        if (known.shading == shading && known.program != nullptr) return known.program();
+        if (known.shading == shading && known.program != nullptr) return known.program(camera);
     return nullptr;
 }
 

@@ -8,8 +8,8 @@
 
 namespace duet::raster {
 
-/// Of Settings::shading; null for Shading::kLit, which is no program (raster/shade.h).
-std::unique_ptr<Program> program(Shading shading);
+/// Of Settings::shading, as a camera sees; null for Shading::kLit, which is no program (raster/shade.h).
+std::unique_ptr<Program> program(Shading shading, const Camera& camera);
 
 // A file each.
 std::unique_ptr<Program> phong_program();
@@ -20,6 +20,6 @@ std::unique_ptr<Program> wireframe_program();
 std::unique_ptr<Program> normal_program(); ///< of surface_colors.cpp, as the next two
 std::unique_ptr<Program> smooth_normal_program(); ///< whatever maps say: what edges are drawn by
 std::unique_ptr<Program> albedo_program();
-std::unique_ptr<Program> depth_program();
+std::unique_ptr<Program> depth_program(const Camera& camera);
 
 } // namespace duet::raster

@@ -20,9 +20,11 @@ struct AlbedoShader : NoVaryings {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const { return f.base_color(); }
 };
 
-/// near / depth.
+/// White at the camera, half as bright as far away as what it looks at, black at infinity.
 struct DepthShader : NoVaryings {
-    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(f.nearness); }
+    float half = 1; ///< that distance
+
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(T(half) / (T(half) + f.depth)); }
 };
 
 } // namespace
@@ -34,6 +36,10 @@ std::unique_ptr<Program> smooth_normal_program() {
     return std::make_unique<ProgramOf<NormalShader>>(shader);
 }
 std::unique_ptr<Program> albedo_program() { return std::make_unique<ProgramOf<AlbedoShader>>(AlbedoShader{}); }
-std::unique_ptr<Program> depth_program() { return std::make_unique<ProgramOf<DepthShader>>(DepthShader{}); }
+std::unique_ptr<Program> depth_program(const Camera& camera) {
+    DepthShader shader;
+    shader.half = static_cast<float>(length(camera.look_at - camera.eye));
+    return std::make_unique<ProgramOf<DepthShader>>(shader);
+}
 
 } // namespace duet::raster

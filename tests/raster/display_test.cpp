@@ -1,5 +1,6 @@
 // Pictures for displays and shadow maps: the fast ways against the naive ones.
 #include "raster/cover.h"
+#include "raster/draw.h"
 #include "raster/encode_strip.h"
 #include "tests/raster/varied_scene.h"
 
@@ -58,6 +59,10 @@ raster::StripCodes encode_all(float value) {
     raster::encode_strip(colors, kAll, {}, codes);
     return codes;
 }
+
+struct NearnessShader : raster::NoVaryings {
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(f.nearness); }
+};
 
 } // namespace
 
@@ -128,8 +133,8 @@ TEST_SUITE("unit") {
             raster::Settings settings = phong(raster::Output::kNearness);
             const Rendering depths = render(scene, view, settings);
             settings.output = raster::Output::kRadiance;
-            settings.shading = raster::Shading::kDepth;
-            const Rendering shaded = render(scene, view, settings);
+            Control control;
+            const Rendering shaded = raster::draw(raster::prepare(scene, settings), view, settings, NearnessShader{}, control);
             int wrong = 0, seen = 0;
             for (std::size_t i = 0; i < depths.nearness.size(); ++i) {
                 wrong += depths.nearness[i] != shaded.radiance[i].r;

@@ -110,7 +110,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 0.02, 4}, {0, 0, 0}, 30), 160, 120};
         const Rendering picture = render(scene, view, multisampled(16, raster::Shading::kDepth));
-        const double nearest = 4.0 * 1e-6 / 1; // near / depth: the default near plane is 1e-6 of 4 m, the strip 1 m away
+        const double nearest = 4.0 / (4 + 1); // what the camera looks at is 4 m away, the strip 1 m at least
         for (const Rgb c : picture.radiance) {
             REQUIRE(static_cast<double>(c.r) <= nearest * 1.001);
             REQUIRE(c.r >= 0);

@@ -203,7 +203,7 @@ TEST_SUITE("unit") {
             for (const raster::Shading shading :
                  {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat, raster::Shading::kToon,
                   raster::Shading::kWireframe, raster::Shading::kNormal, raster::Shading::kAlbedo, raster::Shading::kDepth}) {
-                const auto program = raster::program(shading);
+                const auto program = raster::program(shading, view.camera);
                 REQUIRE(program != nullptr);
                 int compared = 0, apart = 0;
                 for (std::size_t t = 0; t < grid.size(); ++t) {
