@@ -1,9 +1,11 @@
-// Batches of floats and of doubles, made of each other.
+// Batches of floats and of doubles, made of each other; where half as many floats as fill a batch are one, too.
 #pragma once
 
 #include "common/vec/simd.h"
 
 namespace duet {
+
+#if XSIMD_WITH_AVX
 
 /// As many floats as there are lanes of doubles.
 using NarrowBatch = FloatBatch<kDoubleLanes>;
@@ -27,5 +29,7 @@ inline NarrowBatch to_floats(DoubleBatch doubles) {
     return NarrowBatch::load_aligned(lanes.data());
 #endif
 }
+
+#endif
 
 } // namespace duet

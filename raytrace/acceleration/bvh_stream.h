@@ -12,6 +12,8 @@
 
 namespace duet::raytrace {
 
+#if XSIMD_WITH_AVX
+
 inline constexpr std::size_t kMostStreamedNodes = 64;
 /// Whether rays may stream through a hierarchy: a tree of few nodes, of whose leaves most hold spheres, and none instances.
 inline bool streamable(const Bvh& bvh) {
@@ -193,13 +195,7 @@ private:
         return end;
     }
     static unsigned leaf_children(const std::uint32_t* children) {
-#if XSIMD_WITH_AVX
         return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_load_ps(reinterpret_cast<const float*>(children))));
-#else
-        unsigned leaves = 0;
-        for (unsigned k = 0; k < BvhNode::kWidth; ++k) leaves |= unsigned{BvhRef::from_bits(children[k]).is_leaf()} << k;
-        return leaves;
-#endif
     }
 
     void test_leaves() {
@@ -293,5 +289,17 @@ private:
     alignas(64) std::array<float, kSize> scales_; // filter_scale
     std::array<Hit, kSize> best_;
 };
+
+#else // too few lanes
+
+inline bool streamable(const Bvh&) { return false; }
+class RayStream {
+public:
+    static constexpr std::size_t kSize = 64;
+    RayStream(const Bvh&, std::span<const Ray>, std::span<const std::uint32_t>, std::span<Hit>) {}
+    void run() {}
+};
+
+#endif
 
 } // namespace duet::raytrace
