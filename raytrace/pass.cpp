@@ -69,10 +69,15 @@ public:
         samples_.reserve(size_);
     }
 
-    void add(int x, int y, std::uint32_t index) {
-        samplers_[samples_.size()].start(x, y, index);
-        samples_.push_back({x, y, index});
-        if (samples_.size() == size_) finish();
+    // Samples [begin, end) of a pixel.
+    void add(int x, int y, std::uint32_t begin, std::uint32_t end) {
+        while (begin < end) {
+            const std::size_t old = samples_.size();
+            const auto some = static_cast<std::uint32_t>(std::min<std::size_t>(end - begin, size_ - old));
+            Sampler::start(std::span(samplers_).subspan(old, some), x, y, begin);
+            for (const std::uint32_t last = begin + some; begin < last; ++begin) samples_.push_back({x, y, begin});
+            if (samples_.size() == size_) finish();
+        }
     }
 
     // Renders what has been added and not been rendered yet.
@@ -160,9 +165,8 @@ TileTally render_tile(const PassTarget& target, const CameraModel& camera, const
     std::size_t all = 0;
     for_pixels([&](int, int, std::uint32_t begin, std::uint32_t end) { all += end > begin ? end - begin : 0; });
     CameraBatch batch(target, camera, all);
-    for_pixels([&](int x, int y, std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t index = begin; index < end; ++index) batch.add(x, y, target.settings.first_sample + index);
-    });
+    const std::uint32_t first = target.settings.first_sample;
+    for_pixels([&](int x, int y, std::uint32_t begin, std::uint32_t end) { batch.add(x, y, first + begin, first + end); });
     batch.finish();
     return {batch.counts(), batch.first_invalid()};
 }

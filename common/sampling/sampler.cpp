@@ -158,17 +158,22 @@ Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, st
       samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) / replicates),
       replicates_(replicates) {}
 
-void Sampler::start(int pixel_x, int pixel_y, std::uint32_t index) {
-    sample_ = index;
-    replicate_ = index & (replicates_ - 1); // 1 or 2: index mod replicates_, without a division
-    index_ = index >> (replicates_ - 1);
-    dimension_ = 0;
+void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::uint32_t index) {
+    if (samplers.empty()) return;
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
-    pixel_hash_ = hash_combine(hash_combine(seed_, pixel), replicate_);
-    if (kind_ == SamplerKind::kBlueNoise)
-        share_sequence(static_cast<std::uint32_t>(pixel_x), static_cast<std::uint32_t>(pixel_y));
-    reversed_index_ = reverse_bits(index_);
+    const std::uint64_t hash = hash_combine(samplers[0].seed_, pixel);
+    const std::array<std::uint64_t, 2> hashes{hash_combine(hash, 0), hash_combine(hash, 1)}; // by replicate
+    for (Sampler& s : samplers) {
+        s.sample_ = index++;
+        s.replicate_ = s.sample_ & (s.replicates_ - 1); // 1 or 2: the remainder, without a division
+        s.index_ = s.sample_ >> (s.replicates_ - 1);
+        s.dimension_ = 0;
+        s.pixel_hash_ = hashes[s.replicate_];
+        if (s.kind_ == SamplerKind::kBlueNoise)
+            s.share_sequence(static_cast<std::uint32_t>(pixel_x), static_cast<std::uint32_t>(pixel_y));
+        s.reversed_index_ = reverse_bits(s.index_);
+    }
 }
 
 // Pixels along a Z-curve take consecutive blocks of one sequence: blocks of 4, 16, 64 … pixels are nets together, too,

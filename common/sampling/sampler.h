@@ -41,7 +41,9 @@ public:
     Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates = 1);
 
     /// To dimension 0 of sample `index` of a pixel.
-    void start(int pixel_x, int pixel_y, std::uint32_t index);
+    void start(int pixel_x, int pixel_y, std::uint32_t index) { start({this, 1}, pixel_x, pixel_y, index); }
+    /// The same of samplers of one kind and seed, each to the next sample of the pixel: what they share is found once.
+    static void start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::uint32_t index);
     /// To a given dimension of the current sample: gives each bounce dimensions of its own.
     void set_dimension(std::uint32_t dimension) { dimension_ = dimension; }
     std::uint32_t dimension() const { return dimension_; }

@@ -133,7 +133,10 @@ public:
 
     void run() {
         for (std::size_t i = 0; i < which_.size(); i += kLanes) start(i);
-        for (std::size_t i = 0; i < nodes_.size();) i = enter(i, std::min(i + kChunk, nodes_.size())); // there are more each time
+        for (Pairs *level = &nodes_[0], *below = &nodes_[1]; level->size() > 0; std::swap(level, below)) {
+            below->clear();
+            for (std::size_t k = 0; k < level->size(); k += kChunk) enter(*level, k, *below);
+        }
         test_leaves();
         test_spheres();
         for (std::size_t i = 0; i < which_.size(); ++i) hits_[which_[i]] = best_[i].valid() ? best_[i] : Hit();
@@ -148,8 +151,10 @@ private:
         bool operator()(const BvhInstance&, Hit&) const { return false; }
     };
 
-    StreamPairs<kSize * kMostStreamedNodes> nodes_; // no ray comes to one twice
-    StreamPairs<512> leaves_, spheres_;             // those not tested yet
+    using Pairs = StreamPairs<kSize * kMostStreamedNodes>; // no ray comes to a node twice
+    using SomePairs = StreamPairs<512>;
+    std::array<Pairs, 2> nodes_; // of a level, and of the one below
+    SomePairs leaves_, spheres_; // those not tested yet
 
     const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
     // Of so many rays at(i) their numbers, column by column.
@@ -174,17 +179,19 @@ private:
             best_[i].t = min(ray(i).t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
         }
         for (; traceable != 0; traceable &= traceable - 1)
-            nodes_.add(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(traceable)),
+            nodes_[0].add(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(traceable)),
                        BvhRef::node(0).bits());
     }
 
-    std::size_t enter(std::size_t k, std::size_t end) {
+    // Some pairs of a level of the tree, from `first` on.
+    void enter(const Pairs& level, std::size_t first, Pairs& below) {
         if (!leaves_.has_room(kChunk)) test_leaves();
-        typename decltype(nodes_)::Writer nodes(nodes_);
-        typename decltype(leaves_)::Writer leaves(leaves_);
-        for (; k < end; ++k) {
-            const std::uint32_t i = nodes_.ray(k);
-            const BvhNode& node = node_at(bvh_, BvhRef::from_bits(nodes_.other(k)));
+        Pairs::Writer nodes(below);
+        SomePairs::Writer leaves(leaves_);
+        const std::size_t end = std::min(first + kChunk, level.size());
+        for (std::size_t k = first; k < end; ++k) {
+            const std::uint32_t i = level.ray(k);
+            const BvhNode& node = node_at(bvh_, BvhRef::from_bits(level.other(k)));
             const unsigned entered = slabs_.enter(i, node, Batch(ray(i).t_min), Batch(best_[i].t));
             static_assert(sizeof(BvhRef) == sizeof(std::uint32_t));
             const auto* children = reinterpret_cast<const std::uint32_t*>(node.children.data());
@@ -192,20 +199,19 @@ private:
             nodes.add(i, children, entered & ~are_leaves);
             leaves.add(i, children, entered & are_leaves);
         }
-        return end;
     }
     static unsigned leaf_children(const std::uint32_t* children) {
         return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_load_ps(reinterpret_cast<const float*>(children))));
     }
 
     void test_leaves() {
-        for (std::size_t k = 0; k < leaves_.size();) k = test_leaves(k, std::min(k + kChunk, leaves_.size()));
+        for (std::size_t k = 0; k < leaves_.size(); k += kChunk) test_leaves(k, std::min(k + kChunk, leaves_.size()));
         leaves_.clear();
     }
-    std::size_t test_leaves(std::size_t k, std::size_t end) {
+    void test_leaves(std::size_t first, std::size_t end) {
         if (!spheres_.has_room(kChunk)) test_spheres();
-        typename decltype(spheres_)::Writer spheres(spheres_);
-        for (; k < end; ++k) {
+        SomePairs::Writer spheres(spheres_);
+        for (std::size_t k = first; k < end; ++k) {
             const std::uint32_t i = leaves_.ray(k);
             const BvhRef leaf = BvhRef::from_bits(leaves_.other(k));
             if (leaf.kind() == PrimitiveKind::kSphere)
@@ -213,11 +219,10 @@ private:
             else
                 LeafTest<false, NoInstance>(bvh_, ray(i), kNoObject, NoInstance())(leaf, best_[i]);
         }
-        return end;
     }
 
     // Spheres that the ray's line does not surely miss.
-    template <typename Writer> [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, Writer& spheres) const {
+    [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, SomePairs::Writer& spheres) const {
         const SphereBlock& block = bvh_.spheres[index];
         const Ray& line = ray(i);
         const auto along = [&](std::size_t axis) {
@@ -249,32 +254,29 @@ private:
             unsigned met = lane_bits(test.meets_ahead());
             if (met == 0) continue;
             const auto roots = test.roots();
-            alignas(64) std::array<float, kDoubles> near, far;
-            store_floats(roots.near, near.data());
-            store_floats(roots.far, far.data());
-            met &= (1u << std::min(spheres_.size() - k, kDoubles)) - 1;
+            const NarrowBatch near = to_floats(roots.near), far = to_floats(roots.far);
+            const NarrowBatch t = xsimd::select(near > t_min, near, far);
+            met &= lane_bits(t > t_min) & ((1u << std::min(spheres_.size() - k, kDoubles)) - 1);
+            const Lanes<NarrowBatch> distances(t);
             for (; met != 0; met &= met - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(met));
-                consider(spheres_.ray(k + lane), spheres_.other(k + lane), near[lane], far[lane]);
+                consider(spheres_.ray(k + lane), spheres_.other(k + lane), distances[lane]);
             }
         }
         spheres_.clear();
     }
-    void consider(std::uint32_t i, std::uint32_t place, float near, float far) {
-        const float t_min = ray(i).t_min, t = near > t_min ? near : far;
-        if (!(t > t_min && t <= best_[i].t)) return;
+    void consider(std::uint32_t i, std::uint32_t place, float t) {
         const Hit hit{bvh_.spheres[place / kBlockFloats].object[place % kBlockFloats], 0, 0, 0, t};
-        if (precedes(hit, best_[i])) best_[i] = hit;
+        if (precedes(hit, best_[i])) best_[i] = hit; // whose t is the ray's end where there is none
     }
 
-    using Some = NarrowBatch;
-    static Some gathered(const float* from, const std::uint32_t* places) {
+    static NarrowBatch gathered(const float* from, const std::uint32_t* places) {
 #if XSIMD_WITH_AVX512F
         return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), 4);
 #else
-        alignas(sizeof(Some)) std::array<float, kDoubles> lanes;
+        alignas(sizeof(NarrowBatch)) std::array<float, kDoubles> lanes;
         for (std::size_t i = 0; i < kDoubles; ++i) lanes[i] = from[places[i]];
-        return Some::load_aligned(lanes.data());
+        return NarrowBatch::load_aligned(lanes.data());
 #endif
     }
 
