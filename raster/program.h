@@ -81,7 +81,7 @@ private:
             }
             const Floats depth = load(strip.depth, i);
             const FragmentOf<S, Floats, kPlain> fragment{derivatives(strip, i),
-                                                 varyings<S, Floats>(gather(strip.at, i)),
+                                                 varyings_at(strip.at, i),
                                                  strips::vector(strip.ng, 0, i),
                                                  view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
@@ -104,15 +104,18 @@ private:
         for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
         return load(own, 0);
     }
-    template <std::size_t N> static std::array<Floats, N> gather(const std::array<StripOf<float>, N>& from, std::size_t i) {
-        std::array<Floats, N> result;
-        for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
-        return result;
+    template <std::size_t N> static Many varyings_at(const std::array<StripOf<float>, N>& from, std::size_t i) {
+        if constexpr (sizeof(from) == sizeof(Many)) {
+            return std::bit_cast<Many>(from); // batches are strips: read where they lie
+        } else {
+            std::array<Floats, N> result;
+            for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
+            return varyings<S, Floats>(result);
+        }
     }
     static auto derivatives(const Solved& strip, std::size_t i) {
         if constexpr (wants_derivatives<S>())
-            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(strip.dx, i)),
-                                                 varyings<S, Floats>(gather(strip.dy, i))};
+            return ScreenDerivatives<Many, true>{varyings_at(strip.dx, i), varyings_at(strip.dy, i)};
         else
             return ScreenDerivatives<Many, false>{};
     }

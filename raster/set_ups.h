@@ -54,6 +54,8 @@ public:
 
 private:
     std::uint32_t find_or_keep(std::uint32_t id);
+    void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    void begin_sixteen();
     using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
     void gather_vertices(Corners& corners) const;
     std::uint32_t set_up_planes(const Corners& corners, Sixteen& to) const;
@@ -89,8 +91,7 @@ private:
 template <VertexShader S, typename D>
 void SetUps<S, D>::use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id) {
     if (object_ == &object) return;
-    finish();
-    count_ = (count_ + kStrip - 1) / kStrip * kStrip; // each sixteen are of one object
+    begin_sixteen(); // each are of one object
     object_ = &object;
     mesh_ = &mesh;
     first_id_ = first_id;
@@ -116,8 +117,10 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
         found |= lane_bits(of_half(&Recent::ids) == id) << i;
         store(kept, i, of_half(&Recent::kept));
     }
-    constexpr std::uint32_t kAll = (1u << kStrip) - 1;
-    for (std::uint32_t left = kAll & ~found; left != 0;) {
+    std::uint32_t left = ((1u << kStrip) - 1) & ~found;
+    constexpr int kMany = 8; // new ones: cheaper all at once than one by one
+    if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
+    while (left != 0) {
         const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
         const auto place = static_cast<std::int32_t>(find_or_keep(static_cast<std::uint32_t>(id)));
         left &= ~lanes_of_number(ids, id);
@@ -127,6 +130,22 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
         recent_[at / kStrip].ids[at % kStrip] = id;
         recent_[at / kStrip].kept[at % kStrip] = place;
     }
+}
+
+/// Sixteen of them as they are, and never found again.
+template <VertexShader S, typename D>
+void SetUps<S, D>::keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
+    begin_sixteen();
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) store(kept, i, Ints(static_cast<std::int32_t>(count_)) + load(kLanes, i));
+    wanted_ = ids;
+    count_ += kStrip;
+    finished_ = false;
+    finish();
+}
+
+template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
+    finish();
+    count_ = (count_ + kStrip - 1) / kStrip * kStrip;
 }
 
 template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(std::uint32_t id) {
