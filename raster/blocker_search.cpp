@@ -147,7 +147,7 @@ void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& w
 void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
     int level = 0;
     Window blocks = window;
-    while (blocks.columns() > kSearchedSide || blocks.rows() > kSearchedSide) {
+    while (blocks.columns() > kSearchedSide || blocks.rows() > kSearchedRows) {
         ++level;
         blocks = {window.x0 >> level, window.y0 >> level, window.x1 >> level, window.y1 >> level};
     }
