@@ -42,10 +42,11 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
     const double rounding = (2 * receiver.error + place.z * 0x1p-22) / towards, texel = this->texel(place.z) / towards;
-    // A facet that rises behind the receiver at an angle of the tangent t to its plane has this height, per distance from the
-    // light's ray through the receiver, at which light of the elevation asin(cosine) meets it: at most 1, for grazing light.
-    const double t = kBehind, behind = texel * t / (cosine + t * std::sqrt(max(1 - cosine * cosine, 0.0)));
-    const double before = texel * kBefore;
+    // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
+    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them. Those before it shade it
+    // themselves where they rise more steeply than the light: so only to a part of its angle.
+    const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), t = min(kSteepest, kOfElevation * cosine / max(sine, 1e-9));
+    const double behind = texel * kSteepest / (cosine + kSteepest * sine), before = texel * t / (cosine - t * sine);
     if (orthographic_)
         return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, before, behind};
     const double at = view_.near / place.z, per_depth = at / place.z;

@@ -41,8 +41,8 @@ public:
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
     static constexpr double kFilterRadius = 1.5;
-    static constexpr double kBehind = 0.5; ///< slope of facets, up to 27°, that rise behind the receiver and do not shade it
-    static constexpr double kBefore = 0.3; ///< height of those on the light's side of it, per distance from the light's ray
+    static constexpr double kSteepest = 0.5;      ///< facets that meet at up to 27° do not shade each other,
+    static constexpr double kOfElevation = 0.23;  ///< or, on the light's side, as steep as this part of the light's own slope
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
 
     int side() const { return nearness_.width(); }
