@@ -297,10 +297,13 @@ ImageFloat normal_turns(const Screen& screen, int threads) {
 
 RadiancePyramid flat_look(const Screen& screen) {
     const Screen::FirstLook& look = screen.first_look();
-    Image<std::uint8_t> flat(screen.width(), screen.height(), 0);
+    Image<std::uint8_t> known(screen.width(), screen.height(), 0);
     for (int y = 0; y < screen.height(); ++y)
-        for (int x = 0; x < screen.width(); ++x) flat(x, y) = is_flat(screen, x, y) && look.lamps(x, y) == 0;
-    return RadiancePyramid(look.radiance.finest(), flat);
+        for (int x = 0; x < screen.width(); ++x) {
+            const bool nothing = !(screen.depth(x, y) < kInfinity);
+            known(x, y) = (nothing || is_flat(screen, x, y)) && look.lamps(x, y) == 0;
+        }
+    return RadiancePyramid(look.radiance.finest(), known);
 }
 
 } // namespace duet::raster

@@ -35,7 +35,7 @@ struct ScreenHit {
     float x, y;     ///< in pixels
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
-    bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it, if there is one
+    bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
@@ -59,7 +59,9 @@ std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene,
 float normal_turn(const Screen& screen, int x, int y);
 /// Of all pixels: Screen::set_turns.
 ImageFloat normal_turns(const Screen& screen, int threads);
-/// Screen::set_flat_look: the first look at flat surfaces, the turns being known. Empty where there are none.
+/// Screen::set_flat_look: the first look at flat surfaces and past all surfaces, the turns being known. Empty where there is
+/// neither. What lies behind all is a part of it, that where a flat surface ends what is hidden beside its edge changes
+/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves.
 RadiancePyramid flat_look(const Screen& screen);
 
 inline constexpr float kThickness = 0.02f;
