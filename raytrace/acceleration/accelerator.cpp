@@ -1,6 +1,7 @@
 #include "raytrace/acceleration/accelerator.h"
 
 #include "common/scene/holes.h"
+#include "common/system/error.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_stream.h"
 #include "raytrace/acceleration/gatherer.h"
@@ -205,14 +206,14 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
 
 void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
                                        std::span<Hit> hits) const {
-    const std::size_t most = streams_ ? RayStream::kSize : kMostSorted;
-    for (std::size_t from = 0; from < which.size(); from += most) {
-        const auto some = which.subspan(from, std::min(which.size() - from, most));
-        if (streams_)
-            RayStream(world_, rays, some, hits).run();
-        else
-            closest_by_class(rays, some, hits);
-    }
+    DUET_CHECK(gathers_scattered());
+    if (!streams_)
+        for (std::size_t from = 0; from < which.size(); from += kMostSorted)
+            closest_by_class(rays, which.subspan(from, std::min(which.size() - from, kMostSorted)), hits);
+    else if (which.size() >= kFewestStreamed)
+        find_closest_of_stream(world_, rays, which, hits);
+    else
+        for (const std::uint32_t i : which) hits[i] = first(rays[i]);
     if (holes_)
         for (const std::uint32_t i : which) hits[i] = beyond_holes(rays[i], hits[i]);
 }
