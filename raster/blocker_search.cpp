@@ -87,9 +87,23 @@ float SoftLight::bound(const Faces& faces, float farthest) const {
     return bound;
 }
 
+/// What of a row of texels, or of the nearest in blocks of them, hides a part of the light, and how much of it.
+struct SoftLight::Found {
+    Floats::batch_bool_type blocks;
+    Floats fraction; ///< of the way
+    Floats margin;   ///< half a texel, or a block, there, as a part of the light's edges
+};
+
 SoftLight::Blockers SoftLight::search(const Faces& faces) const {
     Blockers blockers;
     for (std::size_t i = 0; i < faces.count; ++i) add_blockers(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    return blockers;
+}
+
+/// The same, not of some texels all over the windows, but of those around which blockers may be.
+SoftLight::Blockers SoftLight::search_closely(const Faces& faces) const {
+    Blockers blockers;
+    for (std::size_t i = 0; i < faces.count; ++i) add_blocks(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
     return blockers;
 }
 
@@ -119,27 +133,70 @@ void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& w
             const Floats nearness = narrow ? Floats::load_unaligned(line + left + first) : gather(line, places);
             const Floats height = height_x + Floats(cone.n.y * per_texel * up + cone.n.z * cube_.near);
             const auto above = inside & (height + over * nearness > Floats(0.0f));
-            if (xsimd::any(above)) add_row(cone, above, nearness, from_middle, up, blockers);
+            if (!xsimd::any(above)) continue;
+            const Found found = this->found(cone, above, nearness, from_middle, up, 1);
+            if (!xsimd::any(found.blocks)) continue;
+            const Floats none(0.0f), about = found.fraction + found.margin, weight = Floats(1.0f) / (about * about);
+            blockers.weights += xsimd::hadd(xsimd::select(found.blocks, weight, none));
+            blockers.sum += xsimd::hadd(xsimd::select(found.blocks, weight * found.fraction, none));
         }
     }
 }
 
-void SoftLight::add_row(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right, float up,
-                        Blockers& blockers) const {
+/// Looks for blocks of texels the nearest of which may hide a part of the light, and then for blockers in them.
+void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
+    int level = 0;
+    Window blocks = window;
+    while (blocks.columns() > kSearchedSide || blocks.rows() > kSearchedRows) {
+        ++level;
+        blocks = {window.x0 >> level, window.y0 >> level, window.x1 >> level, window.y1 >> level};
+    }
+    const ImageFloat& image = nearest_[face]->level(level);
+    const int texels = 1 << level;
+    const float block = static_cast<float>(texels), per_texel = cube_.near / cube_.scale;
+    // Wherever in its block the nearest is, it is over the plane.
+    const float rim = 0.5f * (block - 1) * (std::abs(cone.n.x) + std::abs(cone.n.y)) * per_texel;
+    const Floats over(-dot(cone.n, cone.p) - cone.slack), n_x(cone.n.x * per_texel);
+    const bool rows = image.width() >= kSearchedSide; // then whole ones are loaded, wherever they begin
+    const int start = rows ? std::min(blocks.x0, image.width() - kSearchedSide) : 0;
+    for (int first = start; first <= blocks.x1; first += static_cast<int>(Floats::size)) {
+        const Floats x = min(load(kLanesAsFloats, 0) + Floats(static_cast<float>(first)), Floats(static_cast<float>(image.width() - 1)));
+        const Floats from_middle = (x + Floats(0.5f)) * Floats(block) - Floats(cube_.middle), height_x = n_x * from_middle;
+        const Ints places = truncated(x);
+        for (int y = blocks.y0; y <= blocks.y1; ++y) {
+            const float up = cube_.middle - (static_cast<float>(y) + 0.5f) * block;
+            const float* line = image.pixels().data() + y * image.width();
+            const Floats nearness = rows ? Floats::load_unaligned(line + first) : gather(line, places);
+            const Floats height = height_x + Floats(cone.n.y * per_texel * up + cone.n.z * cube_.near - rim);
+            const auto above = height + over * nearness > Floats(0.0f);
+            if (!xsimd::any(above)) continue;
+            const auto found = this->found(cone, above, nearness, from_middle, up, block).blocks;
+            if (!xsimd::any(found)) continue;
+            StripOf<float> marks;
+            store(marks, 0, xsimd::select(found, Floats(1.0f), Floats(0.0f)));
+            const int last = std::min(blocks.x1, first + static_cast<int>(Floats::size) - 1);
+            for (int i = std::max(blocks.x0, first); i <= last; ++i) {
+                if (!(marks[static_cast<std::size_t>(i - first)] > 0)) continue;
+                const int left = i * texels, top = y * texels;
+                add_blockers(cone, face, {std::max(left, window.x0), std::max(top, window.y0),
+                                          std::min(left + texels - 1, window.x1), std::min(top + texels - 1, window.y1)}, blockers);
+            }
+        }
+    }
+}
+
+SoftLight::Found SoftLight::found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right,
+                                  float up, float block) const {
     const Floats depth = Floats(cube_.near) / nearness, per_scale = depth * Floats(1 / cube_.scale);
     const Vec3T<Floats> to{right * per_scale - Floats(cone.p.x), Floats(up) * per_scale - Floats(cone.p.y),
                            depth - Floats(cone.p.z)};
     const Floats fraction = dot(spread<Floats>(cone.o.axis), to) * Floats(cone.per_height);
     // Where the cone is narrower than a texel, half a texel beside it still belongs to what the filter sees: but not the
-    // next facet of a concave surface (ShadowMap::kConcave).
-    const Floats none(0.0f), margin = per_scale * Floats(0.5f * cone.per_metre);
-    const auto steps_up = dot(spread<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(ShadowMap::kConcave));
-    const auto blocks = above & (fraction > none) & (fraction < Floats(1.0f)) &
-                        cone.meets(to, fraction, xsimd::select(steps_up, margin, none));
-    if (!xsimd::any(blocks)) return;
-    const Floats weight = Floats(1.0f) / ((fraction + margin) * (fraction + margin));
-    blockers.weights += xsimd::hadd(xsimd::select(blocks, weight, none));
-    blockers.sum += xsimd::hadd(xsimd::select(blocks, weight * fraction, none));
+    // next facet of a concave surface (kConcave).
+    const Floats none(0.0f), margin = per_scale * Floats(0.5f * block * cone.per_metre);
+    const auto steps_up = block > 1 ? above : dot(spread<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(kConcave));
+    return {above & (fraction > none) & (fraction < Floats(1.0f)) & cone.meets(to, fraction, xsimd::select(steps_up, margin, none)),
+            fraction, margin};
 }
 
 } // namespace duet::raster

@@ -123,11 +123,11 @@ public:
         : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
-        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const SolvedStrip<NoVaryings>& strip) { fill(place, strip); });
+        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const SolvedStrip<NoVaryings, double>& strip) { fill(place, strip); });
     }
 
 private:
-    void fill(const StripPlace& place, const SolvedStrip<NoVaryings>& strip) {
+    void fill(const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip) {
         for (std::size_t i = 0; i < kStrip; ++i) {
             const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
             if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
@@ -143,7 +143,7 @@ private:
         }
     }
 
-    Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings>& strip, std::size_t at) const {
+    Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip, std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
         const std::uint32_t id = strip.samples->id(i);
         if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
@@ -157,7 +157,7 @@ private:
     const Geometry& geometry_;
     const PassView& view_;
     NoVaryings nothing_;
-    StripSolver<NoVaryings> solver_;
+    StripSolver<NoVaryings, double> solver_;
 };
 
 void HitTile::make_room() {

@@ -12,6 +12,7 @@ namespace duet::raster {
 struct DepthTile::Edges {
     std::array<double, 3> at; ///< at the tile's first sample
     std::array<double, 3> a, b;
+    std::array<double, 3> out, in; ///< at a block's first sample: all of its are outside below, well inside from there on
     Origin origin; ///< of the triangle's plane
     std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
@@ -30,6 +31,9 @@ struct DepthTile::Edges {
             a[k] = static_cast<double>(edge.a);
             b[k] = static_cast<double>(edge.b);
             margin[k] = triangle.sound ? static_cast<std::int32_t>((margins[k] + kSubPixels - 1) >> kSubPixelBits) : kNever;
+            constexpr double kLast = kBlock - 1;
+            out[k] = -kLast * (std::max(a[k], 0.0) + std::max(b[k], 0.0));
+            in[k] = margin[k] - kLast * (std::min(a[k], 0.0) + std::min(b[k], 0.0));
             next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
             const Ints right(static_cast<std::int32_t>(edge.a)), down(static_cast<std::int32_t>(edge.b));
             for (std::size_t i = 0; i < kStrip; i += Ints::size)
@@ -44,16 +48,14 @@ struct DepthTile::BlockRow {
     std::array<std::array<std::int32_t, kBlocks>, 3> first; ///< edge functions at its first sample, as far as it matters
 
     BlockRow(const Edges& edges, int row) {
-        constexpr double kLast = kBlock - 1, kFar = 1 << 30;
+        constexpr double kFar = 1 << 30;
         for (std::size_t i = 0; i < kBlocks; i += Doubles::size) {
             const Doubles x = load(kBlockColumns, i);
             auto not_all_out = Doubles(0.0) <= Doubles(0.0), all_in = not_all_out;
             for (std::size_t k = 0; k < 3; ++k) {
-                const double right = edges.a[k] * kLast, down = edges.b[k] * kLast;
-                const double most = std::max(right, 0.0) + std::max(down, 0.0), least = std::min(right, 0.0) + std::min(down, 0.0);
                 const Doubles here = Doubles(edges.at[k] + edges.b[k] * (row * kBlock)) + Doubles(edges.a[k]) * x;
-                not_all_out = not_all_out && here >= Doubles(-most);
-                all_in = all_in && here >= Doubles(edges.margin[k] - least);
+                not_all_out = not_all_out && here >= Doubles(edges.out[k]);
+                all_in = all_in && here >= Doubles(edges.in[k]);
                 store_ints(min(max(here, Doubles(-kFar)), Doubles(kFar)), &first[k][i]);
             }
             some |= lane_bits(not_all_out) << i;

@@ -94,9 +94,12 @@ private:
 
     /// The block whose first pixel is (x, y).
     void block(int x, int y, std::uint32_t place, std::size_t slot) {
-        const bool drawn = !background_ || tile_.drawn(place / kBlockSamples);
+        if (background_ && !tile_.drawn(place / kBlockSamples)) {
+            std::fill_n(codes_.begin() + static_cast<std::ptrdiff_t>(slot), kStrips, empty_strip_);
+            return;
+        }
         for (std::size_t s = 0; s < kStrips; ++s, y += kStripRows, place += kStrip, ++slot) {
-            if (!drawn || (background_ && samples_seen(tile_.ids() + place) == 0))
+            if (background_ && samples_seen(tile_.ids() + place) == 0)
                 codes_[slot] = empty_strip_;
             else
                 strip(x, y, place, slot);
@@ -106,13 +109,9 @@ private:
     void strip(int x, int y, std::uint32_t place, std::size_t slot) {
         if (shader_ == nullptr)
             return shade_one_by_one(intersect(tile_.rect(), {x, y, x + kBlock, y + kStripRows}), codes_[slot]);
-        slots_[count_] = slot;
-        StripPlace& next = places_[count_++]; // written once, not copied: it will be read at once
-        next.x = x;
-        next.y = y;
-        next.ids = tile_.ids() + place;
-        next.nearness = tile_.nearness() + place;
-        next.offset = tile_.offset();
+        const std::size_t next = count_++;
+        slots_[next] = slot;
+        places_[next] = {.x = x, .y = y, .ids = tile_.ids() + place, .nearness = tile_.nearness() + place, .offset = tile_.offset()};
     }
 
     /// The strips of a row of blocks that are left.

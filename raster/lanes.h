@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/vec/simd.h"
+#include "common/vec/vec.h"
 
 #include <array>
 #include <bit>
@@ -42,6 +43,16 @@ template <typename T> void store(StripOf<T>& strip, std::size_t i, const xsimd::
 }
 
 static_assert(Floats::size == 2 * Doubles::size);
+
+/// Doubles to a strip of either, rounded where need be.
+inline void store_rounded(StripOf<double>& strip, std::size_t i, const Doubles& value) { store(strip, i, value); }
+inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& value) { store_floats(value, strip.at(i)); }
+
+using duet::fused;
+inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
+
+/// Of as many vectors side by side, by fused steps.
+inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) { return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z))); }
 
 /// Doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion; by way of memory it would
 /// wait for narrow stores to become a wide load.)
@@ -112,6 +123,45 @@ inline Ints look_up(const StripOf<std::int32_t>& table, const Ints& index) {
 #endif
 }
 
+/// From two tables of sixteen, one after the other, by the lower five bits of each number from the i-th on.
+inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    return _mm512_permutex2var_ps(load(first, 0), load(index, i), load(second, 0));
+#elif defined(__AVX2__)
+    const __m256i at = load(index, i);
+    const auto sixteen = [&](const StripOf<float>& table) {
+        return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), at), _mm256_permutevar8x32_ps(load(table, 8), at),
+                                _mm256_castsi256_ps(_mm256_slli_epi32(at, 28)));
+    };
+    const __m256 found = sixteen(first);
+    if (&first == &second) return found;
+    return _mm256_blendv_ps(found, sixteen(second), _mm256_castsi256_ps(_mm256_slli_epi32(at, 27)));
+#else
+    alignas(64) std::array<float, Floats::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(index[i + k]);
+        found[k] = (at & 16 ? second : first)[at & 15];
+    }
+    return Floats::load_aligned(found.data());
+#endif
+}
+/// The same of doubles.
+inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& second, const StripOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
+    const auto sixteen = [&](const StripOf<double>& table) { return _mm512_permutex2var_pd(load(table, 0), at, load(table, 8)); };
+    if (&first == &second) return sixteen(first);
+    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), sixteen(first), sixteen(second));
+#else
+    alignas(64) std::array<double, Doubles::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(index[i + k]);
+        found[k] = (at & 16 ? second : first)[at & 15];
+    }
+    return Doubles::load_aligned(found.data());
+#endif
+}
+
 /// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
@@ -119,7 +169,7 @@ inline Floats inverse_sqrt(const Floats& x) {
 #else
     const Floats y = xsimd::rsqrt(x);
 #endif
-    return y * (Floats(1.5f) - Floats(0.5f) * x * y * y);
+    return y * fused(-(Floats(0.5f) * x * y), y, Floats(1.5f));
 }
 
 /// The same of one number.

@@ -71,6 +71,8 @@ struct SoftLight::Faces {
     std::size_t count = 0;
 
     bool small() const { return count == 1 && parts[0]->window.small(); }
+    /// Whether search() looks at every texel.
+    bool searched_wholly() const { return small() && parts[0]->window.rows() <= kSearchedRows; }
     void add(std::size_t face, const Cone& cone, const Window& window) { parts[count++].emplace(Part{face, cone, window}); }
 };
 

@@ -45,14 +45,17 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     }
 }
 
+template <typename T> IncidentT<T> incident(const SunLight& sun) { return {spread<T>(-sun.direction), spread<T>(sun.irradiance)}; }
+
 /// use(IncidentT<T>) for each light, at the point of the world that place() returns; suns, which shine everywhere alike,
 /// don't ask for it.
-template <typename Place, typename Use>
-void for_each_incident(std::span<const Light> lights, const Place& place, const Use& use) {
+template <bool kSuns, typename Place, typename Use>
+void for_each_incident(Lights<kSuns> lights, const Place& place, const Use& use) {
     using T = decltype(place().x);
-    for (const Light& light : lights) {
-        if (const auto* sun = std::get_if<SunLight>(&light))
-            use(IncidentT<T>{spread<T>(-sun->direction), spread<T>(sun->irradiance)});
+    for (const Light& light : lights.all) {
+        const auto* sun = std::get_if<SunLight>(&light);
+        if (kSuns || sun != nullptr)
+            use(incident<T>(*sun));
         else
             use(incident<T>(light, place()));
     }

@@ -18,6 +18,8 @@ public:
     float greatest(int x0, int y0, int x1, int y1) const;
     /// Of the whole image.
     float greatest() const { return levels_.back()[0]; }
+    /// The greatest number of each block of 2^level × 2^level pixels, level 0 or more; the last level has one block.
+    const ImageFloat& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
     std::int64_t memory_bytes() const;
 
 private:

@@ -3,8 +3,6 @@
 
 #include "raster/lights.h"
 
-#include <span>
-
 namespace duet::raster {
 
 /// The BRDF's two parts: base colour / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ about the mirror
@@ -24,7 +22,7 @@ template <typename T> struct PhongFactors {
         const T arriving = dot(n, wi);
         cosine = max(arriving, T(0));
         // The mirror direction's cosine with wo; three products that need not wait for each other.
-        lobe = max(T(2) * arriving * dot(n, wo) - dot(wi, wo), T(0));
+        lobe = max(fused(T(2) * arriving, dot(n, wo), -dot(wi, wo)), T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
         lobe = lobe * T(kPhongSpecular);
     }
@@ -32,13 +30,15 @@ template <typename T> struct PhongFactors {
 
 /// Radiance of a surface of a base colour under all lights, `ambient` being the radiance from all around; place() is its
 /// point in the world.
-template <typename T, typename Place>
-RgbT<T> phong(std::span<const Light> lights, Rgb ambient, RgbT<T> base, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+template <typename T, bool kSuns, typename Place>
+RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
     RgbT<T> sum = base * spread<T>(ambient);
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
         const PhongFactors<T> f(n, wo, light.wi);
-        sum += light.irradiance * RgbT<T>(diffuse.r + f.lobe, diffuse.g + f.lobe, diffuse.b + f.lobe) * f.cosine;
+        const RgbT<T> arriving = light.irradiance * f.cosine;
+        sum = {fused(arriving.r, diffuse.r + f.lobe, sum.r), fused(arriving.g, diffuse.g + f.lobe, sum.g),
+               fused(arriving.b, diffuse.b + f.lobe, sum.b)};
     });
     return sum;
 }
@@ -49,7 +49,7 @@ template <typename T> struct PhongLight {
     RgbT<T> highlights; ///< radiance
 };
 template <typename T, typename Place>
-PhongLight<T> phong_light(std::span<const Light> lights, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+PhongLight<T> phong_light(Lights<false> lights, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
     PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
         const PhongFactors<T> f(n, wo, light.wi);
@@ -70,7 +70,7 @@ struct LightAtVertices {
     template <typename T> using Varyings = PhongLight<T>;
 
     template <typename T> static Varyings<T> light(const VertexInput<T>& v, Vec3T<T> p, Vec3T<T> n) {
-        return phong_light(std::span(v.object.data.scene.lights), [&] { return p; }, n, v.object.to_viewer(p));
+        return phong_light(Lights<false>{v.object.data.scene.lights}, [&] { return p; }, n, v.object.to_viewer(p));
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         return phong(f.at, f.object.data.ambient, f.base_color());

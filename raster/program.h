@@ -8,6 +8,8 @@
 
 #include "common/vec/robust.h"
 
+#include <algorithm>
+
 namespace duet::raster {
 
 template <Shader S> class ShadedStrips final : public StripShader, private ColorSource {
@@ -15,28 +17,29 @@ public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
         : data_(data), geometry_(geometry), view_(view), shader_(shader), solver_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
           ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
-          eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile) {}
+          eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile),
+          only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); })) {}
 
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
-        constexpr std::size_t kMost = StripSolver<S>::kMost;
-        for (std::size_t first = 0; first < places.size(); first += kMost) {
-            const auto some = places.subspan(first, std::min(kMost, places.size() - first));
-            solver_.solve(some, true, [&](std::size_t s, const SolvedStrip<S>& strip) {
-                const StripSamples& samples = *strip.samples;
-                seen[first + s] = samples.seen;
-                place_ = &some[s];
-                strip_ = &strip;
-                if (samples.on_mesh == samples.seen)
-                    shade_together(*place_, strip, colors[first + s]);
-                else
-                    shade_one_by_one(*place_, samples, colors[first + s]);
-            });
-        }
+        solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
+            const StripSamples& samples = *strip.samples;
+            seen[s] = samples.seen;
+            place_ = &places[s];
+            strip_ = &strip;
+            if (samples.seen == 0) return;
+            if (samples.on_mesh != samples.seen)
+                shade_one_by_one(*place_, samples, colors[s]);
+            else if (only_suns_ && strip.object_view->color && !strip.object_view->bent)
+                shade_together<true>(*place_, strip, colors[s]);
+            else
+                shade_together<false>(*place_, strip, colors[s]);
+        });
     }
 
 private:
     using Many = VaryingsOf<S, Floats>;
+    using Solved = SolvedStrip<S, float>;
 
     /// A vector that is linear in the pixel, counted from the tile's corner: rounded once a tile, to floats whose errors
     /// are of their last place.
@@ -48,7 +51,10 @@ private:
             : start(start_ + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0)), step_x(dx), step_y(dy),
               x0(tile.x0), y0(tile.y0) {}
         Vec3T<Floats> at(const Floats& x, const Floats& y) const {
-            return spread<Floats>(start) + spread<Floats>(step_x) * x + spread<Floats>(step_y) * y;
+            const auto along = [&](std::size_t axis) {
+                return fused(Floats(step_x[axis]), x, fused(Floats(step_y[axis]), y, Floats(start[axis])));
+            };
+            return {along(0), along(1), along(2)};
         }
     };
 
@@ -63,8 +69,7 @@ private:
         }
     }
 
-    void shade_together(const StripPlace& place, const SolvedStrip<S>& strip, StripColors& colors) const {
-        if (strip.samples->seen == 0) return;
+    template <bool kPlain> void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -74,9 +79,9 @@ private:
                 x += in_pixel(*place.offsets, i, &SampleOffset::x);
                 y += in_pixel(*place.offsets, i, &SampleOffset::y);
             }
-            const Floats depth = narrowed(load(strip.depth, i), load(strip.depth, i + Doubles::size));
-            const FragmentOf<S, Floats> fragment{derivatives(strip, i),
-                                                 varyings<S, Floats>(gather(strip.at, i)),
+            const Floats depth = load(strip.depth, i);
+            const FragmentOf<S, Floats, kPlain> fragment{derivatives(strip, i),
+                                                 varyings_at(strip.at, i),
                                                  strips::vector(strip.ng, 0, i),
                                                  view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
@@ -99,15 +104,18 @@ private:
         for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
         return load(own, 0);
     }
-    template <std::size_t N> static std::array<Floats, N> gather(const std::array<StripOf<float>, N>& from, std::size_t i) {
-        std::array<Floats, N> result;
-        for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
-        return result;
+    template <std::size_t N> static Many varyings_at(const std::array<StripOf<float>, N>& from, std::size_t i) {
+        if constexpr (sizeof(from) == sizeof(Many)) {
+            return std::bit_cast<Many>(from); // batches are strips: read where they lie
+        } else {
+            std::array<Floats, N> result;
+            for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
+            return varyings<S, Floats>(result);
+        }
     }
-    static auto derivatives(const SolvedStrip<S>& strip, std::size_t i) {
+    static auto derivatives(const Solved& strip, std::size_t i) {
         if constexpr (wants_derivatives<S>())
-            return ScreenDerivatives<Many, true>{varyings<S, Floats>(gather(strip.dx, i)),
-                                                 varyings<S, Floats>(gather(strip.dy, i))};
+            return ScreenDerivatives<Many, true>{varyings_at(strip.dx, i), varyings_at(strip.dy, i)};
         else
             return ScreenDerivatives<Many, false>{};
     }
@@ -215,10 +223,11 @@ private:
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
-    StripSolver<S> solver_;
+    StripSolver<S, float> solver_;
     Linear ways_, eyes_; ///< camera rays
+    bool only_suns_;     ///< are the scene's lights
     const StripPlace* place_ = nullptr; ///< of the strip at hand
-    const SolvedStrip<S>* strip_ = nullptr;
+    const Solved* strip_ = nullptr;
 };
 
 /// A shader, kept by value.

@@ -23,6 +23,7 @@
 #include <concepts>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <type_traits>
 
 namespace duet::raster {
@@ -75,8 +76,7 @@ struct ObjectView {
     template <typename T> Vec3T<T> shading_normal(Vec3T<T> n, Vec3T<T> ng) const {
         if (!smooth) return unit(normal(ng));
         const Vec3T<T> g = normal(ng), s = normal(n);
-        const T factor = select(dot(s, g) < T(0), T(-1), T(1));
-        return unit(s) * factor;
+        return s * (inverse_sqrt(dot(s, s)) * select(dot(s, g) < T(0), T(-1), T(1)));
     }
     /// Unit, from a point of the world.
     template <typename T> Vec3T<T> to_viewer(Vec3T<T> p) const {
@@ -124,8 +124,15 @@ template <typename V> struct ScreenDerivatives<V, true> {
     V dx, dy; ///< exact derivatives of the varyings by the sample's place, along the row and down the column, per pixel
 };
 
-/// What a fragment function is given: a sample that sees something. dx and dy are there where the shader says so.
-template <typename T, typename V, bool kDerivatives>
+/// A scene's lights. kSuns: they are suns, all of them.
+template <bool kSuns> struct Lights {
+    std::span<const Light> all;
+};
+
+/// What a fragment function is given: a sample that sees something. dx and dy are there where the shader says so. kPlain: the
+/// object has one colour, no map bends its normals, and suns are all the lights: then nothing is called, and batches stay in
+/// registers.
+template <typename T, typename V, bool kDerivatives, bool kPlain>
 struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     V at;                  ///< the varyings, interpolated as perspective shows them
     Vec3T<T> ng;           ///< geometric normal on the side that is seen, in the object's space, of any length
@@ -137,10 +144,11 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     std::size_t first; ///< sample of the strip that lane 0 is
 
     Vec3T<T> p() const { return origin + way * depth; } ///< in the world
-    Vec3T<T> wo() const { return -unit(way); }          ///< to the viewer, unit
+    Lights<kPlain> lights() const { return {object.data.scene.lights}; }
+    Vec3T<T> wo() const { return way * -inverse_sqrt(dot(way, way)); } ///< to the viewer, unit
     /// The shading normal of an interpolated n of the object's space: unit, in the world, on the side that is seen. Where a
     /// map bends normals: as that has it.
-    Vec3T<T> normal(Vec3T<T> n) const { return object.bent ? bent_normal() : smooth_normal(n); }
+    Vec3T<T> normal(Vec3T<T> n) const { return !kPlain && object.bent ? bent_normal() : smooth_normal(n); }
     /// The same, whatever maps say.
     Vec3T<T> smooth_normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
     RgbT<T> base_color() const;
@@ -155,8 +163,9 @@ private:
     return colors.base_colors(first);
 }
 
-template <typename T, typename V, bool kDerivatives> RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
-    if (object.color) return spread<T>(*object.color);
+template <typename T, typename V, bool kDerivatives, bool kPlain>
+RgbT<T> FragmentInput<T, V, kDerivatives, kPlain>::base_color() const {
+    if (kPlain || object.color) return spread<T>(*object.color);
     if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
     else
@@ -173,7 +182,8 @@ template <typename T> [[gnu::noinline]] Vec3T<T> sampled_normals(const ColorSour
     return {load(found.x, 0), load(found.y, 0), load(found.z, 0)};
 }
 
-template <typename T, typename V, bool kDerivatives> Vec3T<T> FragmentInput<T, V, kDerivatives>::bent_normal() const {
+template <typename T, typename V, bool kDerivatives, bool kPlain>
+Vec3T<T> FragmentInput<T, V, kDerivatives, kPlain>::bent_normal() const {
     if constexpr (std::same_as<T, float>)
         return colors.bent_normal(first);
     else
@@ -196,7 +206,8 @@ template <typename S> constexpr bool wants_texture_coordinates() {
         return true;
 }
 template <typename S, typename T> using VaryingsOf = typename S::template Varyings<T>;
-template <typename S, typename T> using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>()>;
+template <typename S, typename T, bool kPlain = false>
+using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kPlain>;
 
 /// Varyings are numbers in a row, to be interpolated one by one.
 template <typename S> inline constexpr std::size_t kVaryings =
@@ -222,9 +233,11 @@ concept VertexShader = requires(const S& s, const VertexInput<float>& one, const
 };
 /// And a fragment function: linear radiance, in W/(m² sr) where it is meant to compare with light.
 template <typename S>
-concept Shader = VertexShader<S> && requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many) {
+concept Shader = VertexShader<S> && requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many,
+                                             const FragmentOf<S, Floats, true>& plain) {
     { s.template fragment<float>(one) } -> std::same_as<Rgb>;
     { s.template fragment<Floats>(many) } -> std::same_as<RgbT<Floats>>;
+    { s.template fragment<Floats>(plain) } -> std::same_as<RgbT<Floats>>;
 };
 
 } // namespace duet::raster

@@ -27,11 +27,12 @@ double ShadowMap::texel(double depth) const {
     return orthographic_ ? length(view_.origin_dx) : length(view_.direction_dx) * depth;
 }
 
-/// The receiver's plane in the map, as a linear function of texels, larger where the plane is nearer to the light; a
-/// blocker's value is larger than `at` by more than `slack`.
+/// The receiver's plane in the map, as a linear function of texels, larger where the plane is nearer to the light; and how
+/// far off it what is seen may be, and is still the receiver's surface.
 struct ShadowMap::Plane {
-    double at, dx, dy; ///< at the receiver's place; its change from texel to texel
-    double slack;
+    double at, dx, dy;     ///< at the receiver's place; its change from texel to texel
+    double rounding;       ///< everywhere
+    double before, behind; ///< more, per texel beside the place: on the light's side of the receiver, and on the other
 };
 
 /// The plane n·(q − p) = 0 meets the ray o + d·w of a texel at the depth d = n·(p − o)/n·w. Seen from a point o is the
@@ -40,16 +41,18 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const Vec3d n = receiver.n;
     const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
-    // On the plane; where light grazes it no farther than ten times the filter, or as much as stands over a facet would be lit.
-    const double reach = kFilterRadius * texel(place.z) / max(cosine, 0.1);
-    const double height = kConcave * reach + 2 * receiver.error + place.z * 0x1p-22;
-    const double depth_slack = height / towards;
+    const double rounding = (2 * receiver.error + place.z * 0x1p-22) / towards, texel = this->texel(place.z) / towards;
+    // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
+    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them. Those before it shade it
+    // themselves where they rise more steeply than the light: so only to a part of its angle.
+    const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), t = min(kSteepest, kOfElevation * cosine / max(sine, 1e-9));
+    const double behind = texel * kSteepest / (cosine + kSteepest * sine), before = texel * t / (cosine - t * sine);
     if (orthographic_)
-        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, depth_slack};
-    const double at = view_.near / place.z;
+        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, before, behind};
+    const double at = view_.near / place.z, per_depth = at / place.z;
     // 1/d grows by n·dw/(n·w d) for a change dw of w.
-    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards,
-            at * depth_slack / place.z};
+    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards, rounding * per_depth,
+            before * per_depth, behind * per_depth};
 }
 
 namespace {
@@ -72,17 +75,22 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
     const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
     const std::array<double, 4> across = spline(place.x - 0.5 - left), down = spline(place.y - 0.5 - top);
     const int x0 = static_cast<int>(left) - 1, y0 = static_cast<int>(top) - 1;
-    double dark = 0;
+    double dark = 0, known = 0;
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column) {
             const int x = x0 + column, y = y0 + row;
             const double nearness = static_cast<double>(nearness_(x, y));
             const double seen = orthographic_ ? -view_.near / nearness : nearness;
-            const double expected = plane.at + plane.dx * (x + 0.5 - place.x) + plane.dy * (y + 0.5 - place.y);
-            if (seen > expected + plane.slack)
-                dark += across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+            const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
+            const double change = plane.dx * right + plane.dy * below, over = seen - (plane.at + change);
+            const double slack = plane.rounding + (change < 0 ? plane.behind : plane.before) * max(std::abs(right), std::abs(below));
+            const bool blocks = over > slack;
+            if (over < -slack || (blocks && seen <= plane.at)) continue;
+            const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+            known += weight;
+            if (blocks) dark += weight;
         }
-    return dark < 1 - 1e-12 ? static_cast<float>(1 - dark) : 0.0f;
+    return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }
 
 } // namespace duet::raster

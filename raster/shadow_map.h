@@ -31,13 +31,19 @@ public:
     ///
     /// Each texel's depth is compared with that of the receiver's *plane* at the texel's centre (Isidoro 2006, «Shadow
     /// Mapping: GPU-based Tips and Techniques», receiver plane depth bias). On a plane both are the same number but for
-    /// rounding, however steep the light: there is no slope to be guessed. What is left is a height over the plane:
-    /// the rounding of both, and kConcave of the filter's reach on the plane, or each concave edge between the facets
-    /// of a curved surface would throw a shadow as wide as the filter.
+    /// rounding, however steep the light: there is no slope to be guessed. A texel says
+    /// - lit, if what it sees is the receiver's surface. Of a curved one that is not the plane but facets that meet it at an
+    ///   angle, so that their heights over it grow in proportion to how far beside the receiver's own ray they are: what is
+    ///   on that ray has no slack at all, and shades at any contact, as a roof the wall that it lies on.
+    /// - dark, if it sees something over that.
+    /// - nothing, if it sees something behind that: the receiver's surface ends before, and what light there is beyond its
+    ///   edge does not leak back around it. Nor if what stands over the plane is farther from the light than the receiver.
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
     static constexpr double kFilterRadius = 1.5;
-    static constexpr double kConcave = 0.25; ///< facets that meet at up to 14° do not shade each other
+    static constexpr double kSteepest = 0.5;      ///< facets that meet at up to 27° do not shade each other,
+    static constexpr double kOfElevation = 0.23;  ///< or, on the light's side, as steep as this part of the light's own slope
+    static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
 
     int side() const { return nearness_.width(); }
     /// near / depth at a texel's centre; 0 where nothing is seen.

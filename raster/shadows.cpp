@@ -43,8 +43,8 @@ Box3 bounds_of(const PreparedData& data, const std::vector<bool>& kept) {
     return box;
 }
 
-/// Whether the object is a quad that all the scene lies on one side of, and the sun, too: it shades nothing, however
-/// large it is.
+/// Whether the object is a quad that all the scene lies on one side of, and the sun, too: it shades nothing, so that
+/// views need not reach as far as it does.
 bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_way) {
     const Object& o = scene.objects[object];
     const auto* list = std::get_if<QuadList>(&scene.shapes[o.shape]);
@@ -160,8 +160,9 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         }
     };
     if (const auto* sun = std::get_if<SunLight>(&light)) {
-        for (std::uint32_t i = 0; i < kept.size(); ++i) kept[i] = !is_floor(scene_, i, sun->direction);
-        const Box3 bounds = bounds_of(data, kept);
+        std::vector<bool> casts(scene_.objects.size());
+        for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
+        const Box3 bounds = bounds_of(data, casts);
         if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera));
         return;
     }

@@ -97,9 +97,12 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
     }
     Blockers blockers = search(searched);
     bool again = searched.count > 1; // other faces may see what is close to the light
-    if (!(blockers.weights > 0) && !searched.small()) {
+    if (!(blockers.weights > 0) && !searched.searched_wholly()) {
         // What is close to the receiver may lie between the texels that were looked at: is it on the line to the centre?
-        blockers = search(faces(main, main_face, *outline, p, n, 0));
+        bool whole = true; // the main face sees the receiver itself
+        if (const auto window = this->window(main, 0, whole)) add_blockers(main, main_face, *window, blockers);
+        // And at a shadow's edge what is seen of a blocker is smaller than their steps.
+        if (!(blockers.weights > 0)) blockers = search_closely(searched);
         again = true;
     }
     if (!(blockers.weights > 0)) return 1;

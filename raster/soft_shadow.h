@@ -31,12 +31,15 @@ public:
     ///   to the light, so that the walls of a corner are no blockers.
     /// - How far from the receiver blockers can be is known from the nearest depth in the part of the map that the cone
     ///   covers; that bounds the cone, and so the part, again and again. What is left is searched texel by texel, up to
-    ///   kSearchedSide × kSearchedRows of them: no blocker is missed at a contact.
+    ///   kSearchedSide × kSearchedRows of them: no blocker is missed at a contact. Where they find none, those blocks of
+    ///   texels are searched again of which the nearest depth may be a blocker's: a shadow's faint rim is no saw of
+    ///   receivers that happened to find what throws it and receivers that did not.
     float visibility(const Receiver& receiver, TapRange taps) const;
 
     std::int64_t memory_bytes() const;
 
     static constexpr int kSearchedSide = 16, kSearchedRows = 8;
+    static constexpr double kConcave = 0.25; ///< facets that meet at up to 14° do not shade each other
 
 private:
     /// The light as a receiver sees it: points corner + a·u + b·v, and what takes them back to a and b.
@@ -60,9 +63,12 @@ private:
     Faces faces(const Cone& cone, std::size_t main_face, const Outline& outline, Vec3 p, Vec3 n, float reach) const;
     float bound(const Faces& faces, float farthest) const;
     Blockers search(const Faces& faces) const;
+    Blockers search_closely(const Faces& faces) const;
     void add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const;
-    void add_row(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right, float up,
-                 Blockers& blockers) const;
+    void add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const;
+    struct Found;
+    Found found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right, float up,
+                float block) const;
     float dark_taps(float blocker, const Cone& cone, std::size_t face, int first, int count) const;
 
     CubeMap cube_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/image/rgb.h"
+#include "common/system/cache_aligned.h"
 #include "common/system/error.h"
 
 #include <vector>
@@ -28,8 +29,9 @@ public:
     Pixel& operator()(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& operator[](std::size_t i) const { return pixels_[i]; }
     Pixel& operator[](std::size_t i) { return pixels_[i]; }
-    const std::vector<Pixel>& pixels() const { return pixels_; }
-    std::vector<Pixel>& pixels() { return pixels_; }
+    using Pixels = std::vector<Pixel, CacheAligned<Pixel>>;
+    const Pixels& pixels() const { return pixels_; }
+    Pixels& pixels() { return pixels_; }
     auto begin() const { return pixels_.begin(); }
     auto end() const { return pixels_.end(); }
 
@@ -38,7 +40,7 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
     int width_ = 0, height_ = 0;
-    std::vector<Pixel> pixels_;
+    Pixels pixels_;
 };
 
 using ImageRgb = Image<Rgb>;

@@ -36,7 +36,7 @@ struct ToonShader {
         };
         const Vec3T<T> along = turn(f.dx.n), down = turn(f.dy.n);
         PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
-        for_each_incident(std::span(f.object.data.scene.lights), [&] { return f.p(); }, [&](const IncidentT<T>& arriving) {
+        for_each_incident(f.lights(), [&] { return f.p(); }, [&](const IncidentT<T>& arriving) {
             const auto width = [&](Vec3T<T> towards) { return abs(dot(along, towards)) + abs(dot(down, towards)); };
             T band(0);
             const T cosine = dot(n, arriving.wi), cosine_width = width(arriving.wi);

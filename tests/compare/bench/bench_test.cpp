@@ -85,10 +85,10 @@ TEST_SUITE("unit") {
         const ExcludedRectangle pixels = parse_excluded_rectangle("1,0,3,2");
         CHECK_FALSE(pixels.fractions);
         const Image<std::uint8_t> counted = counted_pixels({pixels}, 4, 3);
-        const std::vector<std::uint8_t> expected = {1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1};
+        const Image<std::uint8_t>::Pixels expected = {1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1};
         CHECK(counted.pixels() == expected);
         CHECK(counted_pixels({parse_excluded_rectangle("0.25,0,0.75,0.66")}, 4, 3).pixels() == expected);
-        CHECK(counted_pixels({}, 2, 2).pixels() == std::vector<std::uint8_t>(4, 1));
+        CHECK(counted_pixels({}, 2, 2).pixels() == Image<std::uint8_t>::Pixels(4, 1));
         for (const char* const bad : {"", "1,2,3", "1,2,3,4,5", "a,0,1,1", "0.5,0,3,2", "-1,0,3,2", "3,0,1,2",
                                       "1,1,1,2", "nan,0,1,1", "1,0,3,2 "}) {
             CAPTURE(bad);

@@ -1,0 +1,123 @@
+// Shadows where they are hardest: where what throws them touches what they fall on, and where they fade away.
+#include "tests/raster/scenes.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+namespace {
+
+/// The part of the light that arrives at each pixel that light could reach; elsewhere 0.
+ImageFloat arriving(const Scene& scene, const View& view, raster::Settings settings = {}) {
+    const ImageRgb shaded = render(scene, view, settings).radiance;
+    settings.shadows = false;
+    const ImageRgb open = render(scene, view, settings).radiance;
+    ImageFloat result(view.width, view.height);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = open[i].g > 1e-3f ? shaded[i].g / open[i].g : 0;
+    return result;
+}
+
+Scene with_sun(Vec3 way) {
+    Scene scene;
+    add(scene, QuadList{{{Vec3(-8, 0, 8), Vec3(16, 0, 0), Vec3(0, 0, -16)}}});
+    scene.lights.push_back(SunLight{normalize(way), Rgb(2)});
+    scene.camera = look({0, 0.5, 5}, {0, 0.5, 0});
+    return scene;
+}
+
+/// A part of a cylinder about the z axis, from one angle to another, of flat facets; its inside is the front.
+Mesh trough(Vec3d middle, double radius, double from, double to, int facets) {
+    Mesh mesh;
+    for (int i = 0; i <= facets; ++i) {
+        const double angle = from + (to - from) * i / facets;
+        for (const double z : {-3.0, 3.0})
+            mesh.positions.push_back(Vec3(middle + Vec3d(radius * std::cos(angle), radius * std::sin(angle), z)));
+    }
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(facets); ++i) {
+        mesh.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 2});
+        mesh.triangles.push_back({2 * i + 1, 2 * i + 3, 2 * i + 2});
+    }
+    return mesh;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("no light under a roof: the wall that it lies on is dark all the way up") {
+        for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-1, -0.5f, 0.2f), Vec3(-0.3f, -1, 0)}) {
+            Scene scene = with_sun(way);
+            add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+            add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.shadow_map_side = 512;
+            Camera camera = look({0.5, 0.9, 0}, {0, 0.9, 0});
+            camera.projection = Camera::Projection::kOrthographic;
+            camera.height = 0.2;
+            const ImageFloat found = arriving(scene, {camera, 100, 100}, settings);
+            double lit = 0; // metres of full light, across the wall
+            for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
+            CAPTURE(way.x);
+            CHECK(lit < 0.01);
+        }
+    }
+
+    TEST_CASE("no light through a vault's thin shell, where it begins to turn away from the sun, either") {
+        for (const int facets : {10, 40, 160}) {
+            Scene scene = with_sun({-0.5f, -0.75f, 0});
+            scene.materials.front() = Diffuse{Rgb(0)}; // the ground's
+            add(scene, trough({0, 1, 0}, 2, 0, kPiDouble, facets));
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.shadow_map_side = 1024;
+            const ImageRgb seen = render(scene, {look({1, 1, 0.5}, {-1.5, 2, 0}, 70), 200, 150}, settings).radiance;
+            double sum = 0;
+            for (const Rgb& c : seen) sum += static_cast<double>(c.g) * kPiDouble / 2; // of light that meets the shell squarely
+            CAPTURE(facets);
+            CHECK(sum < 10);
+        }
+    }
+
+    TEST_CASE("no acne in a hollow: facets that meet at 3 to 9 degrees and face the light do not shade each other") {
+        for (const int facets : {10, 30})
+            for (const Vec3 way : {Vec3(0, -1, 0), Vec3(-0.2f, -1, 0.1f), Vec3(0, -1, 0.7f)}) {
+                Scene scene = with_sun(way);
+                add(scene, trough({0, 3, 0}, 2, -0.75 * kPiDouble, -0.25 * kPiDouble, facets));
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = 256;
+                const ImageFloat found = arriving(scene, {look({0, 4, 0}, {0, 1, 0}, 40), 100, 100}, settings);
+                CAPTURE(facets);
+                CAPTURE(way.z);
+                CHECK(*std::ranges::min_element(found) == 1);
+            }
+    }
+
+    TEST_CASE("a soft shadow fades away: its rim is no saw, however little of a ball the search for blockers sees") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}});
+        add(scene, QuadList{{{Vec3(-1, 0, -1), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
+        add(scene, QuadList{{{Vec3(1, 0, -1), Vec3(0, 0, 2), Vec3(0, 2, 0)}}});
+        add(scene, Sphere{Vec3(0.35f, 0.42f, 0.3f), 0.42f});
+        add(scene, QuadList{{{Vec3(-0.35f, 1.98f, -0.35f), Vec3(0.7f, 0, 0), Vec3(0, 0, 0.7f)}}}, Mat4(), Emissive{Rgb(5)});
+        Camera camera = look({0, 0.001, 0}, {0, 0, 0}); // from below the ball
+        camera.projection = Camera::Projection::kOrthographic;
+        camera.up = {0, 0, -1};
+        camera.height = 1.9;
+        scene.camera = camera;
+        finish_scene(scene);
+        constexpr int kSide = 380;
+        const ImageFloat found = arriving(scene, {camera, kSide, kSide});
+        int steps = 0, penumbra = 0; // a pixel of 5 mm across a penumbra of 0.2 m and more
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 1; x < kSide; ++x) {
+                const float a = found(x - 1, y), b = found(x, y);
+                steps += std::min(a, b) > 0.6f && std::abs(a - b) > 0.04f;
+                penumbra += b > 0.6f && b < 1;
+            }
+        CHECK(penumbra > 10000);
+        CHECK(steps < 10);
+    }
+}
