@@ -44,12 +44,12 @@ PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional
         if (!plain.several) plain.material = materials_[object.materials[0]];
         if (plain.several || plain.material.bsdf != nullptr) plain.form = form_of(scene, object);
         if (!plain.form) continue;
-        found_[objects_.size() - 1] =
+        classes_[objects_.size() - 1] =
             plain.several ? kAsMaterial : static_cast<std::uint8_t>(Kind{*plain.form, plain.material.scattering}.index());
     }
 }
 
-std::size_t PlainSurfaces::found_by_material(const Hit& hit) const {
+std::size_t PlainSurfaces::class_by_material(const Hit& hit) const {
     const PlainObject& object = objects_[hit.object];
     const PlainMaterial& material = material_at(hit, object);
     return material.bsdf == nullptr ? kOther : Kind{*object.form, material.scattering}.index();

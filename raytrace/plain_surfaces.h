@@ -36,20 +36,20 @@ public:
     };
 
     /// None is, of so many objects.
-    explicit PlainSurfaces(std::size_t objects) : found_(objects + 1, kOther) { found_.back() = kNothing; }
+    explicit PlainSurfaces(std::size_t objects) : classes_(objects + 1, kOther) { classes_.back() = kNothing; }
     /// Those of a scene. bsdfs: by material, where it is constant; they must stay.
     PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs);
 
     /// What a ray has found, as a number: a kind's index, or, of other surfaces, kOther, or kNothing.
-    static constexpr std::size_t kOther = Kind::kCount, kNothing = kOther + 1, kFound = kNothing + 1;
-    std::size_t found(const Hit& hit) const {
+    static constexpr std::size_t kOther = Kind::kCount, kNothing = kOther + 1, kClasses = kNothing + 1;
+    std::size_t class_of(const Hit& hit) const {
         // Mostly without a branch: what random rays find cannot be foreseen.
-        const std::size_t known = found_[std::min<std::size_t>(hit.object, found_.size() - 1)];
-        return known == kAsMaterial ? found_by_material(hit) : known;
+        const std::size_t known = classes_[std::min<std::size_t>(hit.object, classes_.size() - 1)];
+        return known == kAsMaterial ? class_by_material(hit) : known;
     }
     /// What a valid hit has found, if it is one.
     std::optional<Kind> kind(const Hit& hit) const {
-        const std::size_t i = found(hit);
+        const std::size_t i = class_of(hit);
         return i < Kind::kCount ? std::optional(Kind::of_index(i)) : std::nullopt;
     }
     /// Of such a one.
@@ -74,12 +74,12 @@ private:
         return object.several ? materials_[material_index(*scene_, hit.object, hit.primitive)] : object.material;
     }
 
-    std::size_t found_by_material(const Hit& hit) const;
+    std::size_t class_by_material(const Hit& hit) const;
 
     static constexpr std::uint8_t kAsMaterial = 255;
 
     const Scene* scene_ = nullptr;
-    std::vector<std::uint8_t> found_;  ///< by object, and last of none
+    std::vector<std::uint8_t> classes_;  ///< by object, and last of none
     std::vector<PlainObject> objects_; ///< empty: none is
     std::vector<PlainMaterial> materials_;
 };

@@ -11,12 +11,12 @@ namespace {
 
 // Constant -----------------------------------------------------------------------------------------------------------
 
-Rgb look_up(const ConstantEnvironment& e, Vec3) { return e.radiance; }
+Rgb look_up(const ConstantEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const ConstantEnvironment& e) { return is_black(e.radiance); }
 
 // Sky ----------------------------------------------------------------------------------------------------------------
 
-Rgb look_up(const SkyEnvironment& e, Vec3 w) { return lerp(e.down, e.up, clamp(0.5f * (w.y + 1), 0.0f, 1.0f)); }
+Rgb look_up(const SkyEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up); }
 
 // Picture ------------------------------------------------------------------------------------------------------------

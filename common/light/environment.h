@@ -47,6 +47,10 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
 
 /// Radiance from direction w (unit).
 Rgb radiance(const Environment& environment, Vec3 w);
+inline Rgb radiance(const ConstantEnvironment& environment, Vec3) { return environment.radiance; }
+inline Rgb radiance(const SkyEnvironment& sky, Vec3 w) {
+    return lerp(sky.down, sky.up, clamp(0.5f * (w.y + 1), 0.0f, 1.0f));
+}
 /// A direction in proportion to the luminance above the mean (of a picture: to the mean of each pixel's cell), or
 /// nothing, where an environment has too little of it: BSDF samples then find its light best. u in [0, 1)².
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u);

@@ -156,7 +156,9 @@ std::string_view sampler_name(SamplerKind kind) {
 Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)
     : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
       samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) / replicates),
-      replicates_(replicates) {}
+      replicates_(replicates) {
+    DUET_CHECK(replicates == 1 || replicates == 2);
+}
 
 void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::uint32_t index) {
     if (samplers.empty()) return;
@@ -237,42 +239,48 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
     return numbers;
 }
 
-// at(k): the sampler of the k-th number.
-template <typename At> void Sampler::pairs_of(const At& at, std::uint32_t dimension, std::span<Vec2> numbers) {
+// at(k): the k-th sampler.
+template <typename At>
+void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
+    DUET_CHECK_EQ(numbers.size(), size * dimensions.size());
     if (numbers.empty()) return;
     if (!at(0).is_sobol()) {
-        for (std::size_t k = 0; k < numbers.size(); ++k) {
-            Sampler sampler = at(k);
-            sampler.set_dimension(dimension);
-            numbers[k] = sampler.get_2d();
-        }
+        for (std::size_t d = 0; d < dimensions.size(); ++d)
+            for (std::size_t k = 0; k < size; ++k) {
+                Sampler sampler = at(k);
+                sampler.set_dimension(dimensions[d]);
+                numbers[d * size + k] = sampler.get_2d();
+            }
         return;
     }
     constexpr std::size_t kLanes = kMaxSimdLanes;
     using Batch = WholeBatch<kLanes>;
-    for (std::size_t done = 0; done < numbers.size(); done += kLanes) {
-        const std::size_t size = std::min(numbers.size() - done, kLanes);
+    for (std::size_t done = 0; done < size; done += kLanes) {
+        const std::size_t some = std::min(size - done, kLanes);
         alignas(Batch) std::array<std::uint32_t, kLanes> index, low, high, x, y;
         for (std::size_t i = 0; i < kLanes; ++i) { // lanes too many are filled with the first's
-            const Sampler& s = at(done + (i < size ? i : 0));
+            const Sampler& s = at(done + (i < some ? i : 0));
             index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
         }
         const auto load = [](const auto& lanes) { return Batch::load_aligned(lanes.data()); };
-        const Batch seed = dimension_seed(load(low), load(high), Batch(dimension));
-        const Vec2T<Batch> digits = sobol_2d_digits(load(index), seed);
-        digits.x.store_aligned(x.data());
-        digits.y.store_aligned(y.data());
-        for (std::size_t i = 0; i < size; ++i) numbers[done + i] = {unit_float(x[i]), unit_float(y[i])};
+        const Batch indices = load(index), lows = load(low), highs = load(high);
+        for (std::size_t d = 0; d < dimensions.size(); ++d) {
+            const Vec2T<Batch> digits = sobol_2d_digits(indices, dimension_seed(lows, highs, Batch(dimensions[d])));
+            digits.x.store_aligned(x.data());
+            digits.y.store_aligned(y.data());
+            Vec2* to = &numbers[d * size + done];
+            for (std::size_t i = 0; i < some; ++i) to[i] = {unit_float(x[i]), unit_float(y[i])};
+        }
     }
 }
 
-void Sampler::pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
-    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, dimension, numbers.first(samplers.size()));
+void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
+    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, samplers.size(), dimensions, numbers);
 }
 
-void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, std::uint32_t dimension,
-                    std::span<Vec2> numbers) {
-    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[which[k]]; }, dimension, numbers.first(which.size()));
+void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which,
+                    std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
+    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[which[k]]; }, which.size(), dimensions, numbers);
 }
 
 CameraNumbers Sampler::camera_numbers(CameraNeeds needs) const {
@@ -289,7 +297,7 @@ void Sampler::camera_numbers(std::span<const Sampler> samplers, CameraNeeds need
     for (std::size_t done = 0; done < samplers.size(); done += kSome) {
         const auto some = samplers.subspan(done, std::min(kSome, samplers.size() - done));
         const auto draw = [&](std::uint32_t dimension, const auto& set) {
-            pairs(some, dimension, drawn);
+            pairs(some, {&dimension, 1}, std::span(drawn).first(some.size()));
             for (std::size_t i = 0; i < some.size(); ++i) set(numbers[done + i], drawn[i]);
         };
         draw(0, [](CameraNumbers& u, Vec2 pair) { u.pixel = pair; });

@@ -61,11 +61,12 @@ public:
     /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
     /// machine has room for both at once.
     static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
-    /// What get_2d gives at a dimension, of all samplers of one kind, or of some of them in the order of `which`: many at
-    /// once. They stay where they are.
-    static void pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers);
-    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, std::uint32_t dimension,
+    /// What get_2d gives at some dimensions, of all samplers of one kind, or of some of them in the order of `which`: many
+    /// at once, those of a dimension after those of the one before. They stay where they are.
+    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
                       std::span<Vec2> numbers);
+    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which,
+                      std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers);
     /// What the camera asks for besides the place in the pixel.
     struct CameraNeeds {
         bool lens = false, time = false;
@@ -80,7 +81,8 @@ private:
         return kind_ == SamplerKind::kSobol || kind_ == SamplerKind::kBlueNoise || kind_ == SamplerKind::kCenter;
     }
     void share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y);
-    template <typename At> static void pairs_of(const At& at, std::uint32_t dimension, std::span<Vec2> numbers);
+    template <typename At>
+    static void pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers);
 
     SamplerKind kind_;
     std::uint64_t seed_;

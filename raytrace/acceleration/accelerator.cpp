@@ -1,12 +1,10 @@
 #include "raytrace/acceleration/accelerator.h"
 
-#include "common/sampling/hash.h"
 #include "common/scene/holes.h"
-#include "common/system/parallel.h"
-#include "common/vec/robust.h"
-#include "raytrace/acceleration/bvh_hierarchy.h"
+#include "common/system/error.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_stream.h"
+#include "raytrace/acceleration/gatherer.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,212 +14,6 @@
 namespace duet::raytrace {
 
 namespace {
-
-// Gathers primitives of all kinds with their boxes, then makes a hierarchy of them.
-class Gatherer {
-public:
-    Gatherer(BvhQuality quality, int threads) : quality_(quality), threads_(threads) {}
-
-    void add_shape(const Shape& shape, std::uint32_t object) {
-        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-            add_mesh(*mesh, object);
-        } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
-                Box3 box;
-                for (const Vec3& p : corners(list->quads[i])) box.extend(p);
-                add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
-            }
-        } else {
-            add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
-        }
-    }
-
-    void add_instance(const Object& object, std::uint32_t index, const Shape& shape) {
-        Box3 box = bounds(shape, object.to_world);
-        // Matrix entries are interpolated, so each point moves on a straight line between its ends.
-        if (object.moving) box.extend(bounds(shape, object.to_world_end));
-        // The hit is found in the object's space, where the ray arrives with the rounding of its own transform.
-        const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
-        box.extend(box.low - room);
-        box.extend(box.high + room);
-        add(PrimitiveKind::kInstance, box, instances_, {index, object.shape});
-    }
-
-    Bvh build() {
-        const Primitives primitives{[this](const BuildItem& item) { return outline(item); },
-                                    [this](std::span<BuildItem> items) { return first_of_twins(items); }};
-        auto [items, collapsed] = build_hierarchy(std::move(items_), primitives, quality_, threads_);
-        Bvh& bvh = collapsed.bvh;
-        const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
-        bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
-        bvh.quads.resize(elements(PrimitiveKind::kQuad));
-        bvh.spheres.resize(elements(PrimitiveKind::kSphere));
-        bvh.instances.resize(elements(PrimitiveKind::kInstance));
-        in_chunks(collapsed.leaves.size(), [&, &items = items, &leaves = collapsed.leaves](std::size_t i) {
-            const LeafItems& leaf = leaves[i];
-            fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
-        });
-        return std::move(bvh);
-    }
-
-private:
-    struct MeshTriangle {
-        std::uint32_t mesh, primitive;
-    };
-    struct PlacedMesh {
-        const Mesh* mesh;
-        std::uint32_t object;
-    };
-    struct PlacedQuad {
-        std::array<Vec3, 4> corners;
-        std::uint32_t object, primitive;
-    };
-    struct PlacedSphere {
-        Sphere sphere;
-        std::uint32_t object;
-    };
-
-    template <typename Body> void in_chunks(std::size_t count, const Body& body) const {
-        constexpr std::size_t kChunk = std::size_t{1} << 14;
-        parallel_for((count + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
-            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-            for (std::size_t i = chunk * kChunk; i < end; ++i) body(i);
-        });
-    }
-
-    void add_mesh(const Mesh& mesh, std::uint32_t object) {
-        const auto which = static_cast<std::uint32_t>(meshes_.size());
-        meshes_.push_back({&mesh, object});
-        const std::size_t first_item = items_.size(), first_triangle = triangles_.size();
-        items_.resize(first_item + mesh.triangles.size());
-        triangles_.resize(first_triangle + mesh.triangles.size());
-        in_chunks(mesh.triangles.size(), [&](std::size_t i) {
-            Box3 box;
-            for (const std::uint32_t vertex : mesh.triangles[i]) box.extend(mesh.positions[vertex]);
-            items_[first_item + i] = {box, static_cast<std::uint32_t>(first_triangle + i), PrimitiveKind::kTriangle};
-            triangles_[first_triangle + i] = {which, static_cast<std::uint32_t>(i)};
-        });
-    }
-    // Of triangles and quads; nothing of others.
-    Outline outline(const BuildItem& item) const {
-        if (item.kind == PrimitiveKind::kTriangle) {
-            const MeshTriangle& triangle = triangles_[item.index];
-            const Mesh& mesh = *meshes_[triangle.mesh].mesh;
-            const auto& [a, b, c] = mesh.triangles[triangle.primitive];
-            return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
-        }
-        if (item.kind == PrimitiveKind::kQuad) return {quads_[item.index].corners, 4};
-        return {};
-    }
-    template <typename Primitive>
-    void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive) {
-        items_.push_back({box, static_cast<std::uint32_t>(list.size()), kind});
-        list.push_back(primitive);
-    }
-
-    void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const {
-        switch (items[0].kind) {
-        case PrimitiveKind::kTriangle:
-            return fill_block(bvh.triangles[leaf.element], items);
-        case PrimitiveKind::kQuad:
-            return fill_block(bvh.quads[leaf.element], items);
-        case PrimitiveKind::kSphere:
-            return fill_block(bvh.spheres[leaf.element], items);
-        case PrimitiveKind::kInstance:
-            for (std::size_t i = 0; i < items.size(); ++i) bvh.instances[leaf.element + i] = instances_[items[i].index];
-        }
-    }
-
-    // Primitives with the very same corners, or spheres with the same centre and radius, are hit at the very same
-    // distance, where the lowest (object, primitive) wins: that of the lowest index here. A table of hashes finds them
-    // in one walk, whatever their number. Instances are no twins: they may move.
-    std::size_t first_of_twins(std::span<BuildItem> items) const {
-        std::vector<std::uint32_t> seats(std::bit_ceil(2 * items.size()), kFree); // of `items`, by hash
-        std::size_t kept = 0;
-        for (const BuildItem& item : items) {
-            const Form form = form_of(item);
-            std::size_t seat = hash_of(form) & (seats.size() - 1);
-            while (seats[seat] != kFree && form_of(items[seats[seat]]) != form) seat = (seat + 1) & (seats.size() - 1);
-            if (seats[seat] != kFree) {
-                std::uint32_t& index = items[seats[seat]].index;
-                index = std::min(index, item.index);
-                continue;
-            }
-            seats[seat] = static_cast<std::uint32_t>(kept);
-            items[kept++] = item;
-        }
-        return kept;
-    }
-
-    /// All that decides where a primitive is hit: its kind and the bits of its numbers; an instance's index.
-    using Form = std::array<std::uint32_t, 13>;
-    static constexpr std::uint32_t kFree = ~0u;
-
-    Form form_of(const BuildItem& item) const {
-        Form form{static_cast<std::uint32_t>(item.kind)};
-        std::size_t next = 1;
-        const auto add = [&](Vec3 p) {
-            for (std::size_t axis = 0; axis < 3; ++axis) form[next++] = std::bit_cast<std::uint32_t>(p[axis]);
-        };
-        if (item.kind == PrimitiveKind::kSphere) {
-            const Sphere& sphere = spheres_[item.index].sphere;
-            add(sphere.center);
-            form[next] = std::bit_cast<std::uint32_t>(sphere.radius);
-        } else if (item.kind == PrimitiveKind::kInstance) {
-            form[next] = item.index;
-        } else {
-            const Outline polygon = outline(item);
-            for (std::size_t i = 0; i < polygon.count; ++i) add(polygon.corners[i]);
-        }
-        return form;
-    }
-    static std::uint64_t hash_of(const Form& form) {
-        std::uint64_t hash = 0;
-        for (const std::uint32_t word : form) hash = hash_combine(hash, word);
-        return hash;
-    }
-
-    template <typename Block> void fill_block(Block& block, std::span<const BuildItem> items) const {
-        for (std::size_t i = 0; i < kBlockSize; ++i) {
-            if (i < items.size())
-                set(block, i, items[i].index);
-            else
-                set_absent(block, i);
-        }
-    }
-    void set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
-        const MeshTriangle& triangle = triangles_[index];
-        const auto& [mesh, object] = meshes_[triangle.mesh];
-        const auto& [a, b, c] = mesh->triangles[triangle.primitive];
-        block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
-    }
-    void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {
-        const PlacedQuad& quad = quads_[index];
-        block.set(lane, quad.corners, quad.object, quad.primitive);
-    }
-    void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const {
-        block.set(lane, spheres_[index].sphere, spheres_[index].object);
-    }
-
-    static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-    static constexpr Vec3 kAbsent{kNaN, kNaN, kNaN};
-
-    template <std::size_t kCorners> static void set_absent(PolygonBlock<kCorners>& block, std::size_t lane) {
-        std::array<Vec3, kCorners> corners;
-        corners.fill(kAbsent);
-        block.set(lane, corners, kNoObject, 0);
-    }
-    static void set_absent(SphereBlock& block, std::size_t lane) { block.set(lane, {kAbsent, kNaN}, kNoObject); }
-
-    BvhQuality quality_;
-    int threads_;
-    BuildItems items_;
-    std::vector<PlacedMesh> meshes_;
-    std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
-    std::vector<PlacedQuad> quads_;
-    std::vector<PlacedSphere> spheres_;
-    std::vector<BvhInstance> instances_;
-};
 
 bool stands_in_world(const Object& object) { return object.identity && !object.moving; }
 
@@ -414,14 +206,14 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
 
 void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
                                        std::span<Hit> hits) const {
-    const std::size_t most = streams_ ? RayStream::kSize : kMostSorted;
-    for (std::size_t from = 0; from < which.size(); from += most) {
-        const auto some = which.subspan(from, std::min(which.size() - from, most));
-        if (streams_)
-            RayStream(world_, rays, some, hits).run();
-        else
-            closest_by_class(rays, some, hits);
-    }
+    DUET_CHECK(gathers_scattered());
+    if (!streams_)
+        for (std::size_t from = 0; from < which.size(); from += kMostSorted)
+            closest_by_class(rays, which.subspan(from, std::min(which.size() - from, kMostSorted)), hits);
+    else if (which.size() >= kFewestStreamed)
+        find_closest_of_stream(world_, rays, which, hits);
+    else
+        for (const std::uint32_t i : which) hits[i] = first(rays[i]);
     if (holes_)
         for (const std::uint32_t i : which) hits[i] = beyond_holes(rays[i], hits[i]);
 }

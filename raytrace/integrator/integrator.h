@@ -59,7 +59,7 @@ Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&
 /// machine works on several at once where each alone would wait for its own numbers. All spans are of one length; rays,
 /// hits and samplers are used up.
 void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
-                    std::span<Rgb> radiances, RayCounts&); ///< path.cpp
+                    std::span<Rgb> radiances, RayCounts&); ///< paths.cpp
 
 /// path_radiance of the same numbers, split: the parts add up to it but for rounding.
 LightParts path_parts(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp

@@ -1,6 +1,6 @@
 // The scattering of plain surfaces for paths side by side: what the Bsdfs of common/material do, a path a lane, to the same
 // bits. All have one form: whether there is anything but delta lobes (kLit) and whether light goes through (kThrough), which
-// random numbers they use besides, eval and pdf for light samples, and sample.
+// random numbers sample uses (kDirection: two for the direction, kLobe: one), eval and pdf for light samples, and sample.
 #pragma once
 
 #include "common/material/fresnel.h"
@@ -45,6 +45,7 @@ template <typename BsdfType> Color colors(std::span<const PlainPath> paths, Rgb 
 class MattLanes {
 public:
     static constexpr bool kLit = true, kThrough = false;
+    static constexpr bool kDirection = true, kLobe = false;
 
     explicit MattLanes(std::span<const PlainPath> paths)
         : albedo_(colors(paths, &DiffuseBsdf::albedo)) {}
@@ -90,6 +91,7 @@ private:
 class MirrorLanes {
 public:
     static constexpr bool kLit = false, kThrough = false;
+    static constexpr bool kDirection = false, kLobe = false;
 
     explicit MirrorLanes(std::span<const PlainPath> paths) : fresnel_(paths) {}
 
@@ -104,6 +106,7 @@ private:
 class MetalLanes {
 public:
     static constexpr bool kLit = true, kThrough = false;
+    static constexpr bool kDirection = true, kLobe = true;
 
     explicit MetalLanes(std::span<const PlainPath> paths)
         : fresnel_(paths), multiple_(colors(paths, &MetalBsdf::multiple)),
@@ -164,6 +167,7 @@ private:
 class GlassLanes {
 public:
     static constexpr bool kLit = false, kThrough = true;
+    static constexpr bool kDirection = false, kLobe = true;
 
     explicit GlassLanes(std::span<const PlainPath> paths)
         : tint_(colors(paths, &DielectricBsdf::tint)) {

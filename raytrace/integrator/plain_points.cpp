@@ -2,11 +2,18 @@
 
 #include "common/geometry/smooth_lift.h"
 
+#include <cstddef>
+
 namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
 namespace {
+
+// What `fours` reads from one member on.
+static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(float) &&
+              offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
+static_assert(offsetof(Sphere, radius) == offsetof(Sphere, center) + 3 * sizeof(float));
 
 // The magnitude of the terms that p was made of bounds its error, as surface_point has it.
 FlatPoints points(const Vecd& p, const Vecd& magnitude, const Vecd& n) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace duet::raytrace {
 
@@ -16,6 +17,14 @@ namespace duet::raytrace {
 using namespace lanes;
 
 namespace {
+
+// What `fours` reads from one member on.
+static_assert(offsetof(Ray, direction) == 3 * sizeof(float) && offsetof(Ray, t_min) == 6 * sizeof(float));
+static_assert(offsetof(PathState, refraction) == offsetof(PathState, throughput) + 3 * sizeof(float));
+static_assert(offsetof(VertexNumbers, light) == offsetof(VertexNumbers, bsdf) + 2 * sizeof(float) &&
+              offsetof(VertexNumbers, light_choice) == offsetof(VertexNumbers, light) + 2 * sizeof(float) &&
+              offsetof(VertexNumbers, lobe) == offsetof(VertexNumbers, light) + 3 * sizeof(float) &&
+              offsetof(VertexNumbers, roulette) == offsetof(VertexNumbers, light) + 4 * sizeof(float));
 
 template <typename Points, typename Scattering> class Block {
 public:
@@ -188,22 +197,35 @@ void scatter_at(const Points& points, const RenderPlan& plan, std::span<PlainPat
     if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
 }
 
-template <typename Points, typename... Rest>
-void scatter_by(PlainSurfaces::Scattering scattering, const Points& points, Rest&&... rest) {
+// visit(the type of lanes that a scattering has).
+template <typename Lanes> struct TypeOf {
+    using Type = Lanes;
+};
+template <typename Visit> auto visit_lanes(PlainSurfaces::Scattering scattering, const Visit& visit) {
     switch (scattering) {
-    case PlainSurfaces::Scattering::kMatt: return scatter_at<MattLanes>(points, rest...);
-    case PlainSurfaces::Scattering::kMetal: return scatter_at<MetalLanes>(points, rest...);
-    case PlainSurfaces::Scattering::kMirror: return scatter_at<MirrorLanes>(points, rest...);
-    case PlainSurfaces::Scattering::kGlass: return scatter_at<GlassLanes>(points, rest...);
+    case PlainSurfaces::Scattering::kMetal: return visit(TypeOf<MetalLanes>());
+    case PlainSurfaces::Scattering::kMirror: return visit(TypeOf<MirrorLanes>());
+    case PlainSurfaces::Scattering::kGlass: return visit(TypeOf<GlassLanes>());
+    default: return visit(TypeOf<MattLanes>());
     }
 }
 
 } // namespace
 
+NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth) {
+    return visit_lanes(scattering, [&](auto lanes) {
+        using Lanes = typename decltype(lanes)::Type;
+        return NumbersUsed{Lanes::kDirection, Lanes::kLit && plan.lights != nullptr, Lanes::kLobe,
+                           plan.russian_roulette && depth > 0};
+    });
+}
+
 void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<PlainPath> paths, int depth,
                    ShadowRays& shadows, RayCounts& counts) {
     const auto scatter = [&](const auto& points) {
-        scatter_by(kind.scattering, points, plan, paths, depth, shadows, counts);
+        visit_lanes(kind.scattering, [&](auto lanes) {
+            scatter_at<typename decltype(lanes)::Type>(points, plan, paths, depth, shadows, counts);
+        });
     };
     switch (kind.form) {
     case PlainSurfaces::Form::kFlat: return scatter(flat_points(paths));
@@ -214,8 +236,8 @@ void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<P
 
 #else // too few lanes: RenderPlan::plain has no surfaces
 
-void scatter_plain(const RenderPlan&, PlainSurfaces::Kind, std::span<PlainPath>, int, ShadowRays&,
-                  RayCounts&) {}
+NumbersUsed numbers_used(const RenderPlan&, PlainSurfaces::Scattering, int) { return {}; }
+void scatter_plain(const RenderPlan&, PlainSurfaces::Kind, std::span<PlainPath>, int, ShadowRays&, RayCounts&) {}
 
 #endif
 

@@ -25,9 +25,16 @@ struct PlainPath {
     bool goes_on = false;
 };
 
+/// Which pairs of VertexNumbers are drawn for them.
+struct NumbersUsed {
+    bool direction = false, light = false, lobe = false, roulette = false;
+};
+/// Of paths at surfaces that scatter so, after `depth` scatterings.
+NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth);
+
 /// Scatters up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth scatterings;
-/// shadow rays are left to be sent. What happens to each is what happens to it alone (path.cpp), to the same bits: all that is used is
-/// rounded the same in every lane, and most of it is the very same functions, written over their number type.
+/// shadow rays are left to be sent. What happens to each is what happens to it alone (path.h), to the same bits: all that is
+/// used is rounded the same in every lane, and most of it is the very same functions, written over their number type.
 void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<PlainPath> paths, int depth,
                   ShadowRays& shadows, RayCounts& counts);
 

@@ -287,14 +287,19 @@ TEST_SUITE("unit") {
                     samplers[i].start(static_cast<int>(i % 7), -2, i / 3);
                     if (i % 3 != 1) which.push_back(static_cast<std::uint32_t>(count) - 1 - i);
                 }
-                std::vector<Vec2> all(count), some(which.size());
-                Sampler::pairs(samplers, 26, all);
-                Sampler::pairs(samplers, which, 26, some);
-                for (std::size_t k = 0; k < which.size(); ++k) CHECK(some[k] == all[which[k]]);
+                constexpr std::array<std::uint32_t, 2> kDimensions{8, 26};
+                std::vector<Vec2> all(2 * count), some(2 * which.size());
+                Sampler::pairs(samplers, kDimensions, all);
+                Sampler::pairs(samplers, which, kDimensions, some);
+                for (std::size_t d = 0; d < 2; ++d)
+                    for (std::size_t k = 0; k < which.size(); ++k)
+                        CHECK(some[d * which.size() + k] == all[d * count + which[k]]);
                 for (std::size_t i = 0; i < count; ++i) {
                     CHECK(samplers[i].dimension() == 0);
-                    samplers[i].set_dimension(26);
-                    CHECK(samplers[i].get_2d() == all[i]);
+                    for (std::size_t d = 0; d < 2; ++d) {
+                        samplers[i].set_dimension(kDimensions[d]);
+                        CHECK(samplers[i].get_2d() == all[d * count + i]);
+                    }
                 }
             }
     }

@@ -1,0 +1,220 @@
+// Unidirectional path tracing with next event estimation: at each vertex a light sample and a BSDF sample, combined by
+// multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples (plan.lights is null)
+// it is the naive path tracer, in which only chance finds the lights.
+#pragma once
+
+#include "raytrace/integrator/insides.h"
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path_footprint.h"
+#include "raytrace/integrator/path_state.h"
+
+#include <type_traits>
+#include <utility>
+
+namespace duet::raytrace {
+
+// What becomes of the light that a path finds: in a picture it is added up, whatever way it came.
+class Sum {
+public:
+    static constexpr bool kTold = false; // whether it has a log that is told of all
+    void start(const Bsdf&) {}
+    void add(Rgb light, LightSource, int) { total_ += light; }
+    void add_shadowed(Rgb, LightSource, int) {}
+    Rgb result() const { return total_; }
+
+private:
+    Rgb total_;
+};
+
+// What a path keeps where no dielectric knows of others: nothing.
+struct NoInsides {
+    explicit NoInsides(const RenderPlan&) {}
+    static constexpr float relative_index() { return 0; }
+};
+
+// The numbers of the vertex that a ray has found, if it is one that uses any.
+inline VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
+    return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
+}
+
+/// One path. kInsides: in scenes with dielectrics that know of each other.
+template <typename Sink, bool kInsides> class Path {
+public:
+    Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
+        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan, sampler.sample()) {}
+
+    /// The light along a camera ray, as the sink keeps it.
+    auto trace(Sampler& sampler, Ray ray, Hit hit) {
+        for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
+            hit = plan_.prepared.accelerator.closest(ray);
+        return result();
+    }
+
+    /// What the ray has found after `depth` scatterings: adds the light, and turns the ray into the one that goes on from
+    /// there. False where the path ends.
+    bool advance(Ray& ray, const Hit& nearest, int depth, const VertexNumbers& u) {
+        Hit reached;
+        if constexpr (kInsides) reached = arrive(ray, nearest);
+        const Hit& hit = kInsides ? std::as_const(reached) : nearest;
+        if (!hit.valid()) {
+            if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
+            add_environment(ray.direction, depth);
+            return false;
+        }
+        const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
+        if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
+        if (depth == 0) sink_.start(vertex.bsdf);
+        add_emission(vertex, ray.direction, depth);
+        if (depth == plan_.max_depth) return tell_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
+        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
+        if (!scatter(vertex, u, ray)) return false;
+        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
+        ++counts_.indirect;
+        return true;
+    }
+    auto result() const { return sink_.result(); }
+
+    /// What those change that scatter it in its place.
+    PathState& state() { return state_; }
+    /// Light that they find.
+    void add(Rgb light) { sink_.add(light, LightSource::kLight, 0); }
+
+private:
+    void add_environment(Vec3 w, int bounces) {
+        if (plan_.environment == nullptr) return;
+        float weight = 1;
+        if (!state_.departure.certain)
+            weight = mis_weight(state_.departure.pdf,
+                                arrival_pdf(*plan_.environment, *plan_.lights, state_.departure.receiver, w));
+        const Rgb emission = radiance(*plan_.environment, w);
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
+        sink_.add(state_.throughput * emission * weight, LightSource::kEnvironment, bounces);
+    }
+
+    void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
+        if (!plan_.emission) return;
+        const Rgb emission = emitted(vertex.material, plan_.scene.textures, vertex.point, -direction);
+        if (is_black(emission)) return;
+        float weight = 1;
+        if (!state_.departure.certain)
+            weight = mis_weight(state_.departure.pdf,
+                                arrival_pdf(plan_.scene, *plan_.lights, state_.departure.receiver, vertex.point));
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
+        sink_.add(state_.throughput * emission * weight, source_of(vertex.point), bounces);
+    }
+
+    void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
+        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
+        if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
+        Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        if constexpr (kInsides) scattered *= left_on_the_way(vertex, *arrival);
+        if (is_black(scattered) && !plan_.black_shadow_rays)
+            return tell_no_light_sample("the surface does not scatter the chosen light towards here");
+        const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
+        ++counts_.shadow;
+        if (!reaches(plan_, vertex, *arrival)) {
+            if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, false, 0, Rgb());
+            sink_.add_shadowed(state_.throughput * scattered / arrival->pdf, source, bounces + 1);
+            return;
+        }
+        // The environment and all still emitters are found by BSDF samples, too.
+        const float bsdf_pdf = arrival->delta ? 0 : pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi));
+        const float weight = mis_weight(arrival->pdf, bsdf_pdf);
+        const Rgb light = state_.throughput * scattered * (weight / arrival->pdf);
+        if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, true, weight, light);
+        sink_.add(light, source, bounces + 1);
+    }
+
+    // Asked for the sink that splits alone: a sum need not know.
+    LightSource source_of(const SurfacePoint& point) const {
+        if constexpr (std::is_same_v<Sink, Sum>) return LightSource::kLight;
+        const bool sampled = surface_light_index(plan_.scene, point.object, point.primitive) >= 0;
+        return sampled ? LightSource::kLight : LightSource::kOther;
+    }
+
+    // Chooses the next direction by the BSDF; false where the path ends.
+    bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
+        const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
+        if (!s || is_black(s->weight)) return tell_end("the surface absorbs it");
+        const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
+        if (!vertex.consistent(wi, s->wi)) return tell_end("its direction lies between the horizons of both normals");
+        state_.throughput *= s->weight;
+        if (s->transmitted) note_refraction(vertex);
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_);
+        footprint_.scatter(s->pdf, s->specular);
+        // Each number is written where it is read from next: a whole ray copied right after it was put together would
+        // wait for its parts.
+        state_.departure.certain = s->specular || plan_.lights == nullptr;
+        if (!state_.departure.certain) {
+            state_.departure.receiver = vertex.receiver();
+            state_.departure.pdf = s->pdf;
+        }
+        ray.origin = offset_origin(vertex.point, wi);
+        ray.direction = wi;
+        ray.t_min = 0;
+        return true;
+    }
+
+    // Entering glass scales the throughput by 1/η², leaving it by η²: no reason to end or to favour a path.
+    void note_refraction(const Vertex& vertex) {
+        const float eta = refraction_index(vertex.bsdf);
+        state_.refraction *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
+        if constexpr (kInsides)
+            if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+    }
+
+    // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
+    Hit arrive(Ray& ray, const Hit& nearest) {
+        int passed = 0;
+        const Hit hit = insides_.arrive(ray, nearest, state_.throughput, passed);
+        counts_.indirect += passed;
+        if (passed > 0) state_.departure.certain = true; // shadow rays end at any boundary
+        return hit;
+    }
+
+    static bool crosses(const Vertex& vertex) {
+        const auto* glass = std::get_if<Dielectric>(&vertex.material);
+        return glass != nullptr && !glass->thin;
+    }
+
+    // Of a light sample's light, what is not absorbed by what the vertex, or its other side, is inside of.
+    Rgb left_on_the_way(const Vertex& vertex, const Arrival& arrival) const {
+        if (same_hemisphere(vertex.wo, vertex.frame.to_local(arrival.wi)) || !crosses(vertex))
+            return insides_.transmittance(arrival.distance);
+        Insides beyond = insides_;
+        beyond.cross(vertex.point.material, vertex.wo.z > 0);
+        return beyond.transmittance(arrival.distance);
+    }
+
+    bool survives(float u) {
+        const float probability = survival(state_.throughput, state_.refraction, plan_.worth);
+        if (!(probability < 1)) return true; // nor is what is no number dropped: it is to be counted
+        if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
+        if (!(u < probability)) {
+            ++counts_.ended;
+            return false;
+        }
+        state_.throughput *= 1 / probability;
+        return true;
+    }
+
+    bool tell_end([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kTold) sink_.log().end(why);
+        return false;
+    }
+    void tell_no_light_sample([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kTold) sink_.log().no_light_sample(why);
+    }
+
+    const RenderPlan& plan_;
+    RayCounts& counts_;
+    Sink sink_;
+    PathState state_;
+    std::conditional_t<kInsides, Insides, NoInsides> insides_;
+    PathFootprint footprint_;
+};
+
+} // namespace duet::raytrace

@@ -1,0 +1,207 @@
+// Paths side by side: those that stand at plain surfaces of one kind advance several at once.
+#include "raytrace/integrator/path.h"
+#include "raytrace/integrator/plain_vertices.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace duet::raytrace {
+
+namespace {
+
+// The numbers of the vertices of some paths, by path; two at a time.
+void draw_all_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> which, int depth,
+                      std::vector<VertexNumbers>& numbers) {
+    std::size_t k = 0;
+    for (const std::uint32_t i : which) go_to_vertex(samplers[i], depth);
+    for (; k + 1 < which.size(); k += 2) {
+        const auto [first, second] = Sampler::get_blocks(samplers[which[k]], samplers[which[k + 1]]);
+        numbers[which[k]] = vertex_numbers(first);
+        numbers[which[k + 1]] = vertex_numbers(second);
+    }
+    if (k < which.size()) numbers[which[k]] = vertex_numbers(samplers[which[k]].get_block());
+}
+
+// Of those, what is used alone.
+class UsedNumbers {
+public:
+    void draw(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, int depth, const NumbersUsed& used,
+              std::vector<VertexNumbers>& numbers) {
+        const std::uint32_t first = vertex_dimension(depth);
+        std::array<std::uint32_t, 4> dimensions;
+        std::size_t count = 0;
+        const auto add = [&](bool is_used, std::uint32_t dimension) {
+            if (is_used) dimensions[count++] = first + dimension;
+        };
+        add(used.direction, 0);
+        add(used.light, 2);
+        add(used.light || used.lobe, 4);
+        add(used.roulette, 6);
+        pairs_.resize(count * which.size());
+        Sampler::pairs(samplers, which, std::span(dimensions).first(count), pairs_);
+        std::span<const Vec2> rest = pairs_;
+        const auto take = [&](bool is_used, const auto& set) {
+            if (!is_used) return;
+            for (std::size_t k = 0; k < which.size(); ++k) set(numbers[which[k]], rest[k]);
+            rest = rest.subspan(which.size());
+        };
+        take(used.direction, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
+        take(used.light, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
+        take(used.light || used.lobe, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x, u.lobe = pair.y; });
+        take(used.roulette, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
+    }
+
+private:
+    std::vector<Vec2> pairs_;
+};
+
+// Paths by the class of what their rays have found (PlainSurfaces).
+class ByClass {
+public:
+    explicit ByClass(std::size_t most) : classes_(most), sorted_(most) {}
+
+    // class_of(path): below kClasses. Order is kept within a class. (Two halves at once: a count that was just written is
+    // waited for.)
+    template <typename ClassOf> void sort(std::span<const std::uint32_t> paths, const ClassOf& class_of) {
+        const std::size_t size = paths.size(), half = size / 2;
+        std::array<std::uint32_t, kClasses> low{}, high{};
+        const auto count = [&](std::size_t k, auto& counts) { ++counts[classes_[k] = static_cast<std::uint8_t>(class_of(paths[k]))]; };
+        for (std::size_t k = 0; k < half; ++k) count(k, low), count(half + k, high);
+        if (size % 2 != 0) count(size - 1, high);
+        std::uint32_t begin = 0;
+        for (std::size_t c = 0; c < kClasses; ++c) {
+            const std::uint32_t in_low = low[c], in_high = high[c];
+            low[c] = begin;
+            high[c] = begin + in_low;
+            ends_[c] = begin += in_low + in_high;
+        }
+        const auto put = [&](std::size_t k, auto& next) { sorted_[next[classes_[k]]++] = paths[k]; };
+        for (std::size_t k = 0; k < half; ++k) put(k, low), put(half + k, high);
+        if (size % 2 != 0) put(size - 1, high);
+    }
+    std::span<const std::uint32_t> of(std::size_t c) const {
+        const std::uint32_t begin = c == 0 ? 0 : ends_[c - 1];
+        return std::span(sorted_).subspan(begin, ends_[c] - begin);
+    }
+
+private:
+    static constexpr std::size_t kClasses = PlainSurfaces::kClasses;
+    std::vector<std::uint8_t> classes_;
+    std::vector<std::uint32_t> sorted_;
+    std::array<std::uint32_t, kClasses> ends_{};
+};
+
+template <bool kInsides> class Paths {
+public:
+    Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
+        : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), by_class_(rays.size()),
+          numbers_(rays.size()), shadows_(plan) {
+        DUET_CHECK_EQ(rays.size(), hits.size());
+        DUET_CHECK_EQ(rays.size(), samplers.size());
+        paths_.reserve(rays.size());
+        going_.reserve(rays.size());
+        for (std::uint32_t i = 0; i < rays.size(); ++i) {
+            paths_.emplace_back(plan, samplers[i], counts);
+            going_.push_back(i);
+        }
+    }
+
+    void trace(std::span<Rgb> radiances) {
+        for (int depth = 0; !going_.empty(); ++depth) {
+            advance(depth);
+            shadows_.send([&](std::uint32_t i, Rgb light) { paths_[i].add(light); });
+            find_hits();
+        }
+        for (std::size_t i = 0; i < paths_.size(); ++i) radiances[i] = paths_[i].result();
+    }
+
+private:
+    using Kind = PlainSurfaces::Kind;
+    static constexpr std::size_t kFewest = 3; // to go side by side
+
+    void find_hits() {
+        const Accelerator& accelerator = plan_.prepared.accelerator;
+        if (accelerator.gathers_scattered()) return accelerator.closest_of_scattered(rays_, going_, hits_);
+        for (const std::uint32_t i : going_) hits_[i] = accelerator.closest(rays_[i]);
+    }
+
+    void advance(int depth) {
+        if (depth == plan_.max_depth) return end(depth);
+        by_class_.sort(going_, [&](std::uint32_t i) { return plan_.plain.class_of(hits_[i]); });
+        going_.clear();
+        escape(by_class_.of(PlainSurfaces::kNothing), depth);
+        const auto others = by_class_.of(PlainSurfaces::kOther);
+        draw_all_numbers(samplers_, others, depth, numbers_);
+        for (const std::uint32_t i : others) advance_alone(i, depth);
+        for (std::size_t k = 0; k < Kind::kCount; ++k)
+            if (!by_class_.of(k).empty()) scatter(Kind::of_index(k), by_class_.of(k), depth);
+    }
+    // All are as long as they may be.
+    void end(int depth) {
+        for (const std::uint32_t i : going_) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
+        going_.clear();
+    }
+    void advance_alone(std::uint32_t i, int depth) {
+        if (paths_[i].advance(rays_[i], hits_[i], depth, numbers_[i])) going_.push_back(i);
+    }
+
+    void escape(std::span<const std::uint32_t> which, int depth) {
+        const Environment* environment = plan_.environment;
+        if (!kInsides && environment == nullptr) return;
+        if constexpr (!kInsides) {
+            if (const auto* even = std::get_if<ConstantEnvironment>(environment)) return escape_to(*even, which);
+            if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, which);
+        }
+        for (const std::uint32_t i : which) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
+    }
+    // As Path::add_environment, of one that has no light samples, in a loop without a call.
+    template <typename Sky> void escape_to(const Sky& sky, std::span<const std::uint32_t> which) {
+        for (const std::uint32_t i : which) {
+            const PathState& state = paths_[i].state();
+            const float weight = mis_weight(state.departure.certain ? 1 : state.departure.pdf, 0.0f);
+            paths_[i].add(state.throughput * radiance(sky, rays_[i].direction) * weight);
+        }
+    }
+
+    PlainPath plain_path(std::uint32_t i) {
+        const Hit& hit = hits_[i];
+        return {i, &rays_[i], &hit, &plan_.plain.shape(hit), &plan_.plain.bsdf(hit), &numbers_[i], &paths_[i].state()};
+    }
+    void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
+        used_numbers_.draw(samplers_, which, depth, numbers_used(plan_, kind.scattering, depth), numbers_);
+        for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kPathLanes))) {
+            std::array<PlainPath, kPathLanes> some;
+            const std::size_t size = std::min(which.size(), kPathLanes);
+            for (std::size_t k = 0; k < size; ++k) some[k] = plain_path(which[k]);
+            scatter_plain(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+            for (std::size_t k = 0; k < size; ++k)
+                if (some[k].goes_on) going_.push_back(which[k]);
+        }
+        for (const std::uint32_t i : which) advance_alone(i, depth);
+    }
+
+    const RenderPlan& plan_;
+    const std::span<Ray> rays_;
+    const std::span<Hit> hits_;
+    const std::span<Sampler> samplers_;
+    RayCounts& counts_;
+    std::vector<Path<Sum, kInsides>> paths_;
+    std::vector<std::uint32_t> going_;
+    ByClass by_class_;
+    std::vector<VertexNumbers> numbers_;
+    UsedNumbers used_numbers_;
+    ShadowRays shadows_;
+};
+
+} // namespace
+
+void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+                    std::span<Rgb> radiances, RayCounts& counts) {
+    if (plan.insides) return Paths<true>(plan, rays, hits, samplers, counts).trace(radiances);
+    Paths<false>(plan, rays, hits, samplers, counts).trace(radiances);
+}
+
+} // namespace duet::raytrace
