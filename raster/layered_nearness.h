@@ -11,8 +11,9 @@ namespace duet::raster {
 /// says, so that the mean over texels is that of blending (Enderton, Sintorn, Shirley and Luebke 2010, «Stochastic
 /// Transparency», §3.4). Two departures: a texel has one number for all its surfaces, and what stops it is where the
 /// light that has passed the layers so far falls below that, so that stacked veils let through the product; and the
-/// numbers are not independent but the ranks of an ordered dither of 4 × 4 texels, as wide as the filter of
-/// ShadowMap::lit_fraction, which leaves about half of the noise: at most 0.16 rms of the light, instead of 0.27.
+/// numbers are not independent but the ranks of an ordered dither of 4 × 4 texels, as wide as the filter that
+/// ShadowMap::lit_fraction takes to maps with layers. That leaves nothing of ranks that are above the opacity or below
+/// it, and of the one between, whose texels the hash decides, at most half a sixteenth of the light, rms.
 /// `layers`: of process_layers. The same bits as keep_nearness() where they are not.
 void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers, const PassView& view,
                            const PixelRect& rect, std::size_t index, ImageFloat& picture);

@@ -1,13 +1,14 @@
 #include "raster/shadow_map.h"
 
-#include <array>
+#include "raster/prepare.h"
+
 #include <cmath>
 
 namespace duet::raster {
 
 ShadowMap::ShadowMap(const Prepared& casters, const Camera& camera, int side, int threads)
     : view_(CameraModel({camera, side, side}).through()),
-      orthographic_(camera.projection == Camera::Projection::kOrthographic) {
+      orthographic_(camera.projection == Camera::Projection::kOrthographic), layered_(casters.data().has_layers()) {
     Settings settings;
     settings.output = Output::kNearness;
     settings.threads = threads;
@@ -67,17 +68,28 @@ std::array<double, 4> spline(double f) {
     return {b(1 + f), b(f), b(1 - f), b(2 - f)};
 }
 
+/// What a box of 4 texels takes of five, the first of which it has left by f of its width, f in [0, 1).
+std::array<double, 5> box(double f) { return {(1 - f) / 4, 0.25, 0.25, 0.25, f / 4}; }
+
 } // namespace
 
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
     if (dot(receiver.n, view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y) >= 0) return 1;
+    const double first = layered_ ? kLayeredRadius : 0.5;
+    const double left = std::floor(place.x - first), top = std::floor(place.y - first), fx = place.x - first - left, fy = place.y - first - top;
+    const int x0 = static_cast<int>(left), y0 = static_cast<int>(top);
+    return layered_ ? lit_fraction<5>(receiver, place, x0, y0, box(fx), box(fy))
+                    : lit_fraction<4>(receiver, place, x0 - 1, y0 - 1, spline(fx), spline(fy));
+}
+
+/// The texels from x0, y0 on, weighed.
+template <std::size_t N>
+float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
+                              const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
-    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
-    const std::array<double, 4> across = spline(place.x - 0.5 - left), down = spline(place.y - 0.5 - top);
-    const int x0 = static_cast<int>(left) - 1, y0 = static_cast<int>(top) - 1;
     double dark = 0, known = 0;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < static_cast<int>(N); ++row)
+        for (int column = 0; column < static_cast<int>(N); ++column) {
             const int x = x0 + column, y = y0 + row;
             const double nearness = static_cast<double>(nearness_(x, y));
             const double seen = orthographic_ ? -view_.near / nearness : nearness;

@@ -4,6 +4,7 @@
 #include "common/image/image.h"
 #include "raster/render.h"
 
+#include <array>
 #include <optional>
 
 namespace duet::raster {
@@ -26,8 +27,12 @@ public:
     std::optional<Vec3d> place(Vec3d p, double margin) const;
     /// The part of a point light's or a sun's light that arrives, in [0, 1]: percentage-closer filtering (Reeves,
     /// Salesin and Cook 1987) over 4 × 4 texels, weighed by the quadratic B-spline about the point's place: an edge is
-    /// blurred over kFilterRadius texels to both sides. `place` is the receiver's, kFilterRadius + 1 or more from the
-    /// edge.
+    /// blurred over kFilterRadius texels to both sides. `place` is the receiver's, kMargin or more from the edge.
+    ///
+    /// Where surfaces that let a part of the light through are dithered over 4 × 4 texels (raster/layered_nearness.h), the
+    /// filter is the box of 4 texels about the point's place instead, over 5 × 5 of them: in each direction it takes
+    /// every rank of the pattern for as much as any other, wherever the place is, so that nothing of the pattern is left,
+    /// and an edge is blurred over kLayeredRadius texels.
     ///
     /// Each texel's depth is compared with that of the receiver's *plane* at the texel's centre (Isidoro 2006, «Shadow
     /// Mapping: GPU-based Tips and Techniques», receiver plane depth bias). On a plane both are the same number but for
@@ -40,7 +45,8 @@ public:
     ///   edge does not leak back around it. Nor if what stands over the plane is farther from the light than the receiver.
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
-    static constexpr double kFilterRadius = 1.5;
+    static constexpr double kFilterRadius = 1.5, kLayeredRadius = 2;
+    static constexpr double kMargin = 2.5; ///< texels that a receiver needs about its place, by either filter
     static constexpr double kSteepest = 0.5;      ///< facets that meet at up to 27° do not shade each other,
     static constexpr double kOfElevation = 0.23;  ///< or, on the light's side, as steep as this part of the light's own slope
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
@@ -56,9 +62,12 @@ public:
 private:
     struct Plane;
     Plane plane(const Receiver& receiver, Vec3d place) const;
+    template <std::size_t N>
+    float lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
+                       const std::array<double, N>& down) const;
 
     Pinhole view_;
-    bool orthographic_;
+    bool orthographic_, layered_; ///< layered: some of what it sees is dithered
     /// near / depth; 0 where nothing is seen. Of a point's plane it is linear in the texels' coordinates, seen from a
     /// point; seen from infinitely far depth itself is.
     ImageFloat nearness_;

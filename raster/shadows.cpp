@@ -238,7 +238,6 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
 }
 
 float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
-    constexpr double kMargin = ShadowMap::kFilterRadius + 1;
     if (!source.cells.empty()) {
         // The samples of a pixel share the pieces among them, too, where there is one for each.
         const std::size_t count = maps.cells.size();
@@ -251,11 +250,11 @@ float Shadows::visibility(const Source& source, const Maps& maps, const Receiver
     for (const CubeMap& cube : maps.cubes) {
         const Vec3 way(cube.frame.to_local(receiver.p - cube.center));
         const ShadowMap& face = *cube.faces[cube_face(way)];
-        const std::optional<Vec3d> place = face.place(receiver.p, kMargin);
+        const std::optional<Vec3d> place = face.place(receiver.p, ShadowMap::kMargin);
         return place ? face.lit_fraction(receiver, *place) : 1;
     }
     for (const ShadowMap& view : maps.views)
-        if (const std::optional<Vec3d> place = view.place(receiver.p, kMargin)) return view.lit_fraction(receiver, *place);
+        if (const std::optional<Vec3d> place = view.place(receiver.p, ShadowMap::kMargin)) return view.lit_fraction(receiver, *place);
     return 1;
 }
 
