@@ -114,7 +114,9 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
         return sum;
     };
     const float few = dark(taps.first, TapRange::kBlock);
-    const bool agree = few <= 0 || few >= TapRange::kBlock;
+    // Where all of these are dark so are the rest; where none is, blockers were found all the same: it is the shadow's rim,
+    // and others see them.
+    const bool agree = few >= TapRange::kBlock;
     const int rest = taps.count - TapRange::kBlock;
     const float part = agree || rest == 0 ? few / TapRange::kBlock
                                           : (few + dark(taps.first + TapRange::kBlock, rest)) / static_cast<float>(taps.count);

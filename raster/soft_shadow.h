@@ -27,8 +27,8 @@ public:
     ///   blockers are taken to be, so that the filter has the light's own shape whatever its direction. The points are
     ///   the same for every receiver.
     /// - What a tap finds counts where it stands over the receiver's plane, before the light, so that a flat surface does
-    ///   not shade itself, however steep; and the search counts it only where the line to it from the receiver goes on
-    ///   to the light, so that the walls of a corner are no blockers.
+    ///   not shade itself, however steep; and, as in the search, only where the line to it from the receiver goes
+    ///   on to the light, so that the walls of a corner are no blockers.
     /// - How far from the receiver blockers can be is known from the nearest depth in the part of the map that the cone
     ///   covers; that bounds the cone, and so the part, again and again. What is left is searched texel by texel, up to
     ///   kSearchedSide × kSearchedRows of them: no blocker is missed at a contact. Where they find none, those blocks of

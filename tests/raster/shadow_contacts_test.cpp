@@ -120,4 +120,47 @@ TEST_SUITE("unit") {
         CHECK(penumbra > 10000);
         CHECK(steps < 10);
     }
+
+    // The plate hides the lower rim of the ball: of its lower edge, which hides it first, the map shows little beside what
+    // lies behind, and that passes the light by. The truth: lines to points evenly over the disk that the ball is.
+    TEST_CASE("a plate that leans towards a lamp: its shadow begins without a step and is as deep as the part it hides") {
+        const Vec3d lamp(0, 3.9, -5.4), edge(0, 1.35, -2.6), lean(0, 0.4, -1.2);
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-0.1f, 0, 1), Vec3(0.2f, 0, 0), Vec3(0, 0, -2)}}});
+        add(scene, QuadList{{{Vec3(-9, 1.35f, -2.6f), Vec3(18, 0, 0), Vec3(lean)}}});
+        add(scene, Sphere{Vec3(lamp), 1}, Mat4(), Emissive{Rgb(5)});
+        Camera camera = look({0, 0.3, 0}, {0, 0, 0});
+        camera.projection = Camera::Projection::kOrthographic;
+        camera.up = {0, 0, -1};
+        camera.height = 1.6;
+        scene.camera = camera;
+        finish_scene(scene);
+        constexpr int kRows = 200;
+        const ImageFloat found = arriving(scene, {camera, 2, kRows});
+        double worst = 0, squares = 0, step = 0;
+        int penumbra = 0;
+        for (int y = 0; y < kRows; ++y) {
+            const Vec3d p(0, 0, (y + 0.5) * 1.6 / kRows - 0.8);
+            const double distance = length(lamp - p), radius = 1 / std::sqrt(1 - 1 / sqr(distance));
+            const Vec3d up = normalize(cross(Vec3d(1, 0, 0), lamp - p));
+            int hidden = 0, all = 0;
+            for (int i = 0; i < 64; ++i)
+                for (int k = 0; k < 64; ++k) {
+                    const double a = (i + 0.5) / 32 - 1, b = (k + 0.5) / 32 - 1;
+                    if (a * a + b * b > 1) continue;
+                    const Vec3d way = lamp + Vec3d(a, 0, 0) * radius + up * (b * radius) - p, n = cross(Vec3d(1, 0, 0), lean);
+                    const double along = (p + way * (dot(n, edge - p) / dot(n, way)) - edge).z / lean.z;
+                    hidden += along >= 0 && along <= 1;
+                    ++all;
+                }
+            const double off = static_cast<double>(found(1, y)) - (1 - static_cast<double>(hidden) / all);
+            worst = max(worst, std::abs(off)), squares += off * off;
+            if (y > 0) step = max(step, std::abs(static_cast<double>(found(1, y)) - static_cast<double>(found(1, y - 1))));
+            penumbra += hidden > 0 && hidden < all;
+        }
+        CHECK(penumbra > 50);
+        CHECK(step < 0.03); // two taps of 64
+        CHECK(worst < 0.08);
+        CHECK(std::sqrt(squares / kRows) < 0.035);
+    }
 }
