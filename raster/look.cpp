@@ -23,11 +23,25 @@ const Rgb* known_radiance(const Screen::FirstLook& look, std::uint32_t key, int 
     return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
 }
 
+/// Of each object: whether all that it shows is mirrored, of which a first look knows but the environment.
+std::vector<std::uint8_t> mirrors(const Scene& scene) {
+    const auto is_mirror = [&](std::uint32_t material) {
+        const Material& m = scene.materials[material];
+        const auto* layers = std::get_if<Principled>(&m);
+        const bool metal = layers != nullptr ? layers->metallic.constant() && layers->metallic.value == 1 : std::holds_alternative<Metal>(m);
+        return metal && may_mirror(m);
+    };
+    std::vector<std::uint8_t> result;
+    for (const Object& object : scene.objects)
+        result.push_back(std::all_of(object.materials.begin(), object.materials.end(), is_mirror));
+    return result;
+}
+
 /// One view's look at the scene.
 class Looker {
 public:
     Looker(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& central, const Control& control)
-        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), with_glass_(grid.size(), 0) {}
+        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), mirrors_(mirrors(data.scene)), with_glass_(grid.size(), 0) {}
 
     std::unique_ptr<Screen> look() {
         GeometryLoan geometry(*data_.geometries);
@@ -38,11 +52,11 @@ public:
         if (!glass && !needs_screen_radiance(data_, settings_)) return screen;
         first_look(*geometry, nullptr, *screen);
         add_shapes(true, *screen);
-        screen->set_flat_look(flat_look(*screen));
+        set_flat_look(*screen);
         if (!glass) return screen;
         look_behind_glass(*screen);
         first_look(*geometry, &screen->first_look(), *screen);
-        screen->set_flat_look(flat_look(*screen));
+        set_flat_look(*screen);
         return screen;
     }
 
@@ -54,6 +68,8 @@ private:
             if (!control_.stopped()) visit(i, grid_.tile(i));
         });
     }
+
+    void set_flat_look(Screen& screen) const { screen.set_flat_look(flat_look(screen, mirrors_)); }
 
     /// The depths and normals at the pixels' centres.
     std::unique_ptr<Screen> depths_and_normals(const Geometry& geometry) const {
@@ -128,7 +144,7 @@ private:
         add_occlusion(data_, settings_, *bare);
         first_look(*geometry, &screen.first_look(), *bare);
         add_shapes(false, *bare);
-        bare->set_flat_look(flat_look(*bare));
+        set_flat_look(*bare);
         process_backs_of_glass(data_, grid_, central_, settings_, true, *glass);
         const std::shared_ptr<const Screen> backs = depths_and_normals(*glass);
         process_glass(data_, grid_, central_, settings_, *glass);
@@ -239,7 +255,7 @@ private:
                 }
         });
         screen.set_first_look(std::move(picture).finish());
-        screen.set_flat_look(flat_look(screen));
+        set_flat_look(screen);
     }
 
     /// The tiles that show glass: their hits of one geometry, or none, and the lists of another's before them.
@@ -265,6 +281,7 @@ private:
     const TileGrid& grid_;
     const PassView& central_;
     const Control& control_;
+    const std::vector<std::uint8_t> mirrors_;
     std::vector<std::uint8_t> with_glass_; ///< of each tile
 };
 

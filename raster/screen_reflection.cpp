@@ -295,13 +295,14 @@ ImageFloat normal_turns(const Screen& screen, int threads) {
     return turns;
 }
 
-RadiancePyramid flat_look(const Screen& screen) {
+RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors) {
     const Screen::FirstLook& look = screen.first_look();
     Image<std::uint8_t> known(screen.width(), screen.height(), 0);
     for (int y = 0; y < screen.height(); ++y)
         for (int x = 0; x < screen.width(); ++x) {
             const bool nothing = !(screen.depth(x, y) < kInfinity);
-            known(x, y) = (nothing || is_flat(screen, x, y)) && look.lamps(x, y) == 0;
+            const bool flat = !nothing && mirrors[look.objects(x, y)] == 0 && is_flat(screen, x, y);
+            known(x, y) = (nothing || flat) && look.lamps(x, y) == 0;
         }
     return RadiancePyramid(look.radiance.finest(), known);
 }

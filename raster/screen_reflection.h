@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 namespace duet::raster {
 
@@ -61,8 +62,9 @@ float normal_turn(const Screen& screen, int x, int y);
 ImageFloat normal_turns(const Screen& screen, int threads);
 /// Screen::set_flat_look: the first look at flat surfaces and past all surfaces, the turns being known. Empty where there is
 /// neither. What lies behind all is a part of it, that where a flat surface ends what is hidden beside its edge changes
-/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves.
-RadiancePyramid flat_look(const Screen& screen);
+/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves. Objects that are
+/// `mirrors`, not 0, are none of it: the first look does not know what they show.
+RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors);
 
 inline constexpr float kThickness = 0.02f;
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.

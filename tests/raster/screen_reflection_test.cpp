@@ -176,6 +176,22 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a mirror on which things stand is not what they hide from it") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-8, 0, 4), Vec3(16, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-8, 0, -2), Vec3(16, 0, 0), Vec3(0, 8, 0)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        add(scene, Sphere{Vec3(0, 0.6f, 0.5f), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 1.5, 4}, {0, 0.6, 0}, 50), 320, 240};
+        const auto screen = raster::screen_of(raster::prepare(scene, plain()), view, plain());
+        for (const float y : {60.0f, 140.0f, 220.0f}) { // wall, ball, floor
+            const Rgb seen = screen->flat_look().at(160, y, 4);
+            CHECK(seen.g > 0.2f);
+            CHECK(seen.r < 0.01f);
+        }
+    }
+
     TEST_CASE("a picture known in part: what is known stays, the rest is filled from what is about it; of nothing, nothing") {
         ImageRgb picture(37, 21, Rgb(5.0f));
         Image<std::uint8_t> known(37, 21, 0);
