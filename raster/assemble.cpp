@@ -427,14 +427,17 @@ void Assembler::add_fragments(const Small& small, std::uint64_t samples, const N
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
         double nearness = (plane.constant + down * plane.y) + across * plane.x;
         if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
-        if (!(small.well_inside >> bit & 1)) {
+        const bool inside = small.well_inside >> bit & 1;
+        if (!inside) {
             if (!whole) whole = whole_triangle(small.index);
             nearness = interpolate(*whole, least_.position(small.x + across, small.y + down)).nearness(plan_->viewport.near);
         }
         const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
-        batch_->fragments.push_back({id, kept_nearness(nearness),
-                                     static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize)),
-                                     static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
+        batch_->fragments.push_back({.id = id,
+                                     .nearness = kept_nearness(nearness),
+                                     .place = static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize) & 0x7fff),
+                                     .inside = inside,
+                                     .tile = static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
     }
 }
 

@@ -15,7 +15,8 @@ namespace duet::raster {
 struct Fragment {
     std::uint32_t id = 0;
     float nearness = 0;
-    std::uint16_t place = 0; ///< in its tile: place_in_tile
+    std::uint16_t place : 15 = 0; ///< in its tile: place_in_tile
+    std::uint16_t inside : 1 = 0; ///< well inside the triangle (edge_margins)
     std::uint16_t tile = 0;
 };
 static_assert(sizeof(Fragment) == 12);

@@ -102,6 +102,8 @@ void DepthTile::empty(std::size_t block) {
     std::fill_n(nearness_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
     std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
                 static_cast<std::int32_t>(kNoTriangle));
+    constexpr std::size_t kStrips = kBlockSamples / kStrip;
+    std::fill_n(inside_.begin() + static_cast<std::ptrdiff_t>(block * kStrips), kStrips, std::uint16_t{0});
 }
 
 void DepthTile::empty_undrawn() {
@@ -152,21 +154,20 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
 /// Nearness over a block: of a row of it at a time.
 struct DepthTile::Nearness {
     const Viewport& viewport;
-    alignas(64) std::array<double, kBlock> start; ///< of each row
-    alignas(64) std::array<double, kBlock> along; ///< of each column, from there
+    const NearnessPlane& plane;
+    double top;                                   ///< the block's first sample, below the plane's origin
+    alignas(64) std::array<double, kBlock> along; ///< of each column, from a row's start
 
     /// The block's first sample lies at (x, y) from the plane's origin.
-    Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
-        for (std::size_t i = 0; i < kBlock; i += Doubles::size) {
-            const Doubles step = load(kColumns<double>, i);
-            (Doubles(plane.constant) + (Doubles(y) + step) * Doubles(plane.y)).store_aligned(&start[i]);
-            ((Doubles(x) + step) * Doubles(plane.x)).store_aligned(&along[i]);
-        }
+    Nearness(const NearnessPlane& plane_, const Viewport& viewport_, double x, double y) : viewport(viewport_), plane(plane_), top(y) {
+        for (std::size_t i = 0; i < kBlock; i += Doubles::size)
+            ((Doubles(x) + load(kColumns<double>, i)) * Doubles(plane.x)).store_aligned(&along[i]);
     }
     /// Of the samples from the i-th of the block on.
     Floats at(std::size_t i) const {
         const auto half = [&](std::size_t first) {
-            const Doubles value = Doubles(start[first / kBlock]) + Doubles::load_aligned(&along[first % kBlock]);
+            const Doubles start = Doubles(plane.constant) + (Doubles(top) + Doubles(kColumns<double>[first / kBlock])) * Doubles(plane.y);
+            const Doubles value = start + Doubles::load_aligned(&along[first % kBlock]);
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
         const Floats nearness = narrowed(half(i), half(i + Doubles::size));
@@ -174,16 +175,20 @@ struct DepthTile::Nearness {
     }
 };
 
-/// The samples from a place on, as many as there are lanes, of which those given show a triangle.
+/// The samples from a place on, as many as there are lanes, of which those given show a triangle, well inside it.
 template <typename Lanes>
 void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
     const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
     const Floats before = Floats::load_aligned(&nearness_[place]);
-    auto wins = nearness > before;
-    if (!sabotaged(Guard::kDrawOrder)) wins = wins || (nearness == before && xsimd::bool_cast(id < id_before));
-    wins = wins && lanes;
+    // Floats that are not negative compare as their bits do. A lower number wins if it is nearer than the float before, which is to
+    // be at least as near. (Of two conditions joined by «or» the second would wait for the first.)
+    const Ints bits = xsimd::bitwise_cast<Ints>(nearness);
+    Ints to_beat = xsimd::bitwise_cast<Ints>(before);
+    if (!sabotaged(Guard::kDrawOrder)) to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
+    const auto wins = xsimd::bool_cast(xsimd::select(xsimd::bool_cast(lanes), bits, Ints(-1)) > to_beat);
     xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
     xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
+    inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
 }
 
 /// Draws those samples of a block, whose first lies at (x, y) from the plane's origin.
@@ -207,8 +212,7 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTrian
     for (; samples != 0; samples &= samples - 1) {
         const int bit = std::countr_zero(samples), x = x0 + bit % kBlock, y = y0 + bit / kBlock;
         const Interpolated here = at.at(offset_.position(x, y), all.piece);
-        keep_nearest(static_cast<std::uint32_t>(block * kBlock * kBlock) + static_cast<std::uint32_t>(bit), triangle.id,
-                     kept_nearness(here.nearness(viewport_.near)));
+        keep_one(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id, kept_nearness(here.nearness(viewport_.near)), false);
     }
 }
 
@@ -240,16 +244,19 @@ void DepthTile::draw(const Patch& patch) {
 }
 
 void DepthTile::draw(std::span<const Fragment> fragments) {
-    for (const Fragment& f : fragments) keep_nearest(f.place, f.id, f.nearness);
+    for (const Fragment& f : fragments) keep_one(f.place, f.id, f.nearness, f.inside);
 }
 
-void DepthTile::keep_nearest(std::size_t place, std::uint32_t id, float nearness) {
+void DepthTile::keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside) {
     open(place / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
     const bool tie_won = nearness == nearness_[place] && number < ids_[place] && !sabotaged(Guard::kDrawOrder);
     if (!(nearness > nearness_[place] || tie_won)) return;
     nearness_[place] = nearness;
     ids_[place] = number;
+    const auto bit = static_cast<std::uint16_t>(1u << place % kStrip);
+    std::uint16_t& strip = inside_[place / kStrip];
+    strip = static_cast<std::uint16_t>(inside ? strip | bit : strip & ~bit);
 }
 
 void DepthTile::find_farthest(std::size_t block) {

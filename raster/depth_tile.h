@@ -31,7 +31,7 @@ public:
     void draw(const Patch& patch);
     void draw(std::span<const Fragment> fragments);
     /// One sample: `x` and `y` are the pixel's.
-    void draw(int x, int y, std::uint32_t id, float nearness) { keep_nearest(place(x, y), id, nearness); }
+    void draw(int x, int y, std::uint32_t id, float nearness) { keep_one(place(x, y), id, nearness, false); }
 
     const PixelRect& rect() const { return rect_; }
     SampleOffset offset() const { return offset_; }
@@ -52,6 +52,8 @@ public:
     /// The same by place, for who walks along strips: of blocks drawn to, or after empty_undrawn() of all.
     const std::int32_t* ids() const { return ids_.data(); }
     const float* nearness() const { return nearness_.data(); }
+    /// A bit for each sample of the strip that begins at a place that lies in the unsnapped triangle it sees (edge_margins).
+    std::uint32_t inside(std::size_t place) const { return inside_[place / kStrip]; }
     /// Whether any sample of the block may see something.
     bool drawn(std::size_t block) const { return drawn_[block]; }
 
@@ -69,7 +71,7 @@ private:
     template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
-    void keep_nearest(std::size_t place, std::uint32_t id, float nearness);
+    void keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside);
     void find_farthest(std::size_t block);
     void empty(std::size_t block);
     void open(std::size_t block) {
@@ -82,6 +84,8 @@ private:
     Viewport viewport_;
     alignas(64) std::array<float, kTileSamples> nearness_;
     alignas(64) std::array<std::int32_t, kTileSamples> ids_;
+    static_assert(kStrip == 16);
+    std::array<std::uint16_t, kTileSamples / kStrip> inside_; ///< a strip each
     std::array<float, kBlocks * kBlocks> farthest_;        ///< of a block: no sample is farther
     std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< times drawn to since that was found
     std::array<bool, kBlocks * kBlocks> drawn_;

@@ -22,11 +22,19 @@ bool is_empty(const Geometry& geometry, std::size_t index) {
            (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
 }
 
+/// Asks for the lines of memory that a row of pixels will be written to: the machine guesses those of one row, but not the next row's.
+template <typename Pixel> void fetch_row(Pixel* row, int width) {
+    constexpr int kLine = 64 / sizeof(Pixel);
+    for (int x = 0; x < width; x += kLine) __builtin_prefetch(row + x, 1);
+}
+
 template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
     static_assert(sizeof(Pixel) == 4);
     const Pixel value = pixel; // of one's own, so that the compiler makes wide stores
     const int width = rect.width(), end = rect.y1;
+    constexpr int kAhead = 8;
     for (int y = rect.y0; y < end; ++y) {
+        if (y + kAhead < end) fetch_row(&picture(rect.x0, y + kAhead), width);
         Pixel* row = &picture(rect.x0, y);
         for (int i = 0; i < width; ++i) std::memcpy(static_cast<void*>(row + i), &value, sizeof(Pixel));
     }
@@ -78,6 +86,7 @@ public:
         for (int y = rect.y0; y < rect.y1; y += kBlock) {
             std::uint32_t place = tile_.place(rect.x0, y);
             std::size_t slot = 0;
+            for (int row = y; row < std::min(y + kBlock, rect.y1); ++row) fetch_row(&picture_(rect.x0, row), rect.width());
             for (int x = rect.x0; x < rect.x1; x += kBlock, place += kBlockSamples, slot += kStrips) block(x, y, place, slot);
             shade_together();
             const auto row_of = [&](std::size_t column, std::size_t row) {
@@ -111,7 +120,7 @@ private:
             return shade_one_by_one(intersect(tile_.rect(), {x, y, x + kBlock, y + kStripRows}), codes_[slot]);
         const std::size_t next = count_++;
         slots_[next] = slot;
-        places_[next] = {.x = x, .y = y, .ids = tile_.ids() + place, .nearness = tile_.nearness() + place, .offset = tile_.offset()};
+        places_[next] = strip_place(tile_, x, y, place);
     }
 
     /// The strips of a row of blocks that are left.
@@ -155,7 +164,8 @@ private:
 void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
                   const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture) {
     const std::optional<Rgb> color = constant_background(data, settings);
-    const auto background = color ? std::optional(encoded(srgb_encoder(), *color)) : std::nullopt;
+    std::optional<Rgba8> background;
+    if (color) background = encoded(srgb_encoder(), *color);
     if (background && is_empty(geometry, index)) {
         fill(rect, *background, picture);
         return;

@@ -145,6 +145,20 @@ inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second,
     return Floats::load_aligned(found.data());
 #endif
 }
+/// The same of whole numbers.
+inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32_t>& second, const StripOf<std::int32_t>& index,
+                    std::size_t i) {
+#if defined(__AVX512F__)
+    return _mm512_permutex2var_epi32(load(first, 0), load(index, i), load(second, 0));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(index[i + k]);
+        found[k] = (at & 16 ? second : first)[at & 15];
+    }
+    return Ints::load_aligned(found.data());
+#endif
+}
 /// The same of doubles.
 inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& second, const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)

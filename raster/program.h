@@ -30,10 +30,10 @@ public:
             if (samples.seen == 0) return;
             if (samples.on_mesh != samples.seen)
                 shade_one_by_one(*place_, samples, colors[s]);
-            else if (only_suns_ && strip.object_view->color && !strip.object_view->bent)
-                shade_together<true>(*place_, strip, colors[s]);
+            else if (only_suns_ && strip.object_view->even())
+                shade_as<true>(*place_, strip, colors[s]);
             else
-                shade_together<false>(*place_, strip, colors[s]);
+                shade_as<false>(*place_, strip, colors[s]);
         });
     }
 
@@ -69,7 +69,14 @@ private:
         }
     }
 
-    template <bool kPlain> void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
+    template <bool kPlain> void shade_as(const StripPlace& place, const Solved& strip, StripColors& colors) const {
+        if constexpr (wants_directions<S>())
+            if (strip.directions) return shade_together<kPlain, true>(place, strip, colors);
+        shade_together<kPlain, false>(place, strip, colors);
+    }
+
+    template <bool kPlain, bool kFacing>
+    void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -79,16 +86,17 @@ private:
                 x += in_pixel(*place.offsets, i, &SampleOffset::x);
                 y += in_pixel(*place.offsets, i, &SampleOffset::y);
             }
-            const Floats depth = load(strip.depth, i);
-            const FragmentOf<S, Floats, kPlain> fragment{derivatives(strip, i),
+            const Floats near(static_cast<float>(view_.pinhole.near));
+            const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
+                                                              : min(near / load(strip.depth, i), Floats(1.0f));
+            const Floats depth = kFacing ? near / nearness : load(strip.depth, i); // a strip of directions has none
+            const FragmentOf<S, Floats, kPlain, kFacing> fragment{derivatives(strip, i),
                                                  varyings_at(strip.at, i),
                                                  strips::vector(strip.ng, 0, i),
                                                  view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
                                                  depth,
-                                                 place.nearness != nullptr
-                                                     ? Floats::load_aligned(place.nearness + i)
-                                                     : min(Floats(static_cast<float>(view_.pinhole.near)) / depth, Floats(1.0f)),
+                                                 nearness,
                                                  *strip.object_view,
                                                  *this,
                                                  i};
@@ -105,13 +113,12 @@ private:
         return load(own, 0);
     }
     template <std::size_t N> static Many varyings_at(const std::array<StripOf<float>, N>& from, std::size_t i) {
-        if constexpr (sizeof(from) == sizeof(Many)) {
-            return std::bit_cast<Many>(from); // batches are strips: read where they lie
-        } else {
-            std::array<Floats, N> result;
-            for (std::size_t c = 0; c < N; ++c) result[c] = load(from[c], i);
-            return varyings<S, Floats>(result);
+        Many result;
+        for (std::size_t c = 0; c < N; ++c) { // one by one, as compilers keep them in registers
+            const Floats number = load(from[c], i);
+            std::memcpy(reinterpret_cast<char*>(&result) + c * sizeof(number), static_cast<const void*>(&number), sizeof(number));
         }
+        return result;
     }
     static auto derivatives(const Solved& strip, std::size_t i) {
         if constexpr (wants_derivatives<S>())

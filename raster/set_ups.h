@@ -6,6 +6,7 @@
 #include "raster/shader.h"
 #include "raster/triangles.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <map>
@@ -19,12 +20,21 @@ namespace duet::raster {
 template <VertexShader S, typename D> struct SetUp {
     using Plane = std::array<StripOf<D>, 3>;
     using Numbers = std::array<StripOf<float>, kVaryings<S>>;
+    static constexpr bool kDirections = wants_directions<S>() && std::is_same_v<D, float>;
+    /// What a plane is at most, M = steepest·(|x| + |y|) + greatest, over Σe: the triangle's length over its height in pixels, or
+    /// its farthest depth in the tile over the sample's, and some. Beyond this the planes are too coarse.
+    static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
 
     StripOf<D> x, y; ///< the origin, counted from the tile's corner: a pixel of the tile
     Plane e1, e2, sum, depth_sum;
     StripOf<D> steepest, greatest; ///< of e1, e2 and sum: no |coefficient| of x and y, and none of 1, is more
     Numbers n, n1, n2;             ///< the first corner's varyings, and their changes along the barycentrics
     std::array<StripOf<float>, 3> ng; ///< VertexInput::ng
+    /// Of shaders of directions: Σ(e·varying), a plane each.
+    std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
+    /// A bit for each triangle where those may take the place of varyings: M/Σe is at most kSteepest wherever it is seen in the
+    /// tile, and its corners' normals are all on the side that is seen.
+    std::uint32_t easy = 0;
 };
 
 /// Set-ups of meshes' triangles under one view of a tile; S's vertex function is asked for what is interpolated.
@@ -34,8 +44,8 @@ public:
 
     SetUps(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
         : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {
-        kept_.reserve(kRoom / kStrip);
-        for (Recent& half : recent_) half.ids.fill(kNoTriangle);
+        kept_.reserve(kMost);
+        for (Recent& part : recent_) part.ids.fill(kNoTriangle);
     }
 
     /// The object whose triangles are asked for from now on; its first triangle's number.
@@ -56,10 +66,16 @@ private:
     std::uint32_t find_or_keep(std::uint32_t id);
     void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
     void begin_sixteen();
+    void prefetch_triangle(std::int32_t id) const { prefetch(&mesh_->triangles[static_cast<std::size_t>(id) - first_id_]); }
+    void prefetch_vertices(const StripOf<std::int32_t>& ids) const;
+    void set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const;
     using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
-    void gather_vertices(Corners& corners) const;
+    void gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const;
+    const PackedVertex* vertices() const { return (*triangles_.vertices)[triangles_.scene->objects[object_->object].shape].data(); }
     std::uint32_t set_up_planes(const Corners& corners, Sixteen& to) const;
     void set_up_varyings(std::size_t i, const Corners& corners, Floats side, Sixteen& to) const;
+    void set_up_directions(std::size_t i, Sixteen& to) const;
+    std::uint32_t facing(std::size_t i, const Corners& corners, const Sixteen& of) const;
 
     const Triangles& triangles_;
     const PassView& view_;
@@ -71,26 +87,26 @@ private:
     const ObjectView* view_of_object_ = nullptr;
     std::map<std::uint32_t, ObjectView> views_of_objects_;
 
-    static constexpr std::size_t kRoom = 512, kPlaces = 2 * kRoom; ///< at most half of which are taken
+    static constexpr std::size_t kRoom = 512, kMost = kRoom / kStrip, kPlaces = 2 * kRoom; ///< at most half of which are taken
     static std::size_t first_place(std::uint32_t id) { return id * 0x9e3779b1u >> (32 - std::countr_zero(kPlaces)); }
     struct Place {
         std::uint32_t id = kNoTriangle, kept = 0;
     };
     std::array<Place, kPlaces> places_; ///< by number, or at the next free one after
-    /// The last that were asked for, by the lower five bits of their numbers: sixteen samples are looked up side by side.
+    /// The last that were asked for, by the lower six bits of their numbers: sixteen samples are looked up side by side.
     struct Recent {
         StripOf<std::int32_t> ids, kept;
     };
-    std::array<Recent, 2> recent_;
+    std::array<Recent, 4> recent_;
     std::vector<Sixteen> kept_;
-    std::size_t count_ = 0;        ///< kept, or wanted to be
-    bool finished_ = true;
-    StripOf<std::int32_t> wanted_; ///< numbers of the last sixteen
+    std::array<StripOf<std::int32_t>, kMost> wanted_; ///< numbers of those kept, and of those to be
+    std::size_t count_ = 0, finished_ = 0;            ///< of either, and of those that are set up
 };
 
 template <VertexShader S, typename D>
 void SetUps<S, D>::use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id) {
     if (object_ == &object) return;
+    finish();
     begin_sixteen(); // each are of one object
     object_ = &object;
     mesh_ = &mesh;
@@ -99,23 +115,26 @@ void SetUps<S, D>::use(const TransformedObject& object, const Mesh& mesh, std::s
 }
 
 template <VertexShader S, typename D> void SetUps<S, D>::forget() {
-    count_ = 0;
-    finished_ = true;
+    count_ = finished_ = 0;
     places_.fill({});
-    for (Recent& half : recent_) half.ids.fill(kNoTriangle);
+    for (Recent& part : recent_) part.ids.fill(kNoTriangle);
 }
 
 template <VertexShader S, typename D>
 void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
+    constexpr std::size_t kBatches = kStrip / Ints::size;
+    std::array<Ints, kBatches> places;
     std::uint32_t found = 0;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+    for (std::size_t b = 0; b < kBatches; ++b) {
+        const std::size_t i = b * Ints::size;
         const Ints id = load(ids, i);
-        const auto first = (id & Ints(kStrip)) == Ints(0);
-        const auto of_half = [&](StripOf<std::int32_t> Recent::*which) {
-            return xsimd::select(first, look_up(recent_[0].*which, id), look_up(recent_[1].*which, id));
+        const auto first = (id & Ints(2 * kStrip)) == Ints(0);
+        const auto recent = [&](StripOf<std::int32_t> Recent::*which) {
+            return xsimd::select(first, look_up(recent_[0].*which, recent_[1].*which, ids, i),
+                                 look_up(recent_[2].*which, recent_[3].*which, ids, i));
         };
-        found |= lane_bits(of_half(&Recent::ids) == id) << i;
-        store(kept, i, of_half(&Recent::kept));
+        found |= lane_bits(recent(&Recent::ids) == id) << i;
+        places[b] = recent(&Recent::kept);
     }
     std::uint32_t left = ((1u << kStrip) - 1) & ~found;
     constexpr int kMany = 8; // new ones: cheaper all at once than one by one
@@ -124,12 +143,13 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
         const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
         const auto place = static_cast<std::int32_t>(find_or_keep(static_cast<std::uint32_t>(id)));
         left &= ~lanes_of_number(ids, id);
-        for (std::size_t i = 0; i < kStrip; i += Ints::size)
-            store(kept, i, xsimd::select(load(ids, i) == Ints(id), Ints(place), load(kept, i)));
-        const auto at = static_cast<std::size_t>(id) % (2 * kStrip);
+        for (std::size_t b = 0; b < kBatches; ++b)
+            places[b] = xsimd::select(load(ids, b * Ints::size) == Ints(id), Ints(place), places[b]);
+        const auto at = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
         recent_[at / kStrip].ids[at % kStrip] = id;
         recent_[at / kStrip].kept[at % kStrip] = place;
     }
+    for (std::size_t b = 0; b < kBatches; ++b) store(kept, b * Ints::size, places[b]);
 }
 
 /// Sixteen of them as they are, and never found again.
@@ -137,15 +157,15 @@ template <VertexShader S, typename D>
 void SetUps<S, D>::keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
     begin_sixteen();
     for (std::size_t i = 0; i < kStrip; i += Ints::size) store(kept, i, Ints(static_cast<std::int32_t>(count_)) + load(kLanes, i));
-    wanted_ = ids;
+    wanted_[count_ / kStrip] = ids;
+    for (const std::int32_t id : ids.v) prefetch_triangle(id);
     count_ += kStrip;
-    finished_ = false;
-    finish();
 }
 
 template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
-    finish();
-    count_ = (count_ + kStrip - 1) / kStrip * kStrip;
+    const std::size_t next = (count_ + kStrip - 1) / kStrip * kStrip;
+    if (finished_ == count_) finished_ = next;
+    count_ = next;
 }
 
 template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(std::uint32_t id) {
@@ -154,10 +174,10 @@ template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(s
     if (places_[at].id == id) return places_[at].kept;
     const std::size_t kept = count_++;
     places_[at] = {id, static_cast<std::uint32_t>(kept)};
-    if (kept % kStrip == 0) wanted_.fill(static_cast<std::int32_t>(id));
-    wanted_[kept % kStrip] = static_cast<std::int32_t>(id);
-    finished_ = false;
-    if (count_ % kStrip == 0) finish();
+    StripOf<std::int32_t>& sixteen = wanted_[kept / kStrip];
+    if (kept % kStrip == 0) sixteen.fill(static_cast<std::int32_t>(id));
+    sixteen[kept % kStrip] = static_cast<std::int32_t>(id);
+    prefetch_triangle(static_cast<std::int32_t>(id));
     return static_cast<std::uint32_t>(kept);
 }
 
@@ -187,19 +207,40 @@ void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats
     store(to.ng[2], i, ng.z);
 }
 
-/// Of each of three corners eight numbers: position and u, normal and v.
-template <VertexShader S, typename D> void SetUps<S, D>::gather_vertices(Corners& corners) const {
-    const auto& vertices = (*triangles_.vertices)[triangles_.scene->objects[object_->object].shape];
-    std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
-    for (std::size_t i = 0; i < kStrip; ++i) { // all the waiting for memory at once
-        triangles[i] = mesh_->triangles[static_cast<std::size_t>(wanted_[i]) - first_id_];
-        for (const std::uint32_t corner : triangles[i]) prefetch(&vertices[corner]);
+/// Of the triangles from the i-th on, a batch of them, once their planes and varyings are known: e0·n0 + e1·n1 + e2·n2, with
+/// Σe − e1 − e2 for e0.
+template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::size_t i, Sixteen& to) const {
+    if constexpr (Sixteen::kDirections)
+        for (std::size_t c = 0; c < kVaryings<S>; ++c) {
+            const Floats n = load(to.n[c], i), n1 = load(to.n1[c], i), n2 = load(to.n2[c], i);
+            for (std::size_t k = 0; k < 3; ++k)
+                store(to.directions[c][k], i, fused(load(to.e1[k], i), n1, fused(load(to.e2[k], i), n2, Floats(load(to.sum[k], i) * n))));
+        }
+}
+
+/// A bit for each triangle, likewise, all of whose corners' normals are on the side that is seen.
+template <VertexShader S, typename D>
+std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const Sixteen& of) const {
+    const Vec3T<Floats> ng = view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
+    std::uint32_t all = (1u << Floats::size) - 1;
+    for (const auto& corner : corners) {
+        const Vec3T<Floats> n{load(corner[4], i), load(corner[5], i), load(corner[6], i)};
+        all &= lane_bits(dot(view_of_object_->normal(n), ng) > Floats(0.0f));
     }
+    return all << i;
+}
+
+/// Of each of three corners eight numbers: position and u, normal and v.
+template <VertexShader S, typename D>
+void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const {
+    const PackedVertex* all = vertices();
+    std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
+    for (std::size_t i = 0; i < kStrip; ++i) triangles[i] = mesh_->triangles[static_cast<std::size_t>(ids[i]) - first_id_];
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kStrip; i += Quads::size)
             for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
                 const auto [x, y, z, w] = load_columns<Quads::size>(
-                    [&](std::size_t lane) { return &vertices[triangles[i + lane][k]].p.x + first; });
+                    [&](std::size_t lane) { return &all[triangles[i + lane][k]].p.x + first; });
                 x.store_aligned(corners[k][first].at(i));
                 y.store_aligned(corners[k][first + 1].at(i));
                 z.store_aligned(corners[k][first + 2].at(i));
@@ -245,6 +286,9 @@ std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) c
         }
         // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
         if (view_.viewport.orthographic) move(planes.depth_sum);
+        // Σe is least where the triangle is farthest: eₖ there, of that corner, which is the determinant over w.
+        const Doubles farthest = max(max(w[0], w[1]), w[2]), most = fused(steepest, size + size, greatest);
+        to.easy |= lane_bits(abs(planes.determinant) * Doubles(double{Sixteen::kSteepest}) >= most * farthest) << i;
         const Doubles scale = Doubles(1.0) / max(steepest, greatest);
         for (std::size_t c = 0; c < 3; ++c) {
             store_rounded(to.e1[c], i, planes.e1[c] * scale);
@@ -260,19 +304,38 @@ std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) c
     return front;
 }
 
+template <VertexShader S, typename D> void SetUps<S, D>::prefetch_vertices(const StripOf<std::int32_t>& ids) const {
+    const PackedVertex* all = vertices();
+    for (const std::int32_t id : ids.v)
+        for (const std::uint32_t corner : mesh_->triangles[static_cast<std::size_t>(id) - first_id_]) prefetch(&all[corner]);
+}
+
+/// All the waiting for memory at once.
 template <VertexShader S, typename D> void SetUps<S, D>::finish() {
-    if (finished_) return;
-    finished_ = true;
-    const std::size_t last = (count_ - 1) / kStrip;
-    if (kept_.size() == last) kept_.emplace_back();
-    Sixteen& to = kept_[last];
+    if (finished_ == count_) return;
+    const std::size_t first = finished_ / kStrip, end = (count_ + kStrip - 1) / kStrip;
+    for (std::size_t i = first; i < end; ++i) prefetch_vertices(wanted_[i]);
+    kept_.resize(std::max(kept_.size(), end));
+    for (std::size_t i = first; i < end; ++i) set_up(wanted_[i], kept_[i]);
+    finished_ = count_;
+}
+
+/// Of triangles of the object in use.
+template <VertexShader S, typename D> void SetUps<S, D>::set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const {
     Corners corners;
-    gather_vertices(corners);
+    gather_vertices(ids, corners);
+    to.easy = 0;
     // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
     std::uint32_t front = set_up_planes(corners, to);
     if (object_->mirrored) front = ~front;
-    for (std::size_t i = 0; i < kStrip; i += Floats::size)
+    std::uint32_t facing_ones = 0;
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
         set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), to);
+        if (Sixteen::kDirections && view_of_object_->smooth) facing_ones |= facing(i, corners, to);
+    }
+    to.easy &= facing_ones;
+    if (to.easy != 0)
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) set_up_directions(i, to);
 }
 
 } // namespace duet::raster

@@ -49,6 +49,7 @@ struct ObjectView {
     bool bent;                 ///< a material of it has a normal or bump map
     Mat4 to_world, to_object;  ///< at the pass's moment
     std::optional<Rgb> color;  ///< its base colour, if it has but one
+    bool even() const { return color && !bent; } ///< where on a triangle a sample lies makes no difference to its material
     Vec3 eye, forward;         ///< the viewer, and unit, the way the camera looks
     bool orthographic;
 
@@ -131,8 +132,8 @@ template <bool kSuns> struct Lights {
 
 /// What a fragment function is given: a sample that sees something. dx and dy are there where the shader says so. kPlain: the
 /// object has one colour, no map bends its normals, and suns are all the lights: then nothing is called, and batches stay in
-/// registers.
-template <typename T, typename V, bool kDerivatives, bool kPlain>
+/// registers. kFacing: all interpolated normals are on the side that is seen.
+template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
 struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     V at;                  ///< the varyings, interpolated as perspective shows them
     Vec3T<T> ng;           ///< geometric normal on the side that is seen, in the object's space, of any length
@@ -150,7 +151,9 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     /// map bends normals: as that has it.
     Vec3T<T> normal(Vec3T<T> n) const { return !kPlain && object.bent ? bent_normal() : smooth_normal(n); }
     /// The same, whatever maps say.
-    Vec3T<T> smooth_normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
+    Vec3T<T> smooth_normal(Vec3T<T> n) const {
+        return kFacing ? unit(object.normal(n)) : object.shading_normal(n, ng);
+    }
     RgbT<T> base_color() const;
 
 private:
@@ -163,8 +166,8 @@ private:
     return colors.base_colors(first);
 }
 
-template <typename T, typename V, bool kDerivatives, bool kPlain>
-RgbT<T> FragmentInput<T, V, kDerivatives, kPlain>::base_color() const {
+template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
+RgbT<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::base_color() const {
     if (kPlain || object.color) return spread<T>(*object.color);
     if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
@@ -182,8 +185,8 @@ template <typename T> [[gnu::noinline]] Vec3T<T> sampled_normals(const ColorSour
     return {load(found.x, 0), load(found.y, 0), load(found.z, 0)};
 }
 
-template <typename T, typename V, bool kDerivatives, bool kPlain>
-Vec3T<T> FragmentInput<T, V, kDerivatives, kPlain>::bent_normal() const {
+template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
+Vec3T<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::bent_normal() const {
     if constexpr (std::same_as<T, float>)
         return colors.bent_normal(first);
     else
@@ -205,9 +208,17 @@ template <typename S> constexpr bool wants_texture_coordinates() {
     else
         return true;
 }
+/// Whether a shader's varyings matter by their directions alone: `static constexpr bool kDirections = true;` promises that its
+/// fragment function returns the same for any positive multiple of all of them, and saves the division by depth.
+template <typename S> constexpr bool wants_directions() {
+    if constexpr (requires { S::kDirections; })
+        return S::kDirections && !wants_derivatives<S>();
+    else
+        return false;
+}
 template <typename S, typename T> using VaryingsOf = typename S::template Varyings<T>;
-template <typename S, typename T, bool kPlain = false>
-using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kPlain>;
+template <typename S, typename T, bool kPlain = false, bool kFacing = false>
+using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kPlain, kFacing>;
 
 /// Varyings are numbers in a row, to be interpolated one by one.
 template <typename S> inline constexpr std::size_t kVaryings =

@@ -25,6 +25,9 @@ template <VertexShader S, typename D> struct SolvedStrip {
     std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
     /// A bit for each sample that lies in the unsnapped triangle for certain, where the solution holds as it is.
     std::uint32_t inside = 0;
+    /// Of `at` the direction is all that is known, nothing else but the samples is, and all normals are on the side that is
+    /// seen (SetUp::easy).
+    bool directions = false;
 };
 
 /// Solves for the samples that see a mesh's triangle; S's vertex function is asked for what is interpolated. D says how exactly:
@@ -54,9 +57,8 @@ private:
     /// M = steepest·(|x| + |y|) + greatest: each coefficient is rounded once, and each of the two fused steps. What is left of
     /// the sum for the third barycentric adds up three of these errors, and two roundings of less than 4ε·M: 17ε·M in all.
     static constexpr D kError = 16 * std::numeric_limits<D>::epsilon(); // 32ε
-    /// Barycentrics are e/Σe: to within 6ε·M/Σe, and two roundings. So much may M/Σe be: the triangle's length over its height
-    /// in pixels, or its farthest depth in the tile over the sample's, and some.
-    static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
+    /// Barycentrics are e/Σe: to within 6ε·M/Σe, and two roundings. So much may M/Σe be.
+    static constexpr D kSteepest = Sixteen::kSteepest;
 
     /// What a strip sees, and where that is kept.
     struct ReadStrip : StripSamples {
@@ -69,7 +71,8 @@ private:
         };
         std::array<Pair, kStrip / 2> pairs;
         std::size_t pair_count = 0;
-        bool one = false; ///< triangle is all that they see
+        bool one = false;  ///< triangle is all that they see
+        bool easy = false; ///< are all their triangles (SetUp::easy)
     };
 
     /// get(i, of): of each sample from the i-th on, as many as there are lanes, its own number; of() says which, of sixteen
@@ -99,10 +102,14 @@ private:
 
     std::size_t read(std::span<const StripPlace> places);
     void find_pairs(ReadStrip& strip) const;
+    static bool all_easy(const ReadStrip& strip);
     void solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend);
     template <typename Positions> void solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const;
     template <typename Own, typename Positions>
     void solve_lanes(const Own& own, const Positions& positions, Solved& strip) const;
+    bool may_solve_directions(const StripPlace& place, const ReadStrip& samples) const;
+    template <typename Own, typename Positions>
+    static void solve_directions(const Own& own, const Positions& positions, Solved& strip);
     template <typename Own> static void interpolate_varyings(const Own& own, std::size_t i, Solved& strip);
     void mend_strip(const StripPlace& place, const ReadStrip& samples, Solved& strip) const;
 
@@ -124,9 +131,9 @@ struct NoVaryings {
     template <typename T> struct Varyings {};
     template <typename T> Varyings<T> vertex(const VertexInput<T>&) const { return {}; }
 };
-/// What interpolates the vertices' normals alone.
+/// What interpolates the vertices' normals alone, to be made unit.
 struct NormalVaryings {
-    static constexpr bool kTextureCoordinates = false;
+    static constexpr bool kTextureCoordinates = false, kDirections = true;
     template <typename T> struct Varyings {
         Vec3T<T> n;
     };
@@ -224,15 +231,46 @@ void StripSolver<S, D>::interpolate_varyings(const Own& own, std::size_t i, Solv
     }
 }
 
+/// Varyings times Σe are linear in the picture, which leaves their direction as it is.
+template <VertexShader S, typename D>
+template <typename Own, typename Positions>
+void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positions, Solved& strip) {
+    if constexpr (Sixteen::kDirections)
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+            const auto number = [&](const auto& of) { return own.template get<float>(i, of); };
+            const Floats x = positions.x(i) - number([](const Sixteen& s) -> const StripOf<float>& { return s.x; }),
+                         y = positions.y(i) - number([](const Sixteen& s) -> const StripOf<float>& { return s.y; });
+            for (std::size_t c = 0; c < kCount; ++c) {
+                const auto coefficient = [&](std::size_t k) {
+                    return number([c, k](const Sixteen& s) -> const StripOf<float>& { return s.directions[c][k]; });
+                };
+                store(strip.at[c], i, fused(coefficient(0), x, fused(coefficient(1), y, coefficient(2))));
+            }
+        }
+}
+
+/// Whether that is all there is to it: the samples lie where they seem to, and nothing of them is looked up.
+template <VertexShader S, typename D>
+bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
+    return Sixteen::kDirections && samples.easy && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && set_ups_.object().even() &&
+           !sabotaged(Guard::kPerspective);
+}
+
 template <VertexShader S, typename D>
 template <typename Positions>
 void StripSolver<S, D>::solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const {
+    const auto solve_by = [&](const auto& own) {
+        if (strip.directions)
+            solve_directions(own, positions, strip);
+        else
+            solve_lanes(own, positions, strip);
+    };
     if (samples.one)
-        solve_lanes(OfOne{*samples.pairs[0].first, static_cast<std::size_t>(samples.lanes[0])}, positions, strip);
+        solve_by(OfOne{*samples.pairs[0].first, static_cast<std::size_t>(samples.lanes[0])});
     else if (samples.pair_count == 1)
-        solve_lanes(OfPair{*samples.pairs[0].first, *samples.pairs[0].second, samples.lanes}, positions, strip);
+        solve_by(OfPair{*samples.pairs[0].first, *samples.pairs[0].second, samples.lanes});
     else
-        solve_lanes(OfPairs{samples}, positions, strip);
+        solve_by(OfPairs{samples});
 }
 
 template <VertexShader S, typename D>
@@ -258,6 +296,7 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
     if (samples.on_mesh == 0) return;
     set_ups_.use(*samples.object, *samples.mesh, samples.first_id);
     strip.object_view = &set_ups_.object();
+    strip.directions = may_solve_directions(place, samples);
     if (place.offsets == nullptr) {
         const Vec2d first = place.offset.position(place.x - origin_x_, place.y - origin_y_);
         solve_at(samples, strips::OnGrid<D>{static_cast<D>(first.x), static_cast<D>(first.y)}, strip);
@@ -270,6 +309,7 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
         }
         solve_at(samples, positions, strip);
     }
+    if (strip.directions) return;
     strip.inside &= sabotaged(Guard::kPerspective) ? 0 : samples.on_mesh;
     if (mend) mend_strip(place, samples, strip);
 }
@@ -299,11 +339,25 @@ template <VertexShader S, typename D> void StripSolver<S, D>::find_pairs(ReadStr
         seconds |= here;
         strip.pairs[strip.pair_count++] = {first, second, firsts | here};
     }
-    if (seconds == 0) return;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
-        store(strip.lanes, i, load(strip.lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
+    if (seconds != 0)
+        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+            const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
+            store(strip.lanes, i, load(strip.lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
+        }
+    strip.easy = Sixteen::kDirections && all_easy(strip);
+}
+
+template <VertexShader S, typename D> bool StripSolver<S, D>::all_easy(const ReadStrip& strip) {
+    std::uint32_t easy = 0;
+    for (std::size_t k = 0; k < strip.pair_count; ++k) {
+        const auto& pair = strip.pairs[k];
+        const std::uint32_t of_pair = pair.first->easy | pair.second->easy << kStrip;
+        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+            const Ints bit = Ints(1) << load(strip.lanes, i);
+            easy |= pair.samples & lane_bits((Ints(static_cast<std::int32_t>(of_pair)) & bit) != Ints(0)) << i;
+        }
     }
+    return easy == (1u << kStrip) - 1;
 }
 
 /// Reads as many as there is room for, and sets up what they see, side by side across strips. Returns how many.

@@ -16,11 +16,16 @@ inline std::uint32_t samples_seen(const std::int32_t* ids) {
     return seen;
 }
 
-/// The strip of a tile that begins at a pixel.
-inline StripPlace strip_place(const DepthTile& tile, int x, int y) {
-    const std::uint32_t place = tile.place(x, y);
-    return {.x = x, .y = y, .ids = tile.ids() + place, .nearness = tile.nearness() + place, .offset = tile.offset()};
+/// The strip of a tile that begins at a pixel, whose place is known.
+inline StripPlace strip_place(const DepthTile& tile, int x, int y, std::uint32_t place) {
+    return {.x = x,
+            .y = y,
+            .ids = tile.ids() + place,
+            .nearness = tile.nearness() + place,
+            .inside = tile.inside(place),
+            .offset = tile.offset()};
 }
+inline StripPlace strip_place(const DepthTile& tile, int x, int y) { return strip_place(tile, x, y, tile.place(x, y)); }
 
 /// What the samples of a strip see.
 struct StripSamples {

@@ -16,6 +16,7 @@ struct StripPlace {
     int x = 0, y = 0;                  ///< the first pixel
     const std::int32_t* ids = nullptr; ///< of what each sees (DepthTile::ids); aligned to 64 bytes
     const float* nearness = nullptr;   ///< of each (DepthTile::nearness), likewise aligned; null: to be worked out
+    std::uint32_t inside = 0;          ///< a bit for each that lies in the unsnapped triangle for certain, as far as is known
     SampleOffset offset;               ///< of every sample in its pixel
     const std::array<SampleOffset, kStrip>* offsets = nullptr; ///< or, where given, of each its own
 
