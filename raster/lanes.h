@@ -49,6 +49,7 @@ inline void store_rounded(StripOf<double>& strip, std::size_t i, const Doubles& 
 inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& value) { store_floats(value, strip.at(i)); }
 
 using duet::fused;
+using duet::fused_minus;
 inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
 
 /// Of as many vectors side by side, by fused steps.
@@ -183,7 +184,7 @@ inline Floats inverse_sqrt(const Floats& x) {
 #else
     const Floats y = xsimd::rsqrt(x);
 #endif
-    return y * fused(-(Floats(0.5f) * x * y), y, Floats(1.5f));
+    return y * fused_minus(Floats(0.5f) * x * y, y, Floats(1.5f));
 }
 
 /// The same of one number.

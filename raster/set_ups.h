@@ -30,7 +30,7 @@ template <VertexShader S, typename D> struct SetUp {
     StripOf<D> steepest, greatest; ///< of e1, e2 and sum: no |coefficient| of x and y, and none of 1, is more
     Numbers n, n1, n2;             ///< the first corner's varyings, and their changes along the barycentrics
     std::array<StripOf<float>, 3> ng; ///< VertexInput::ng
-    /// Of shaders of directions: Σ(e·varying), a plane each.
+    /// Of shaders of directions: Σ(e·varying), a plane each, counted from the tile's corner.
     std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
     /// A bit for each triangle where those may take the place of varyings: M/Σe is at most kSteepest wherever it is seen in the
     /// tile, and its corners' normals are all on the side that is seen.
@@ -58,11 +58,14 @@ public:
     void forget();
     /// Of each sample's triangle where its set-up is kept, which may be made by finish() only; where there is room.
     void keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    /// The same of one triangle.
+    std::uint32_t keep(std::uint32_t id) { return place_of(static_cast<std::int32_t>(id)); }
     void finish();
     /// Those kept from place 16·i on.
     const Sixteen& sixteen(std::size_t i) const { return kept_[i]; }
 
 private:
+    std::uint32_t place_of(std::int32_t id);
     std::uint32_t find_or_keep(std::uint32_t id);
     void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
     void begin_sixteen();
@@ -141,13 +144,10 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
     if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
     while (left != 0) {
         const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
-        const auto place = static_cast<std::int32_t>(find_or_keep(static_cast<std::uint32_t>(id)));
+        const Ints place(static_cast<std::int32_t>(place_of(id)));
         left &= ~lanes_of_number(ids, id);
         for (std::size_t b = 0; b < kBatches; ++b)
-            places[b] = xsimd::select(load(ids, b * Ints::size) == Ints(id), Ints(place), places[b]);
-        const auto at = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
-        recent_[at / kStrip].ids[at % kStrip] = id;
-        recent_[at / kStrip].kept[at % kStrip] = place;
+            places[b] = xsimd::select(load(ids, b * Ints::size) == Ints(id), place, places[b]);
     }
     for (std::size_t b = 0; b < kBatches; ++b) store(kept, b * Ints::size, places[b]);
 }
@@ -166,6 +166,16 @@ template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
     const std::size_t next = (count_ + kStrip - 1) / kStrip * kStrip;
     if (finished_ == count_) finished_ = next;
     count_ = next;
+}
+
+template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::place_of(std::int32_t id) {
+    const auto at = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
+    std::int32_t &recent = recent_[at / kStrip].ids[at % kStrip], &kept = recent_[at / kStrip].kept[at % kStrip];
+    if (recent != id) {
+        recent = id;
+        kept = static_cast<std::int32_t>(find_or_keep(static_cast<std::uint32_t>(id)));
+    }
+    return static_cast<std::uint32_t>(kept);
 }
 
 template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(std::uint32_t id) {
@@ -213,8 +223,13 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::
     if constexpr (Sixteen::kDirections)
         for (std::size_t c = 0; c < kVaryings<S>; ++c) {
             const Floats n = load(to.n[c], i), n1 = load(to.n1[c], i), n2 = load(to.n2[c], i);
-            for (std::size_t k = 0; k < 3; ++k)
-                store(to.directions[c][k], i, fused(load(to.e1[k], i), n1, fused(load(to.e2[k], i), n2, Floats(load(to.sum[k], i) * n))));
+            const auto coefficient = [&](std::size_t k) {
+                return fused(load(to.e1[k], i), n1, fused(load(to.e2[k], i), n2, Floats(load(to.sum[k], i) * n)));
+            };
+            const Floats by_x = coefficient(0), by_y = coefficient(1);
+            store(to.directions[c][0], i, by_x);
+            store(to.directions[c][1], i, by_y);
+            store(to.directions[c][2], i, fused_minus(by_x, load(to.x, i), fused_minus(by_y, load(to.y, i), coefficient(2))));
         }
 }
 
@@ -286,8 +301,9 @@ std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) c
         }
         // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
         if (view_.viewport.orthographic) move(planes.depth_sum);
-        // Σe is least where the triangle is farthest: eₖ there, of that corner, which is the determinant over w.
-        const Doubles farthest = max(max(w[0], w[1]), w[2]), most = fused(steepest, size + size, greatest);
+        // Σe is least where the triangle is farthest: eₖ there, of that corner, which is the determinant over w. What M is at
+        // most, counted from the tile's corner: of the plane's way to there and back.
+        const Doubles farthest = max(max(w[0], w[1]), w[2]), most = fused(steepest, Doubles(4.0) * size, greatest);
         to.easy |= lane_bits(abs(planes.determinant) * Doubles(double{Sixteen::kSteepest}) >= most * farthest) << i;
         const Doubles scale = Doubles(1.0) / max(steepest, greatest);
         for (std::size_t c = 0; c < 3; ++c) {

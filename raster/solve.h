@@ -237,12 +237,10 @@ template <typename Own, typename Positions>
 void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positions, Solved& strip) {
     if constexpr (Sixteen::kDirections)
         for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const auto number = [&](const auto& of) { return own.template get<float>(i, of); };
-            const Floats x = positions.x(i) - number([](const Sixteen& s) -> const StripOf<float>& { return s.x; }),
-                         y = positions.y(i) - number([](const Sixteen& s) -> const StripOf<float>& { return s.y; });
+            const Floats x = positions.x(i), y = positions.y(i);
             for (std::size_t c = 0; c < kCount; ++c) {
                 const auto coefficient = [&](std::size_t k) {
-                    return number([c, k](const Sixteen& s) -> const StripOf<float>& { return s.directions[c][k]; });
+                    return own.template get<float>(i, [c, k](const Sixteen& s) -> const StripOf<float>& { return s.directions[c][k]; });
                 };
                 store(strip.at[c], i, fused(coefficient(0), x, fused(coefficient(1), y, coefficient(2))));
             }

@@ -71,6 +71,15 @@ xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float,
     return xsimd::fma(a, b, c);
 }
 
+/// c − a·b, likewise.
+template <typename Arch>
+xsimd::batch<float, Arch> fused_minus(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
+#if XSIMD_WITH_AVX512F
+    if constexpr (sizeof(a) == 64) return _mm512_fnmadd_ps(a, b, c);
+#endif
+    return xsimd::fma(-a, b, c);
+}
+
 inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 #if XSIMD_WITH_AVX512F
     return _mm512_fmadd_pd(a, b, c);
