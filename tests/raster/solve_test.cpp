@@ -5,7 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
+#include <span>
 
 using namespace duet;
 using namespace duet::test;
@@ -32,6 +34,59 @@ Scene slivers() {
     return scene;
 }
 
+/// The same with normals at the vertices, some of which lean over to the other side.
+Scene smooth_slivers() {
+    Scene scene = slivers();
+    std::mt19937 random(2);
+    std::normal_distribution<float> lean(0, 0.4f);
+    Mesh& mesh = std::get<Mesh>(scene.shapes[0]);
+    mesh.normals.resize(mesh.positions.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 ng = normalize(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
+        for (const std::uint32_t corner : {a, b, c}) mesh.normals[corner] = normalize(ng + Vec3(lean(random), lean(random), lean(random)));
+    }
+    return scene;
+}
+
+/// A picture's geometry, and its strips, tile by tile.
+struct Strips {
+    const Scene scene;
+    const raster::Settings settings;
+    const raster::Prepared prepared;
+    const Pinhole pinhole;
+    const std::vector<raster::SampleOffset> samples{{37, 201}};
+    const raster::PassView pass;
+    const raster::TileGrid grid;
+    raster::Geometry geometry;
+
+    Strips(const Scene& scene_, const View& view)
+        : scene(scene_), prepared(raster::prepare(scene, settings)), pinhole(CameraModel(view).through()),
+          pass{pinhole, 0, raster::viewport_of(view, pinhole), samples}, grid{{0, 0, view.width, view.height}} {
+        process_geometry(prepared.data(), grid, pass, settings, geometry);
+    }
+    /// use(rect, places) for each tile.
+    template <typename Use> void for_each_tile(const Use& use) const {
+        for (std::size_t t = 0; t < grid.size(); ++t) {
+            const raster::PixelRect rect = grid.tile(t);
+            raster::DepthTile depths;
+            cover(geometry, pass, pass.samples[0], rect, t, depths);
+            std::vector<raster::StripPlace> places;
+            for (int y = rect.y0; y < rect.y1; y += 2)
+                for (int x = rect.x0; x < rect.x1; x += 8) places.push_back(strip_place(depths, x, y));
+            use(rect, places);
+        }
+    }
+};
+
+/// Whether a sample lies in its unsnapped triangle, by the signs of its edge functions in double.
+bool lies_inside(const raster::WholeTriangle& whole, Vec2d pixel) {
+    const raster::FixedPoint beside{static_cast<int>(pixel.x) * raster::kSubPixels, static_cast<int>(pixel.y) * raster::kSubPixels};
+    const raster::Interpolation planes(whole.a, whole.b, whole.c, beside);
+    return std::ranges::all_of(planes.e, [&](const Vec3d& e) {
+        return e.x * (pixel.x - planes.origin_x) + e.y * (pixel.y - planes.origin_y) + e.z >= 0;
+    });
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -39,26 +94,15 @@ TEST_SUITE("unit") {
     TEST_CASE("barycentrics and depths in float are as exact as is said, of slivers, too, and right where they are not") {
         using raster::kStrip, raster::NoVaryings, raster::StripSolver;
         const Scene scene = slivers();
-        const raster::Settings settings;
-        const raster::Prepared prepared = raster::prepare(scene, settings);
         for (const View& view : {perspective(), orthographic()}) {
-            const Pinhole pinhole = CameraModel(view).through();
-            const raster::PassView pass{pinhole, 0, raster::viewport_of(view, pinhole), {{37, 201}}};
-            const raster::TileGrid grid{{0, 0, view.width, view.height}};
-            raster::Geometry geometry;
-            process_geometry(prepared.data(), grid, pass, settings, geometry);
+            const Strips picture(scene, view);
+            const raster::Geometry& geometry = picture.geometry;
             const NoVaryings nothing;
             int seen = 0, close = 0, mended = 0;
             double worst = 0, worst_mended = 0;
-            for (std::size_t t = 0; t < grid.size(); ++t) {
-                const raster::PixelRect rect = grid.tile(t);
-                raster::DepthTile depths;
-                cover(geometry, pass, pass.samples[0], rect, t, depths);
-                StripSolver<NoVaryings, float> in_float(geometry.triangles, pass, rect, nothing, false);
-                StripSolver<NoVaryings, double> in_double(geometry.triangles, pass, rect, nothing, false);
-                std::vector<raster::StripPlace> places;
-                for (int y = rect.y0; y < rect.y1; y += 2)
-                    for (int x = rect.x0; x < rect.x1; x += 8) places.push_back(strip_place(depths, x, y));
+            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
+                StripSolver<NoVaryings, float> in_float(geometry.triangles, picture.pass, rect, nothing, false);
+                StripSolver<NoVaryings, double> in_double(geometry.triangles, picture.pass, rect, nothing, false);
                 std::vector<std::uint32_t> inside(places.size());
                 in_double.solve(places, false, [&](std::size_t s, const auto& strip) { inside[s] = strip.inside; });
                 in_float.solve(places, true, [&](std::size_t s, const auto& strip) {
@@ -78,13 +122,73 @@ TEST_SUITE("unit") {
                         (holds ? worst : worst_mended) = std::max(holds ? worst : worst_mended, error);
                     }
                 });
-            }
+            });
             CHECK(seen > 20'000);
             CHECK(close > seen * 0.9);
             CHECK(worst < 0x1p-13);
             CHECK(worst > 0x1p-18);   // some are slivers
             CHECK(mended > 50);       // and some are worse
             CHECK(worst_mended < 1e-6);
+        }
+    }
+    TEST_CASE("coverage vouches only for samples that lie in their unsnapped triangles, and for most of those") {
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(slivers(), view);
+            int vouched = 0, wrong = 0, inside = 0;
+            picture.for_each_tile([&](const raster::PixelRect&, std::span<const raster::StripPlace> places) {
+                for (const raster::StripPlace& place : places)
+                    for (std::size_t i = 0; i < raster::kStrip; ++i) {
+                        const auto id = static_cast<std::uint32_t>(place.ids[i]);
+                        if (id == raster::kNoTriangle) continue;
+                        const bool lies = lies_inside(picture.geometry.triangles.whole(id), place.position(i));
+                        vouched += place.inside >> i & 1;
+                        wrong += (place.inside >> i & 1) && !lies;
+                        inside += lies;
+                    }
+            });
+            CHECK(wrong == 0);
+            CHECK(vouched > 20'000);
+            CHECK(vouched > inside * 0.9);
+            CHECK(vouched < inside); // at the edges it can't tell
+        }
+    }
+
+    TEST_CASE("directions of normals are those of the exact ray's hit, and taken only where they face the viewer") {
+        using raster::kStrip, raster::NormalVaryings, raster::StripSolver;
+        const Scene scene = smooth_slivers();
+        const Mesh& mesh = std::get<Mesh>(scene.shapes[0]);
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(scene, view);
+            const NormalVaryings normals;
+            int strips = 0, of_directions = 0, turned = 0;
+            double worst = 0;
+            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
+                StripSolver<NormalVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, normals, false);
+                solver.solve(places, true, [&](std::size_t s, const auto& strip) {
+                    strips += strip.samples->on_mesh != 0;
+                    if (strip.samples->on_mesh == 0 || !strip.directions) return;
+                    ++of_directions;
+                    for (std::size_t i = 0; i < kStrip; ++i) {
+                        if (!(strip.samples->seen >> i & 1)) continue;
+                        const raster::Interpolated at =
+                            interpolate(picture.geometry.triangles.whole(strip.samples->id(i)), places[s].position(i));
+                        const auto& corner = mesh.triangles[strip.samples->index(i)];
+                        const auto number = [&](std::size_t k) { return Vec3d(mesh.normals[corner[k]]); };
+                        const auto p = [&](std::size_t k) { return Vec3d(mesh.positions[corner[k]]); };
+                        const Vec3d wanted = normalize(number(0) * at.b0 + number(1) * at.b1 + number(2) * at.b2);
+                        const Vec3d n = normalize(Vec3d(Vec3(strip.at[0][i], strip.at[1][i], strip.at[2][i])));
+                        worst = std::max(worst, length(n - wanted));
+                        const Vec3d way = picture.pinhole.ray(places[s].position(i)).direction, ng = cross(p(1) - p(0), p(2) - p(0));
+                        turned += dot(ng, way) * dot(ng, n) > 0; // the face is seen from one side, and n is on the other
+                    }
+                });
+            });
+            CHECK(strips > 1000);
+            CHECK(of_directions > strips / 20);
+            CHECK(of_directions < strips * 0.9); // turned ones and slivers are not among them
+            CHECK(turned == 0);
+            CHECK(worst < 0x1p-12);
+            CHECK(worst > 0x1p-20);
         }
     }
 }
