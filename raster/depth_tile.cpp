@@ -1,18 +1,24 @@
 #include "raster/depth_tile.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstdlib>
 
 namespace duet::raster {
 
 /// A triangle's edge functions at the samples of a tile. All samples of a tile have the same place in their pixel, so a
 /// function's values differ by multiples of 256: divided by that and rounded down, their signs stay, and the steps from
-/// pixel to pixel are a and b themselves. From block to block they are counted in doubles: exactly, being below 2^53. Within
-/// a block that an edge passes through they fit into 32 bits, whatever the triangle's size: |a|, |b| < 2^25.2 (kGuardBand),
-/// so no sample of the block is as far as 14 · 2^25.2 < 2^30 from one of the other sign.
+/// pixel to pixel are a and b themselves. Within a block that an edge passes through they fit into 32 bits, whatever the
+/// triangle's size: |a|, |b| < 2^25.2 (kGuardBand), so no sample of the block is as far as 14 · 2^25.2 < 2^30 from one of the
+/// other sign.
 struct DepthTile::Edges {
-    std::array<double, 3> at; ///< at the tile's first sample
-    std::array<double, 3> a, b;
-    std::array<double, 3> out, in; ///< at a block's first sample: all of its are outside below, well inside from there on
+    using Values = std::array<std::int64_t, 3>;
+    Values at; ///< at the tile's first sample
+    Values right, down; ///< from block to block
+    /// At a block's first sample, as floats have it: none of its samples is inside below the one, all are well inside from the other
+    /// on. By an error more than floats have: each of four roundings is of at most half a unit in the last place of what a function
+    /// may be in the tile. So a block may be looked at for nothing, but none is missed.
+    std::array<float, 3> none, all;
     Origin origin; ///< of the triangle's plane
     std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
@@ -21,53 +27,54 @@ struct DepthTile::Edges {
     Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
         : origin(raster::origin(triangle.corners, viewport)) {
         const auto& p = triangle.corners;
-        const std::array<std::int64_t, 3> margins = edge_margins(triangle);
-        constexpr std::int32_t kNever = 0x7fffffff;
+        const Values margins = edge_margins(triangle);
+        constexpr std::int64_t kNever = 0x7fffffff, kLast = kBlock - 1, kZero = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
-            at[k] = static_cast<double>(
-                edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >>
-                kSubPixelBits);
-            a[k] = static_cast<double>(edge.a);
-            b[k] = static_cast<double>(edge.b);
-            margin[k] = triangle.sound ? static_cast<std::int32_t>((margins[k] + kSubPixels - 1) >> kSubPixelBits) : kNever;
-            constexpr double kLast = kBlock - 1;
-            out[k] = -kLast * (std::max(a[k], 0.0) + std::max(b[k], 0.0));
-            in[k] = margin[k] - kLast * (std::min(a[k], 0.0) + std::min(b[k], 0.0));
+            at[k] = edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >> kSubPixelBits;
+            right[k] = edge.a * kBlock;
+            down[k] = edge.b * kBlock;
+            const std::int64_t well = triangle.sound ? (margins[k] + kSubPixels - 1) >> kSubPixelBits : kNever;
+            const std::int64_t most = std::abs(at[k]) + TileGrid::kTileSize * (std::abs(edge.a) + std::abs(edge.b)) + well;
+            const float error = static_cast<float>(most) * 0x1p-20f;
+            none[k] = static_cast<float>(-kLast * (std::max(edge.a, kZero) + std::max(edge.b, kZero))) - error;
+            all[k] = static_cast<float>(well - kLast * (std::min(edge.a, kZero) + std::min(edge.b, kZero))) + error;
+            margin[k] = static_cast<std::int32_t>(well);
             next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
-            const Ints right(static_cast<std::int32_t>(edge.a)), down(static_cast<std::int32_t>(edge.b));
+            const Ints a(static_cast<std::int32_t>(edge.a)), b(static_cast<std::int32_t>(edge.b));
             for (std::size_t i = 0; i < kStrip; i += Ints::size)
-                store(step[k], i, right * load(kColumns<std::int32_t>, i) + down * load(kRows<std::int32_t>, i));
+                store(step[k], i, a * load(kColumns<std::int32_t>, i) + b * load(kRows<std::int32_t>, i));
         }
+    }
+    /// At a block's first sample, as far as it matters: exact where the block's edge passes through.
+    std::array<std::int32_t, 3> at_block(int column, int row) const {
+        constexpr std::int64_t kFar = 1 << 30;
+        std::array<std::int32_t, 3> here;
+        for (std::size_t k = 0; k < 3; ++k)
+            here[k] = static_cast<std::int32_t>(std::clamp(at[k] + right[k] * column + down[k] * row, -kFar, kFar));
+        return here;
     }
 };
 
 /// A row of blocks of a tile, all of them side by side.
 struct DepthTile::BlockRow {
-    std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle covers some samples; all, well inside
-    std::array<std::array<std::int32_t, kBlocks>, 3> first; ///< edge functions at its first sample, as far as it matters
+    std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle may cover some samples; all for certain, well inside
 
     BlockRow(const Edges& edges, int row) {
-        constexpr double kFar = 1 << 30;
-        for (std::size_t i = 0; i < kBlocks; i += Doubles::size) {
-            const Doubles x = load(kBlockColumns, i);
-            auto not_all_out = Doubles(0.0) <= Doubles(0.0), all_in = not_all_out;
+        using Columns = FloatBatch<kSimdLanes>;
+        for (std::size_t i = 0; i < kBlocks; i += Columns::size) {
+            const Columns column = Columns::load_aligned(kLanesAsFloats.at(i));
+            auto some_inside = column >= Columns(0.0f), all_inside = some_inside;
             for (std::size_t k = 0; k < 3; ++k) {
-                const Doubles here = Doubles(edges.at[k] + edges.b[k] * (row * kBlock)) + Doubles(edges.a[k]) * x;
-                not_all_out = not_all_out && here >= Doubles(edges.out[k]);
-                all_in = all_in && here >= Doubles(edges.in[k]);
-                store_ints(min(max(here, Doubles(-kFar)), Doubles(kFar)), &first[k][i]);
+                const Columns here = fused(Columns(static_cast<float>(edges.right[k])), column,
+                                           Columns(static_cast<float>(edges.at[k] + edges.down[k] * row)));
+                some_inside = some_inside && here >= Columns(edges.none[k]);
+                all_inside = all_inside && here >= Columns(edges.all[k]);
             }
-            some |= lane_bits(not_all_out) << i;
-            all |= lane_bits(all_in) << i;
+            some |= lane_bits(some_inside) << i;
+            all |= lane_bits(all_inside) << i;
         }
     }
-
-    static inline const StripOf<double> kBlockColumns = [] { // of which the first kBlocks are asked for
-        StripOf<double> result;
-        for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<double>(i) * kBlock;
-        return result;
-    }();
 };
 
 /// A triangle's samples in a block, a bit each: all, and those that lie well inside.
@@ -138,7 +145,7 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
             const bool all = (blocks.all >> c & 1) && triangle.sound;
             std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
             if (!all) {
-                const Covered covered(edges, {blocks.first[0][c], blocks.first[1][c], blocks.first[2][c]}, y0, y1);
+                const Covered covered(edges, edges.at_block(column, row), y0, y1);
                 if (covered.some == 0) continue;
                 some = covered.some, well_inside = covered.well_inside;
             }
