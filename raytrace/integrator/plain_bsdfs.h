@@ -41,6 +41,12 @@ template <typename BsdfType> Color colors(std::span<const PlainPath> paths, Rgb 
     for_lanes(paths, [&](std::size_t i, const PlainPath& path) { columns.set(i, std::get<BsdfType>(*path.bsdf).*color); });
     return columns.colors();
 }
+/// And a number of it.
+template <typename BsdfType> Floats floats(std::span<const PlainPath> paths, float BsdfType::* number) {
+    Column column;
+    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { column.of[i] = std::get<BsdfType>(*path.bsdf).*number; });
+    return column.floats();
+}
 
 class MattLanes {
 public:
@@ -110,11 +116,8 @@ public:
 
     explicit MetalLanes(std::span<const PlainPath> paths)
         : fresnel_(paths), multiple_(colors(paths, &MetalBsdf::multiple)),
-          single_(is_black_lane(multiple_)), any_multiple_(lane_bits(single_) != (1u << kLanes) - 1) {
-        Column alphas;
-        for_lanes(paths, [&](std::size_t i, const PlainPath& path) { alphas.of[i] = std::get<MetalBsdf>(*path.bsdf).alpha; });
-        alpha_ = alphas.floats();
-    }
+          single_(is_black_lane(multiple_)), any_multiple_(lane_bits(single_) != (1u << kLanes) - 1),
+          alpha_(floats(paths, &MetalBsdf::alpha)) {}
 
     Color eval(const Vec& wo, const Vec& wi) const {
         const Vec above = upwards(wo), to = upwards(wi);
@@ -144,7 +147,7 @@ private:
         const Color one = fresnel_(h.cosine) * (ggx_d(h.normal, alpha_) * ggx_visibility(wo, wi, alpha_));
         return any_multiple_ ? one + multiple_ * (lost_at_wo * lost(wi.z)) : one;
     }
-    Floats pdf(const Vec&  wo, const Vec& wi, const MicrofacetT<Floats>& h, Floats lost_at_wo) const {
+    Floats pdf(const Vec& wo, const Vec& wi, const MicrofacetT<Floats>& h, Floats lost_at_wo) const {
         const Floats several = select(single_, Floats(0.0f), lost_at_wo);
         return lerp(ggx_reflection_pdf(wo, h.normal, alpha_), cosine_hemisphere_pdf(wi.z), several);
     }
@@ -170,11 +173,7 @@ public:
     static constexpr bool kDirection = false, kLobe = true;
 
     explicit GlassLanes(std::span<const PlainPath> paths)
-        : tint_(colors(paths, &DielectricBsdf::tint)) {
-        Column etas;
-        for_lanes(paths, [&](std::size_t i, const PlainPath& path) { etas.of[i] = std::get<DielectricBsdf>(*path.bsdf).eta; });
-        eta_ = etas.floats();
-    }
+        : tint_(colors(paths, &DielectricBsdf::tint)), eta_(floats(paths, &DielectricBsdf::eta)) {}
 
     LaneSample sample(const Vec& wo, const Numbers& u) const {
         const Floats zero(0.0f), one(1.0f), cos_o = abs(wo.z);
@@ -193,8 +192,8 @@ public:
     }
 
 private:
-    Floats eta_;
     Color tint_;
+    Floats eta_;
 };
 
 #endif
