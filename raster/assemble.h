@@ -69,8 +69,8 @@ private:
     struct Candidates {          ///< small triangles whose samples are not known yet, up to sixteen
         std::size_t count = 0;
         std::array<std::uint32_t, kStrip> index{};
-        std::array<StripOf<std::int32_t>, 3> x, y; ///< corners
-        StripOf<std::int32_t> sample_x, sample_y;  ///< the first pixel of the box
+        std::array<StripOf<std::int32_t>, 3> x{}, y{}; ///< corners; where there is no triangle, of some
+        StripOf<std::int32_t> sample_x{}, sample_y{};  ///< the first pixel of the box
     };
     Candidates candidates_;
     struct Outlined { ///< a triangle of the batch that still lacks its plane

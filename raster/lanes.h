@@ -24,9 +24,9 @@ static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 /// Asks for a line of memory that will be read soon.
 inline void prefetch(const void* address) { __builtin_prefetch(address); }
 
-/// One number a sample of a strip.
+/// One number a sample of a strip, any until it is set: to clear them all would take longer than some of the work.
 template <typename T> struct alignas(64) StripOf {
-    std::array<T, kStrip> v{};
+    std::array<T, kStrip> v;
 
     T& operator[](std::size_t i) { return v[i]; }
     const T& operator[](std::size_t i) const { return v[i]; }
