@@ -49,7 +49,6 @@ inline void store_rounded(StripOf<double>& strip, std::size_t i, const Doubles& 
 inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& value) { store_floats(value, strip.at(i)); }
 
 using duet::fused;
-inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
 
 /// Of as many vectors side by side, by fused steps.
 inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) { return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z))); }
@@ -176,6 +175,17 @@ inline Floats inverse_sqrt(const Floats& x) {
 inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
 
 using Quads = FloatBatch<4>;
+
+/// Three numbers, and 0; nothing beyond them is read.
+inline Quads load_three(const float* from) {
+#if defined(__AVX512VL__)
+    return _mm_maskz_loadu_ps(7, from);
+#elif defined(__AVX__)
+    return _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0));
+#else
+    return _mm_movelh_ps(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))), _mm_load_ss(from + 2));
+#endif
+}
 
 /// A bit for each lane that holds true, lane 0 the lowest.
 inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
