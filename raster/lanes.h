@@ -122,6 +122,20 @@ inline Ints look_up(const StripOf<std::int32_t>& table, const Ints& index) {
 #endif
 }
 
+/// The same of addresses, to memory.
+template <typename T> void look_up(const std::array<const T*, kStrip>& table, const Ints& index, std::array<const T*, Ints::size>& found) {
+#if defined(__AVX512F__)
+    const __m512i first = _mm512_loadu_si512(table.data()), second = _mm512_loadu_si512(table.data() + kStrip / 2);
+    const auto eight = [&](__m256i at) { return _mm512_permutex2var_epi64(first, _mm512_cvtepi32_epi64(at), second); };
+    _mm512_storeu_si512(found.data(), eight(_mm512_castsi512_si256(index)));
+    _mm512_storeu_si512(found.data() + kStrip / 2, eight(_mm512_extracti64x4_epi64(index, 1)));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i])];
+#endif
+}
+
 /// From two tables of sixteen, one after the other, by the lower five bits of each number from the i-th on.
 inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)

@@ -3,7 +3,6 @@
 #include "common/system/error.h"
 #include "common/texture/probe_line.h"
 #include "common/texture/texel_place.h"
-#include "raster/shader.h"
 
 namespace duet::raster {
 
@@ -11,7 +10,7 @@ Texels::Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller) {
     if (smaller.size() >= kStrip) throw Error(message(smaller.size() + 1, " sizes of an image: expected at most ", kStrip));
     const auto add = [&](const ImageRgb& one) {
         const auto level = static_cast<std::size_t>(levels_++);
-        pixels_[level] = one.pixels().data();
+        numbers_[level] = &one.pixels().data()->r;
         widths_[level] = static_cast<float>(one.width()); // whole numbers below 2^24
         heights_[level] = static_cast<float>(one.height());
     };
@@ -26,65 +25,67 @@ std::vector<Texels> texels_of(const TextureSet& textures) {
     return result;
 }
 
-/// The size of the image that each lane looks at, and where. A lane's texels are far from any other's: what they are is worked
-/// out side by side, and the three channels of each, in one register, lane after lane.
-class Texels::LevelLanes {
+/// The four texels around each lane's place. Which they are is worked out side by side; but as lanes' texels lie far apart,
+/// each is loaded for itself, its three channels into one register.
+class Texels::Quartets {
 public:
-    LevelLanes(const Texels& of, const Ints& level)
-        : width_(raster::look_up(of.widths_, level)), height_(raster::look_up(of.heights_, level)) {
-        alignas(64) std::array<std::int32_t, Ints::size> levels;
-        level.store_aligned(levels.data());
-        for (std::size_t lane = 0; lane < Ints::size; ++lane) numbers_[lane] = &of.pixels_[static_cast<std::size_t>(levels[lane])]->r;
+    /// In one of the sizes each: 0 is the largest, what lies beyond the last is that.
+    Quartets(const Texels& of, const Ints& level) {
+        const Ints known = min(level, Ints(of.levels_ - 1));
+        width_ = raster::look_up(of.widths_, known);
+        height_ = raster::look_up(of.heights_, known);
+        raster::look_up(of.numbers_, known, numbers_);
     }
     /// Places in [0, 1). (v rises from the bottom, rows are stored from the top.)
-    void move_to(const Floats& s, const Floats& t) {
-        const TexelPair<Floats> x(s, width_), y(t, height_);
+    void move_to(const Vec2T<Floats>& place) {
+        const TexelPair<Floats> x(place.x, width_), y(place.y, height_);
         const Ints left = truncated(x.first) * Ints(3), right = truncated(x.second) * Ints(3);
         const Ints stride = truncated(width_) * Ints(3), top = truncated(height_) - Ints(1);
         const Ints lower = (top - truncated(y.first)) * stride, upper = (top - truncated(y.second)) * stride;
-        store(lower_left_, 0, lower + left);
-        store(lower_right_, 0, lower + right);
-        store(upper_left_, 0, upper + left);
-        store(upper_right_, 0, upper + right);
-        store(weight_x_, 0, x.weight);
-        store(weight_y_, 0, y.weight);
+        (lower + left).store_aligned(lower_left_.data());
+        (lower + right).store_aligned(lower_right_.data());
+        (upper + left).store_aligned(upper_left_.data());
+        (upper + right).store_aligned(upper_right_.data());
+        x.weight.store_aligned(weight_x_.data());
+        y.weight.store_aligned(weight_y_.data());
     }
     Quads color(std::size_t lane) const {
-        const auto texel = [&](const StripOf<std::int32_t>& places) { return load_three(numbers_[lane] + static_cast<std::uint32_t>(places[lane])); };
+        const auto texel = [&](const Places& places) { return load_three(at(lane, places)); };
         return bilinear(texel(lower_left_), texel(lower_right_), texel(upper_left_), texel(upper_right_), Quads(weight_x_[lane]),
                         Quads(weight_y_[lane]));
     }
 
 private:
-    std::array<const float*, Floats::size> numbers_; ///< three a texel
+    using Places = std::array<std::int32_t, Floats::size>;
+    const float* at(std::size_t lane, const Places& places) const { return numbers_[lane] + static_cast<std::uint32_t>(places[lane]); }
+
     Floats width_, height_;
-    StripOf<std::int32_t> lower_left_, lower_right_, upper_left_, upper_right_; ///< among them, below 2^32
-    StripOf<float> weight_x_, weight_y_;
+    alignas(64) Places lower_left_, lower_right_, upper_left_, upper_right_; ///< among the numbers, below 2^32
+    alignas(64) std::array<float, Floats::size> weight_x_, weight_y_;
+    alignas(64) std::array<const float*, Floats::size> numbers_;
 };
 
 RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& places) const {
-    const Floats scale_x(texture.scale.x * widths_[0]), scale_y(texture.scale.y * heights_[0]);
-    const auto in_texels = [&](const Vec2T<Floats>& duv) { return Vec2T<Floats>(duv.x * scale_x, duv.y * scale_y); };
+    const auto scaled = [](const Vec2T<Floats>& v, float x, float y) { return Vec2T<Floats>(v.x * Floats(x), v.y * Floats(y)); };
+    const auto in_period = [](const Vec2T<Floats>& v) { return Vec2T<Floats>(fraction(v.x), fraction(v.y)); };
+    const float width = widths_[0], height = heights_[0], scale_x = texture.scale.x, scale_y = texture.scale.y;
+    const auto in_texels = [&](const Vec2T<Floats>& duv) { return scaled(duv, scale_x * width, scale_y * height); };
     const ProbeLineT<Floats> probes = probe_line(in_texels(places.duv_dx), in_texels(places.duv_dy), max_probes(texture.filter));
-    const Floats s = fraction(Floats(places.uv.x * Floats(texture.scale.x))), t = fraction(Floats(places.uv.y * Floats(texture.scale.y)));
-    const Floats step_x = probes.step.x * Floats(1 / widths_[0]), step_y = probes.step.y * Floats(1 / heights_[0]);
-    const Floats middle = Floats(0.5f) * (probes.count - Floats(1.0f));
+    const Vec2T<Floats> middle = in_period(scaled(places.uv, scale_x, scale_y)), step = scaled(probes.step, 1 / width, 1 / height);
 
-    const Ints level = truncated(probes.level), last(levels_ - 1);
-    LevelLanes fine(*this, min(level, last)), coarse(*this, min(level + Ints(1), last));
+    const Ints level = truncated(probes.level);
+    Quartets fine(*this, level), coarse(*this, level + Ints(1));
     const std::uint32_t between = lane_bits(probes.blend > Floats(0.0f)) & places.lanes; // two sizes
-    StripOf<float> blend;
-    store(blend, 0, probes.blend);
+    const Lanes<Floats> blend(probes.blend);
 
     std::array<Quads, Floats::size> sums;
     sums.fill(Quads(0.0f));
     for (float i = 0;; ++i) {
         std::uint32_t left = lane_bits(Floats(i) < probes.count) & places.lanes;
         if (left == 0) break;
-        const Floats along = Floats(i) - middle;
-        const Floats ps = fraction(Floats(s + along * step_x)), pt = fraction(Floats(t + along * step_y));
-        fine.move_to(ps, pt);
-        if ((left & between) != 0) coarse.move_to(ps, pt);
+        const Vec2T<Floats> place = in_period(middle + step * Floats(Floats(i) - Floats(0.5f) * (probes.count - Floats(1.0f))));
+        fine.move_to(place);
+        if ((left & between) != 0) coarse.move_to(place);
         for (; left != 0; left &= left - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(left));
             Quads color = fine.color(lane);

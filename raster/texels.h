@@ -29,10 +29,10 @@ public:
     RgbT<Floats> look_up(const ImageTexture& texture, const TexturePlaces& places) const;
 
 private:
-    class LevelLanes;
+    class Quartets;
 
     std::int32_t levels_ = 0;
-    std::array<const Rgb*, kStrip> pixels_{}; ///< of each
+    std::array<const float*, kStrip> numbers_{}; ///< of each, three a texel
     StripOf<float> widths_, heights_;
 };
 
