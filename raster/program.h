@@ -25,13 +25,15 @@ public:
         solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
             const StripSamples& samples = *strip.samples;
             seen[s] = samples.seen;
+            place_ = &places[s];
+            surface_.move_to(*place_, samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
             if (samples.seen == 0) return;
             if (samples.on_mesh != samples.seen)
-                shade_one_by_one(places[s], samples, colors[s]);
+                shade_one_by_one(*place_, samples, colors[s]);
             else if (only_suns_ && strip.object_view->color && !strip.object_view->bent)
-                shade_together<true>(places[s], strip, colors[s]);
+                shade_together<true>(*place_, strip, colors[s]);
             else
-                shade_together<false>(places[s], strip, colors[s]);
+                shade_together<false>(*place_, strip, colors[s]);
         });
     }
 
@@ -67,8 +69,7 @@ private:
         }
     }
 
-    template <bool kPlain> void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) {
-        if (!kPlain) surface_.move_to(place, *strip.samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
+    template <bool kPlain> void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
         const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
         const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
             top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
@@ -123,10 +124,11 @@ private:
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
-    StripSurface surface_;
+    StripSurface surface_; ///< of the strip at hand
     StripSolver<S, float> solver_;
     Linear ways_, eyes_; ///< camera rays
     bool only_suns_;     ///< are the scene's lights
+    const StripPlace* place_ = nullptr; ///< of the strip at hand
 };
 
 /// A shader, kept by value.

@@ -25,6 +25,7 @@ Rgb bilinear(const ImageRgb& image, float s, float t) {
 
 Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& smaller,
              const SurfacePoint& point) {
+    // Floats, as the coordinates are: their last place is a place's error, too.
     const float s = fraction(point.uv.x * texture.scale.x), t = fraction(point.uv.y * texture.scale.y);
     if (texture.filter == TextureFilter::kNearest)
         return image(nearest(s, image.width()), image.height() - 1 - nearest(t, image.height()));
