@@ -50,7 +50,6 @@ inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& v
 
 using duet::fused;
 using duet::fused_minus;
-inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
 
 /// Of as many vectors side by side, by fused steps.
 inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) { return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z))); }
@@ -124,6 +123,20 @@ inline Ints look_up(const StripOf<std::int32_t>& table, const Ints& index) {
 #endif
 }
 
+/// The same of addresses, to memory.
+template <typename T> void look_up(const std::array<const T*, kStrip>& table, const Ints& index, std::array<const T*, Ints::size>& found) {
+#if defined(__AVX512F__)
+    const __m512i first = _mm512_loadu_si512(table.data()), second = _mm512_loadu_si512(table.data() + kStrip / 2);
+    const auto eight = [&](__m256i at) { return _mm512_permutex2var_epi64(first, _mm512_cvtepi32_epi64(at), second); };
+    _mm512_storeu_si512(found.data(), eight(_mm512_castsi512_si256(index)));
+    _mm512_storeu_si512(found.data() + kStrip / 2, eight(_mm512_extracti64x4_epi64(index, 1)));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i])];
+#endif
+}
+
 /// From two tables of sixteen, one after the other, by the lower five bits of each number from the i-th on.
 inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)
@@ -191,6 +204,17 @@ inline Floats inverse_sqrt(const Floats& x) {
 inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
 
 using Quads = FloatBatch<4>;
+
+/// Three numbers, and 0; nothing beyond them is read.
+inline Quads load_three(const float* from) {
+#if defined(__AVX512VL__)
+    return _mm_maskz_loadu_ps(7, from);
+#elif defined(__AVX__)
+    return _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0));
+#else
+    return _mm_movelh_ps(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))), _mm_load_ss(from + 2));
+#endif
+}
 
 /// A bit for each lane that holds true, lane 0 the lowest.
 inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {

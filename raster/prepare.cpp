@@ -42,40 +42,14 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
 }
 
 /// The image texture that colours all of an object, if it is filtered.
-const ImageTexture* filtered_texture(const Scene& scene, const RgbSlot& slot) {
-    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
-    return texture != nullptr && uses_footprint(texture->filter) ? texture : nullptr;
-}
 std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
     const RgbSlot& slot = texture_slot(material);
     if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt; // metal may have colours by a table
-    return filtered_texture(scene, slot) != nullptr ? std::optional(slot) : std::nullopt;
-}
-
-/// Whether a shading's fragments ask for base colours side by side. (Shading::kLit asks one by one.)
-bool uses_base_colors(Shading shading) {
-    switch (shading) {
-    case Shading::kPhong:
-    case Shading::kGouraud:
-    case Shading::kFlat:
-    case Shading::kToon:
-    case Shading::kWireframe:
-    case Shading::kAlbedo:
-        return true;
-    default:
-        return false;
-    }
-}
-
-/// Of those images that alone colour some object.
-std::vector<Texels> pack_texels(const Scene& scene, const Settings& settings) {
-    if (!uses_base_colors(settings.shading)) return {};
-    std::vector<std::uint8_t> wanted(scene.textures.images.size(), 0);
-    for (const Object& object : scene.objects)
-        if (const auto slot = one_texture(scene, object)) wanted[filtered_texture(scene, *slot)->image] = 1;
-    return raster::pack_texels(scene.textures, wanted, settings.threads);
+    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
+    const bool filtered = texture != nullptr && uses_footprint(texture->filter) && !scene.textures.smaller[texture->image].empty();
+    return filtered ? std::optional(slot) : std::nullopt;
 }
 
 /// Whether quads enclose a space, as a box's six do, and face outwards: each side of one is a side of another the other way
@@ -100,17 +74,14 @@ bool encloses(const QuadList& list) {
            });
 }
 
-PreparedObject prepare_object(const Scene& scene, const Object& object, const std::vector<Texels>& texels) {
+PreparedObject prepare_object(const Scene& scene, const Object& object) {
     const Shape& shape = scene.shapes[object.shape];
     PreparedObject result;
     result.bounds = bounds(shape, object.to_world);
     // Matrix entries are interpolated, so a point moves on a straight line: between the bounds of both ends.
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
     result.one_color = one_color(scene, object);
-    if (const auto slot = one_texture(scene, object)) {
-        const std::uint32_t image = filtered_texture(scene, *slot)->image;
-        if (image < texels.size() && !texels[image].empty()) result.one_texture = slot;
-    }
+    result.one_texture = one_texture(scene, object);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     const auto* quads = std::get_if<QuadList>(&shape);
     result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);
@@ -165,12 +136,12 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
                       .spheres = {},
                       .irradiance = Irradiance(scene.environment, settings.threads),
                       .vertices = pack_vertices(scene),
-                      .texels = pack_texels(scene, settings),
+                      .texels = texels_of(scene.textures),
                       .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
-        data.objects.push_back(prepare_object(scene, object, data.texels));
+        data.objects.push_back(prepare_object(scene, object));
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
             (sphere ? data.open_spheres : data.open_polygonal).push_back(i);
@@ -187,7 +158,6 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     for (const auto& shape : data.vertices) vertices += shape.size();
     data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                                   scene.objects.size() * sizeof(std::uint32_t));
-    for (const Texels& texels : data.texels) data.memory_bytes += static_cast<std::int64_t>(texels.memory_bytes());
     data.geometries = std::make_shared<GeometryPool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));

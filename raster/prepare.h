@@ -16,7 +16,7 @@ namespace duet::raster {
 struct PreparedObject {
     Box3 bounds;        ///< in the world, over all of the object's motion
     std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
-    std::optional<RgbSlot> one_texture; ///< where that is all of it, and there are PreparedData::texels
+    std::optional<RgbSlot> one_texture; ///< where that, filtered, is all of it
     bool closed = false; ///< a sphere, a box or a mesh that is closed and oriented outwards
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
@@ -48,7 +48,7 @@ struct PreparedData {
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
-    std::vector<Texels> texels{};                      ///< an image each, of those that are looked up side by side
+    std::vector<Texels> texels{};                      ///< an image each
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;

@@ -1,135 +1,100 @@
 #include "raster/texels.h"
 
 #include "common/system/error.h"
-#include "common/system/parallel.h"
 #include "common/texture/probe_line.h"
 #include "common/texture/texel_place.h"
-#include "raster/shader.h"
 
 namespace duet::raster {
 
-// Rows are stored from the top.
-void Texels::add(const ImageRgb& image) {
-    const auto level = static_cast<std::size_t>(levels_++);
-    widths_[level] = static_cast<float>(image.width()); // whole numbers below 2^24
-    heights_[level] = static_cast<float>(image.height());
-    firsts_[level] = static_cast<std::int32_t>(texels_.size());
-    const auto add_row = [&](int y) {
-        for (int x = 0; x <= image.width(); ++x) {
-            const Rgb c = image(x % image.width(), y);
-            texels_.push_back({c.r, c.g, c.b});
-        }
-    };
-    add_row(image.height() - 1);
-    for (int y = 0; y < image.height(); ++y) add_row(y);
-}
-
 Texels::Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller) {
     if (smaller.size() >= kStrip) throw Error(message(smaller.size() + 1, " sizes of an image: expected at most ", kStrip));
-    const auto room = [](const ImageRgb& one) { return static_cast<std::size_t>(one.width() + 1) * static_cast<std::size_t>(one.height() + 1); };
-    std::size_t count = room(image);
-    for (const ImageRgb& one : smaller) count += room(one);
-    texels_.reserve(count);
+    const auto add = [&](const ImageRgb& one) {
+        const auto level = static_cast<std::size_t>(levels_++);
+        numbers_[level] = &one.pixels().data()->r;
+        widths_[level] = static_cast<float>(one.width()); // whole numbers below 2^24
+        heights_[level] = static_cast<float>(one.height());
+    };
     add(image);
     for (const ImageRgb& one : smaller) add(one);
 }
 
-std::vector<Texels> pack_texels(const TextureSet& textures, const std::vector<std::uint8_t>& wanted, int threads) {
+std::vector<Texels> texels_of(const TextureSet& textures) {
     std::vector<Texels> result(textures.images.size());
-    parallel_for(textures.smaller.size(), threads, [&](std::size_t i) {
-        if (wanted[i] != 0 && !textures.smaller[i].empty()) result[i] = Texels(textures.images[i], textures.smaller[i]);
-    });
+    for (std::size_t i = 0; i < textures.smaller.size(); ++i)
+        if (!textures.smaller[i].empty()) result[i] = Texels(textures.images[i], textures.smaller[i]);
     return result;
 }
 
-/// The size of the image that each lane looks at, and where.
-struct Texels::LevelLanes {
-    const Texel* texels;
-    StripOf<float> width, height;
-    StripOf<std::int32_t> first;
-    StripOf<std::int32_t> at, above; ///< numbers of the left ones of the texels around a place
-    StripOf<float> weight_x, weight_y;
+/// The four texels around each lane's place. Which they are is worked out side by side; but as lanes' texels lie far apart,
+/// each is loaded for itself, its three channels into one register.
+class Texels::Quartets {
+public:
+    /// In one of the sizes each: 0 is the largest, what lies beyond the last is that.
+    Quartets(const Texels& of, const Ints& level) {
+        const Ints known = min(level, Ints(of.levels_ - 1));
+        width_ = raster::look_up(of.widths_, known);
+        height_ = raster::look_up(of.heights_, known);
+        raster::look_up(of.numbers_, known, numbers_);
+    }
+    /// Places in [0, 1). (v rises from the bottom, rows are stored from the top.)
+    void move_to(const Vec2T<Floats>& place) {
+        const TexelPair<Floats> x(place.x, width_), y(place.y, height_);
+        const Ints left = truncated(x.first) * Ints(3), right = truncated(x.second) * Ints(3);
+        const Ints stride = truncated(width_) * Ints(3), top = truncated(height_) - Ints(1);
+        const Ints lower = (top - truncated(y.first)) * stride, upper = (top - truncated(y.second)) * stride;
+        (lower + left).store_aligned(lower_left_.data());
+        (lower + right).store_aligned(lower_right_.data());
+        (upper + left).store_aligned(upper_left_.data());
+        (upper + right).store_aligned(upper_right_.data());
+        x.weight.store_aligned(weight_x_.data());
+        y.weight.store_aligned(weight_y_.data());
+    }
+    Quads color(std::size_t lane) const {
+        const auto texel = [&](const Places& places) { return load_three(at(lane, places)); };
+        return bilinear(texel(lower_left_), texel(lower_right_), texel(upper_left_), texel(upper_right_), Quads(weight_x_[lane]),
+                        Quads(weight_y_[lane]));
+    }
 
-    LevelLanes(const Texels& of, const Ints& level) : texels(of.texels_.data()) {
-        store(width, 0, raster::look_up(of.widths_, level));
-        store(height, 0, raster::look_up(of.heights_, level));
-        store(first, 0, raster::look_up(of.firsts_, level));
-    }
-    /// Some lanes' places. v rises from the bottom, and the top row is stored second.
-    void move_to(std::size_t k, const Doubles& s, const Doubles& t) {
-        const Doubles columns = load_doubles(width.at(k)), rows = load_doubles(height.at(k)), stride = columns + Doubles(1.0);
-        const TexelPair<Doubles> x(s, columns), y(t, rows);
-        const Doubles place = (rows - y.first) * stride + x.first;
-        store_ints(place, at.at(k));
-        store_ints(place - stride, above.at(k));
-        store_floats(x.weight, weight_x.at(k));
-        store_floats(y.weight, weight_y.at(k));
-    }
-    RgbT<Floats> colors() const {
-        std::array<const Texel*, Floats::size> lower, upper;
-        for (std::size_t lane = 0; lane < Floats::size; ++lane) {
-            lower[lane] = texels + first[lane] + at[lane];
-            upper[lane] = texels + first[lane] + above[lane];
-        }
-        const auto corner = [](const std::array<const Texel*, Floats::size>& row, std::size_t column) -> RgbT<Floats> {
-            const auto columns = load_columns<Floats::size>([&](std::size_t lane) { return &row[lane][column].r; });
-            return {columns[0], columns[1], columns[2]};
-        };
-        return bilinear(corner(lower, 0), corner(lower, 1), corner(upper, 0), corner(upper, 1), load(weight_x, 0), load(weight_y, 0));
-    }
+private:
+    using Places = std::array<std::int32_t, Floats::size>;
+    const float* at(std::size_t lane, const Places& places) const { return numbers_[lane] + static_cast<std::uint32_t>(places[lane]); }
+
+    Floats width_, height_;
+    alignas(64) Places lower_left_, lower_right_, upper_left_, upper_right_; ///< among the numbers, below 2^32
+    alignas(64) std::array<float, Floats::size> weight_x_, weight_y_;
+    alignas(64) std::array<const float*, Floats::size> numbers_;
 };
-
-struct Texels::Probes {
-    StripOf<double> s, t;             ///< place of the middle
-    StripOf<double> count, step_x, step_y;
-    StripOf<float> counts, level, blend;
-};
-
-void Texels::find(const ImageTexture& texture, const TexturePlaces& places, Probes& probes) const {
-    const Doubles scale_x(static_cast<double>(texture.scale.x)), scale_y(static_cast<double>(texture.scale.y));
-    const Doubles width(static_cast<double>(widths_[0])), height(static_cast<double>(heights_[0]));
-    for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
-        const auto in_texels = [&](const std::array<StripOf<float>, 2>& duv) {
-            return Vec2T<Doubles>(load_doubles(duv[0].at(k)) * scale_x * width, load_doubles(duv[1].at(k)) * scale_y * height);
-        };
-        const ProbeLineT<Doubles> line =
-            probe_line(in_texels(places.duv_dx), in_texels(places.duv_dy), max_probes(texture.filter));
-        store(probes.s, k, fraction(Doubles(load_doubles(places.uv[0].at(k)) * scale_x)));
-        store(probes.t, k, fraction(Doubles(load_doubles(places.uv[1].at(k)) * scale_y)));
-        store(probes.count, k, line.count);
-        store(probes.step_x, k, line.step.x);
-        store(probes.step_y, k, line.step.y);
-        store_floats(line.count, probes.counts.at(k));
-        store_floats(line.level, probes.level.at(k));
-        store_floats(line.blend, probes.blend.at(k));
-    }
-}
 
 RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& places) const {
-    Probes probes;
-    find(texture, places, probes);
-    const Ints level = truncated(load(probes.level, 0)), last(levels_ - 1);
-    LevelLanes fine(*this, min(level, last)), coarse(*this, min(level + Ints(1), last));
-    const Doubles width(static_cast<double>(widths_[0])), height(static_cast<double>(heights_[0]));
-    const Floats blend = load(probes.blend, 0), counts = load(probes.counts, 0), zero(0.0f);
-    const auto between = blend > zero; // two sizes
-    const bool any_between = xsimd::any(between);
-    RgbT<Floats> sum(zero);
-    const int most = static_cast<int>(highest(counts));
-    for (int i = 0; i < most; ++i) {
-        for (std::size_t k = 0; k < Floats::size; k += Doubles::size) {
-            const Doubles along = Doubles(static_cast<double>(i)) - Doubles(0.5) * (load(probes.count, k) - Doubles(1.0));
-            const Doubles s = fraction(Doubles(load(probes.s, k) + along * load(probes.step_x, k) / width)),
-                          t = fraction(Doubles(load(probes.t, k) + along * load(probes.step_y, k) / height));
-            fine.move_to(k, s, t);
-            if (any_between) coarse.move_to(k, s, t);
+    const auto scaled = [](const Vec2T<Floats>& v, float x, float y) { return Vec2T<Floats>(v.x * Floats(x), v.y * Floats(y)); };
+    const auto in_period = [](const Vec2T<Floats>& v) { return Vec2T<Floats>(fraction(v.x), fraction(v.y)); };
+    const float width = widths_[0], height = heights_[0], scale_x = texture.scale.x, scale_y = texture.scale.y;
+    const auto in_texels = [&](const Vec2T<Floats>& duv) { return scaled(duv, scale_x * width, scale_y * height); };
+    const ProbeLineT<Floats> probes = probe_line(in_texels(places.duv_dx), in_texels(places.duv_dy), max_probes(texture.filter));
+    const Vec2T<Floats> middle = in_period(scaled(places.uv, scale_x, scale_y)), step = scaled(probes.step, 1 / width, 1 / height);
+
+    const Ints level = truncated(probes.level);
+    Quartets fine(*this, level), coarse(*this, level + Ints(1));
+    const std::uint32_t between = lane_bits(probes.blend > Floats(0.0f)) & places.lanes; // two sizes
+    const Lanes<Floats> blend(probes.blend);
+
+    std::array<Quads, Floats::size> sums;
+    sums.fill(Quads(0.0f));
+    for (float i = 0;; ++i) {
+        std::uint32_t left = lane_bits(Floats(i) < probes.count) & places.lanes;
+        if (left == 0) break;
+        const Vec2T<Floats> place = in_period(middle + step * Floats(Floats(i) - Floats(0.5f) * (probes.count - Floats(1.0f))));
+        fine.move_to(place);
+        if ((left & between) != 0) coarse.move_to(place);
+        for (; left != 0; left &= left - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+            Quads color = fine.color(lane);
+            if ((between >> lane & 1) != 0) color = duet::between(color, coarse.color(lane), Quads(blend[lane]));
+            sums[lane] = sums[lane] + color;
         }
-        RgbT<Floats> color = fine.colors();
-        // What a lane does not ask for is left out, not weighed by 0: it may be infinite.
-        if (any_between) color = select_each(between, lerp(color, coarse.colors(), blend), color);
-        sum += select_each(Floats(static_cast<float>(i)) < counts, color, RgbT<Floats>(zero));
     }
-    return sum * (Floats(1.0f) / counts);
+    const auto columns = load_columns<Floats::size>([&](std::size_t lane) { return reinterpret_cast<const float*>(&sums[lane]); });
+    return RgbT<Floats>(columns[0], columns[1], columns[2]) * (Floats(1.0f) / probes.count);
 }
 
 } // namespace duet::raster

@@ -8,49 +8,45 @@ namespace duet {
 
 namespace {
 
-// In double the product is exact, too.
-double wrapped(float coordinate, float scale) {
-    return fraction(static_cast<double>(coordinate) * static_cast<double>(scale));
-}
+int nearest(float place, int count) { return std::min(static_cast<int>(place * static_cast<float>(count)), count - 1); }
 
-int nearest(double place, int count) { return std::min(static_cast<int>(place * count), count - 1); }
+Vec2 size_of(const ImageRgb& image) { return {static_cast<float>(image.width()), static_cast<float>(image.height())}; }
 
-Rgb bilinear(const ImageRgb& image, double s, double t) {
-    const TexelPair<double> x(s, image.width()), y(t, image.height());
+Rgb bilinear(const ImageRgb& image, float s, float t) {
+    const Vec2 size = size_of(image);
+    const TexelPair<float> x(s, size.x), y(t, size.y);
     // Rows are stored from the top, v rises from the bottom.
-    const auto texel = [&](double i, double j) { return image(static_cast<int>(i), image.height() - 1 - static_cast<int>(j)); };
+    const auto texel = [&](float i, float j) { return image(static_cast<int>(i), image.height() - 1 - static_cast<int>(j)); };
     return bilinear(texel(x.first, y.first), texel(x.second, y.first), texel(x.first, y.second), texel(x.second, y.second),
-                    static_cast<float>(x.weight), static_cast<float>(y.weight));
+                    x.weight, y.weight);
 }
 
 } // namespace
 
 Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& smaller,
              const SurfacePoint& point) {
-    const double s = wrapped(point.uv.x, texture.scale.x), t = wrapped(point.uv.y, texture.scale.y);
+    // Floats, as the coordinates are: their last place is a place's error, too.
+    const float s = fraction(point.uv.x * texture.scale.x), t = fraction(point.uv.y * texture.scale.y);
     if (texture.filter == TextureFilter::kNearest)
         return image(nearest(s, image.width()), image.height() - 1 - nearest(t, image.height()));
     if (!uses_footprint(texture.filter) || smaller.empty()) return bilinear(image, s, t);
 
-    const Vec2d scale(texture.scale);
-    const auto in_texels = [&](Vec2 duv) {
-        return Vec2d(duv.x * scale.x * image.width(), duv.y * scale.y * image.height());
-    };
+    const Vec2 size = size_of(image), scale{texture.scale.x * size.x, texture.scale.y * size.y};
+    const auto in_texels = [&](Vec2 duv) { return Vec2(duv.x * scale.x, duv.y * scale.y); };
     const ProbeLine probes = probe_line(in_texels(point.duv_dx), in_texels(point.duv_dy), max_probes(texture.filter));
+    const Vec2 step{probes.step.x * (1 / size.x), probes.step.y * (1 / size.y)};
     const auto level = [&](int k) -> const ImageRgb& {
         return k == 0 ? image : smaller[static_cast<std::size_t>(std::min(k, static_cast<int>(smaller.size()))) - 1];
     };
     const ImageRgb &fine = level(static_cast<int>(probes.level)), &coarse = level(static_cast<int>(probes.level) + 1);
-    const auto blend = static_cast<float>(probes.blend);
     Rgb sum;
-    for (int i = 0; i < probes.count; ++i) {
-        const double along = i - 0.5 * (probes.count - 1);
-        const double ps = fraction(s + along * probes.step.x / image.width());
-        const double pt = fraction(t + along * probes.step.y / image.height());
+    for (float i = 0; i < probes.count; ++i) {
+        const float along = i - 0.5f * (probes.count - 1);
+        const float ps = fraction(s + along * step.x), pt = fraction(t + along * step.y);
         const Rgb sharp = bilinear(fine, ps, pt);
-        sum += blend == 0 ? sharp : lerp(sharp, bilinear(coarse, ps, pt), blend);
+        sum += probes.blend == 0 ? sharp : between(sharp, bilinear(coarse, ps, pt), probes.blend);
     }
-    return sum * (1 / static_cast<float>(probes.count));
+    return sum * (1 / probes.count);
 }
 
 } // namespace duet

@@ -9,11 +9,11 @@
 namespace duet {
 
 /// The place of a coordinate within its period, in [0, 1); 0 for what has none (infinity, NaN). The difference is exact
-/// but for the tiniest negative coordinates, which would round to 1.
+/// but for negative coordinates so small that it would round to 1.
 template <typename T> T fraction(T t) {
     using std::floor;
     const T place = t - floor(t);
-    return select(place < T(1), place, T(0));
+    return select(place >= T(0), min(place, T(kOneMinusEpsilon)), T(0));
 }
 
 /// The two texels of `count` along a side whose centres enclose a place in [0, 1), as whole numbers, and the second one's
@@ -30,9 +30,16 @@ template <typename T> struct TexelPair {
     }
 };
 
+/// From a to b as t goes from 0 to 1: a itself at 0, and between two that are equal.
+template <typename T> T between(const T& a, const T& b, const T& t) { return fused(t, b - a, a); }
+template <typename T> RgbT<T> between(const RgbT<T>& a, const RgbT<T>& b, const T& t) {
+    return {between(a.r, b.r, t), between(a.g, b.g, t), between(a.b, b.b, t)};
+}
+
 /// Texels at (first, first), (second, first), (first, second) and (second, second) along x and y, by the second ones' weights.
-template <typename T> RgbT<T> bilinear(const RgbT<T>& t00, const RgbT<T>& t10, const RgbT<T>& t01, const RgbT<T>& t11, T x, T y) {
-    return lerp(lerp(t00, t10, x), lerp(t01, t11, x), y);
+template <typename Color, typename T>
+Color bilinear(const Color& t00, const Color& t10, const Color& t01, const Color& t11, const T& x, const T& y) {
+    return between(between(t00, t10, x), between(t01, t11, x), y);
 }
 
 } // namespace duet

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -62,11 +63,14 @@ inline void store_floats(DoubleBatch batch, float* to) {
 #endif
 }
 
-/// a·b + c, rounded once where the machine can (xsimd 8 has no such instruction of 16 lanes).
+/// a·b + c, rounded once where the machine can (xsimd 8 has no such instruction of 16 lanes, nor of 4).
 template <typename Arch>
 xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fmadd_ps(a, b, c);
+#endif
+#if defined(__FMA__)
+    if constexpr (sizeof(a) == 16) return _mm_fmadd_ps(a, b, c);
 #endif
     return xsimd::fma(a, b, c);
 }
@@ -87,6 +91,8 @@ inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
     return xsimd::fma(a, b, c);
 #endif
 }
+/// The same of one number.
+inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
 
 /// A bit for each lane that holds true, lane 0 the lowest.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {

@@ -67,44 +67,49 @@ int differences(const TextureSet& set) {
     int differ = 0;
     for (int trial = 0; trial < 1000; ++trial) {
         std::array<SurfacePoint, Floats::size> points;
-        TexturePlaces places;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const SurfacePoint& p = points[i] = random_point(random);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                places.uv[axis][i] = axis == 0 ? p.uv.x : p.uv.y;
-                places.duv_dx[axis][i] = axis == 0 ? p.duv_dx.x : p.duv_dx.y;
-                places.duv_dy[axis][i] = axis == 0 ? p.duv_dy.x : p.duv_dy.y;
-            }
-        }
-        const RgbT<Floats> many = texels.look_up(texture, places);
+        for (SurfacePoint& p : points) p = random_point(random);
+        const auto side_by_side = [&](Vec2 SurfacePoint::*which) {
+            StripOf<float> x, y;
+            for (std::size_t i = 0; i < points.size(); ++i) x[i] = (points[i].*which).x, y[i] = (points[i].*which).y;
+            return Vec2T<Floats>(load(x, 0), load(y, 0));
+        };
+        const auto lanes = static_cast<std::uint32_t>(random()) & ((1u << Floats::size) - 1);
+        const RgbT<Floats> many = texels.look_up(texture, {.uv = side_by_side(&SurfacePoint::uv),
+                                                           .duv_dx = side_by_side(&SurfacePoint::duv_dx),
+                                                           .duv_dy = side_by_side(&SurfacePoint::duv_dy),
+                                                           .lanes = lanes});
         RgbT<StripOf<float>> found;
         store(found.r, 0, many.r), store(found.g, 0, many.g), store(found.b, 0, many.b);
-        for (std::size_t i = 0; i < points.size(); ++i)
-            differ += !same_bits({found.r[i], found.g[i], found.b[i]}, evaluate_texture(set, set.textures[0], points[i]));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Rgb expected = (lanes >> i & 1) != 0 ? evaluate_texture(set, set.textures[0], points[i]) : Rgb();
+            differ += !same_bits({found.r[i], found.g[i], found.b[i]}, expected);
+        }
     }
     return differ;
 }
 int differences(int width, int height, const ImageTexture& texture) { return differences(random_texture(width, height, texture)); }
 
-/// A torus that one texture colours, twice around it; some of its triangles have no area in the texture.
-Scene textured_scene(const ImageTexture& texture, bool with_coordinates) {
+/// A torus that one texture colours, twice around it; some of its triangles have no area in the texture. Not `together`: by
+/// two materials, though they are alike.
+Scene textured_scene(const ImageTexture& texture, bool with_coordinates, bool together) {
     Scene scene;
     Mesh mesh = smooth_torus(48, 24);
     for (std::size_t i = 0; with_coordinates && i < mesh.positions.size(); ++i)
         mesh.uvs.push_back(i < 100 ? Vec2(0.3f, 0.7f) : Vec2(static_cast<float>(i / 24) / 24, static_cast<float>(i % 24) / 12));
     scene.textures = random_texture(61, 40, texture);
     add(scene, std::move(mesh), Mat4(), Diffuse{{Rgb(0.9f, 0.8f, 0.7f), 0}});
+    if (!together) scene.objects[0].materials.push_back(scene.objects[0].materials[0]);
     finish_scene(scene);
     return scene;
 }
 
-/// Base colours, looked up together where the scene was prepared so, else one by one.
-ImageRgb base_colors(const Scene& scene, Shading prepared_for) {
+/// Base colours, looked up together or one by one.
+ImageRgb base_colors(const ImageTexture& texture, bool with_coordinates, bool together) {
+    const Scene scene = textured_scene(texture, with_coordinates, together);
     Settings settings;
-    settings.shading = prepared_for;
-    const Prepared prepared = prepare(scene, settings);
-    REQUIRE(prepared.data().objects[0].one_texture.has_value() == (prepared_for == Shading::kAlbedo));
     settings.shading = Shading::kAlbedo;
+    const Prepared prepared = prepare(scene, settings);
+    REQUIRE(prepared.data().objects[0].one_texture.has_value() == together);
     Control control;
     return raster::render(prepared, perspective(), settings, control).radiance;
 }
@@ -133,8 +138,9 @@ TEST_SUITE("unit") {
     TEST_CASE("base colours of strips: the same bits together and one by one") {
         for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic})
             for (const bool with_coordinates : {true, false}) {
-                const Scene scene = textured_scene({.image = 0, .scale = {1.7f, -0.6f}, .filter = filter}, with_coordinates);
-                const ImageRgb together = base_colors(scene, Shading::kAlbedo), alone = base_colors(scene, Shading::kLit);
+                const ImageTexture texture{.image = 0, .scale = {1.7f, -0.6f}, .filter = filter};
+                const ImageRgb together = base_colors(texture, with_coordinates, true);
+                const ImageRgb alone = base_colors(texture, with_coordinates, false);
                 int differ = 0, seen = 0;
                 for (std::size_t i = 0; i < together.size(); ++i) {
                     differ += !same_bits(together[i], alone[i]);
@@ -145,10 +151,10 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("texels: what is not filtered or not wanted is not packed") {
-        CHECK(pack_texels(random_texture(8, 8, {.filter = TextureFilter::kBilinear}), {1}, 1).at(0).empty());
-        CHECK(pack_texels(random_texture(1, 1, {}), {1}, 1).at(0).empty());
-        CHECK(pack_texels(random_texture(8, 4, {}), {0}, 1).at(0).empty());
-        CHECK(pack_texels(random_texture(8, 4, {}), {1}, 2).at(0).memory_bytes() == 16 * (9 * 5 + 5 * 3 + 3 * 2 + 2 * 2));
+    TEST_CASE("texels: of what is not filtered there are none") {
+        CHECK(texels_of(random_texture(8, 8, {.filter = TextureFilter::kBilinear})).at(0).empty());
+        CHECK(texels_of(random_texture(1, 1, {})).at(0).empty());
+        const TextureSet set = random_texture(8, 4, {});
+        CHECK(!texels_of(set).at(0).empty());
     }
 }

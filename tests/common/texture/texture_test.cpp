@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -84,6 +85,26 @@ TEST_SUITE("unit") {
             CHECK(look_up(image, true, {u, 0.625f}).r == doctest::Approx(3.5f).epsilon(1e-5));
         CHECK(look_up(image, false, {-1e-9f, 0.1f}).r == 7.0f);
         CHECK(look_up(image, false, {std::nextafter(1.0f, 0.0f), 0.1f}).r == 7.0f);
+    }
+
+    TEST_CASE("image: float finds places to within 2^-23 of a period, where uv are at most 1") {
+        constexpr int kWidth = 3000, kHeight = 700;
+        const ImageRgb image = numbered_image(kWidth, kHeight);
+        std::mt19937 random(17);
+        std::uniform_real_distribution<float> uniform(-1, 1);
+        double worst = 0; // in periods, each error apart
+        for (int i = 0; i < 20000; ++i) {
+            const Vec2 uv{uniform(random), uniform(random)};
+            const Rgb found = look_up(image, true, uv);
+            const auto error = [&](float coordinate, float texel, int count) {
+                const double t = static_cast<double>(coordinate), place = (t - std::floor(t)) * count - 0.5;
+                const bool at_seam = place < 0 || place > count - 1;
+                return at_seam ? 0 : std::abs(static_cast<double>(texel) - place) / count;
+            };
+            worst = std::max({worst, error(uv.x, found.r, kWidth), error(uv.y, found.g, kHeight)});
+        }
+        CHECK(worst < 0x1p-23);
+        CHECK(worst > 0x1p-26); // it is float
     }
 
     TEST_CASE("image: scale repeats the picture") {
