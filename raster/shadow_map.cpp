@@ -112,7 +112,8 @@ template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
-    double dark = 0, known = 0;
+    double dark = 0, known = 0, under = 0;
+    bool contact = false;
     for (int row = 0; row < static_cast<int>(N); ++row)
         for (int column = 0; column < static_cast<int>(N); ++column) {
             const int x = x0 + column, y = y0 + row;
@@ -122,13 +123,16 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const double beside = max(std::abs(right), std::abs(below));
             const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
             if (over < -slack(plane.falling)) continue;
-            const bool blocks = over > plane.rounding &&
-                                (over > slack(plane.rising) || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
+            const bool near = over <= slack(plane.rising);
+            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
             if (blocks && seen <= plane.at) continue;
             const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
-            known += weight;
+            (over < -plane.rounding ? under : known) += weight;
             if (blocks) dark += weight;
+            contact = contact || (blocks && near);
         }
+    // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
+    if (!contact) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }
 

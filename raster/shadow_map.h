@@ -44,7 +44,7 @@ public:
     /// - nothing, if it sees something behind that, steeper than the facets of a ridge: the receiver's surface ends before,
     ///   and what light there is beyond its edge does not leak back around it. Nor if what stands over the plane is farther
     ///   from the light than the receiver.
-    /// - lit, else: it sees the receiver's surface.
+    /// - lit, else: it sees the receiver's surface. What is under the plane says so only where nothing lies on the receiver.
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
     static constexpr double kFilterRadius = 1.5, kLayeredRadius = 2;
