@@ -46,6 +46,28 @@ double filled(const Quad& quad, const ToCosine& to_cosine, Vec3 p) {
     std::array<Vec3, 4> all = corners(quad);
     return filled(all, to_cosine, p);
 }
+/// The greatest root of μ³ − trace μ² + minors μ − determinant, the characteristic polynomial of a matrix all of whose roots are
+/// real: from `bound`, which is over it, Newton's steps go down to it.
+double greatest_eigenvalue(double trace, double minors, double determinant, double bound) {
+    double mu = bound;
+    for (int i = 0; i < 32; ++i) {
+        const double value = ((mu - trace) * mu + minors) * mu - determinant, slope = (3 * mu - 2 * trace) * mu + minors;
+        if (!(value > 1e-12 * mu * slope)) break;
+        mu -= value / slope;
+    }
+    return mu;
+}
+
+/// Of a symmetric matrix and its eigenvalue: across the rows of the matrix less that, of which two at most are independent. Of any
+/// length, 0 where it is not unique.
+Vec3d eigenvector(std::array<Vec3d, 3> rows, double eigenvalue) {
+    for (std::size_t i = 0; i < 3; ++i) rows[i][i] -= eigenvalue;
+    Vec3d longest;
+    for (const Vec3d& across : {cross(rows[0], rows[1]), cross(rows[1], rows[2]), cross(rows[2], rows[0])})
+        if (dot(across, across) > dot(longest, longest)) longest = across;
+    return longest;
+}
+
 /// A sphere fills a cone about the direction d, in which (w·d)² ≥ cos²σ w². In the cosine's space that is an elliptical
 /// cone, whose form factor and axis an eigenvalue and its vector give (Heitz and Hill 2017, «Real-Time Line- and Disk-Light
 /// Shading with Linearly Transformed Cosines»; here of the cone itself, without a disk). The horizon cuts it as it does the
@@ -53,23 +75,18 @@ double filled(const Quad& quad, const ToCosine& to_cosine, Vec3 p) {
 /// Production»).
 double filled(const Sphere& sphere, const ToCosine& to_cosine, Vec3 p) {
     const Vec3 way = sphere.center - p;
-    const double squared = dot(Vec3d(way), Vec3d(way)), sine2 = std::min(sqr(static_cast<double>(sphere.radius)) / squared, 1 - 1e-6);
+    const double squared = dot(Vec3d(way), Vec3d(way));
+    const double sine2 = std::min(sqr(static_cast<double>(sphere.radius)) / squared, 1 - 1e-6);
     // The dual cone's matrix B = u uᵀ − sin²σ (a aᵀ + b bᵀ + c cᵀ) has one eigenvalue μ > 0.
-    const Vec3d u(to_cosine(way / static_cast<float>(std::sqrt(squared)))), a(to_cosine({1, 0, 0})), b(to_cosine({0, 1, 0})), c(to_cosine({0, 0, 1}));
+    const Vec3d u(to_cosine(way / static_cast<float>(std::sqrt(squared))));
+    const Vec3d a(to_cosine({1, 0, 0})), b(to_cosine({0, 1, 0})), c(to_cosine({0, 0, 1}));
     const auto row = [&](std::size_t i) { return u * u[i] - (a * a[i] + b * b[i] + c * c[i]) * sine2; };
-    std::array<Vec3d, 3> rows{row(0), row(1), row(2)};
+    const std::array<Vec3d, 3> rows{row(0), row(1), row(2)};
     const double trace = rows[0].x + rows[1].y + rows[2].z, determinant = sqr(sine2 * dot(a, cross(b, c))) * (1 - sine2);
-    const double minors = rows[0].x * rows[1].y - sqr(rows[0].y) + rows[0].x * rows[2].z - sqr(rows[0].z) + rows[1].y * rows[2].z - sqr(rows[1].z);
-    double mu = dot(u, u); // an upper bound: from there Newton's steps go down to the greatest root
-    for (int i = 0; i < 32; ++i) {
-        const double value = ((mu - trace) * mu + minors) * mu - determinant, slope = (3 * mu - 2 * trace) * mu + minors;
-        if (!(value > 1e-12 * mu * slope)) break;
-        mu -= value / slope;
-    }
-    for (std::size_t i = 0; i < 3; ++i) rows[i][i] -= mu;
-    Vec3d axis;
-    for (const Vec3d& across : {cross(rows[0], rows[1]), cross(rows[1], rows[2]), cross(rows[2], rows[0])})
-        if (dot(across, across) > dot(axis, axis)) axis = across;
+    const double minors = rows[0].x * rows[1].y - sqr(rows[0].y) + rows[0].x * rows[2].z - sqr(rows[0].z) +
+                          rows[1].y * rows[2].z - sqr(rows[1].z);
+    const double mu = greatest_eigenvalue(trace, minors, determinant, dot(u, u));
+    Vec3d axis = eigenvector(rows, mu);
     const double size = length(axis);
     if (!(size > 0)) return 0;
     axis = axis * ((dot(axis, u) < 0 ? -1 : 1) / size);

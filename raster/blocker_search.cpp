@@ -2,6 +2,7 @@
 #include "raster/light_cone.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -171,15 +172,12 @@ void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& win
             const auto above = height + over * nearness > Floats(0.0f);
             if (!xsimd::any(above)) continue;
             const auto found = this->found(cone, above, nearness, from_middle, up, block).blocks;
-            if (!xsimd::any(found)) continue;
-            StripOf<float> marks;
-            store(marks, 0, xsimd::select(found, Floats(1.0f), Floats(0.0f)));
-            const int last = std::min(blocks.x1, first + static_cast<int>(Floats::size) - 1);
-            for (int i = std::max(blocks.x0, first); i <= last; ++i) {
-                if (!(marks[static_cast<std::size_t>(i - first)] > 0)) continue;
-                const int left = i * texels, top = y * texels;
-                add_blockers(cone, face, {std::max(left, window.x0), std::max(top, window.y0),
-                                          std::min(left + texels - 1, window.x1), std::min(top + texels - 1, window.y1)}, blockers);
+            for (std::uint32_t left = lane_bits(found); left != 0; left &= left - 1) {
+                const int i = first + std::countr_zero(left);
+                if (i < blocks.x0 || i > blocks.x1) continue;
+                const int x0 = i * texels, y0 = y * texels;
+                add_blockers(cone, face, {std::max(x0, window.x0), std::max(y0, window.y0), std::min(x0 + texels - 1, window.x1),
+                                          std::min(y0 + texels - 1, window.y1)}, blockers);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 #include "raster/prepare.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
@@ -33,7 +34,8 @@ double ShadowMap::texel(double depth) const {
 struct ShadowMap::Plane {
     double at, dx, dy;     ///< at the receiver's place; its change from texel to texel
     double rounding;       ///< everywhere
-    double before, behind; ///< more, per texel beside the place: on the light's side of the receiver, and on the other
+    /// More, per texel beside the place: over the plane, and under it; each on the light's side of the receiver, and on the other.
+    Vec2d rising, falling;
 };
 
 /// The plane n·(q − p) = 0 meets the ray o + d·w of a texel at the depth d = n·(p − o)/n·w. Seen from a point o is the
@@ -44,16 +46,20 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
     const double rounding = (2 * receiver.error + place.z * 0x1p-22) / towards, texel = this->texel(place.z) / towards;
     // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
-    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them. Those before it shade it
-    // themselves where they rise more steeply than the light: so only to a part of its angle.
-    const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), t = min(kSteepest, kOfElevation * cosine / max(sine, 1e-9));
-    const double behind = texel * kSteepest / (cosine + kSteepest * sine), before = texel * t / (cosine - t * sine);
+    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them, before and behind it.
+    const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), elevation = cosine / max(sine, 1e-9);
+    const double scale = orthographic_ ? 1 : view_.near / sqr(place.z); // of 1/d, from depths
+    const auto heights = [&](double of_elevation) {
+        const double t = min(kSteepest, of_elevation * elevation);
+        return Vec2d(t / (cosine - t * sine), kSteepest / (cosine + kSteepest * sine)) * (texel * scale);
+    };
+    const Vec2d rising = heights(kOfElevation), falling = heights(kFalling);
     if (orthographic_)
-        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, before, behind};
-    const double at = view_.near / place.z, per_depth = at / place.z;
+        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, rising, falling};
+    const double at = view_.near / place.z;
     // 1/d grows by n·dw/(n·w d) for a change dw of w.
-    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards, rounding * per_depth,
-            before * per_depth, behind * per_depth};
+    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards, rounding * scale,
+            rising, falling};
 }
 
 namespace {
@@ -76,10 +82,29 @@ std::array<double, 5> box(double f) { return {(1 - f) / 4, 0.25, 0.25, 0.25, f /
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
     if (dot(receiver.n, view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y) >= 0) return 1;
     const double first = layered_ ? kLayeredRadius : 0.5;
-    const double left = std::floor(place.x - first), top = std::floor(place.y - first), fx = place.x - first - left, fy = place.y - first - top;
+    const double left = std::floor(place.x - first), top = std::floor(place.y - first);
+    const double fx = place.x - first - left, fy = place.y - first - top;
     const int x0 = static_cast<int>(left), y0 = static_cast<int>(top);
     return layered_ ? lit_fraction<5>(receiver, place, x0, y0, box(fx), box(fy))
                     : lit_fraction<4>(receiver, place, x0 - 1, y0 - 1, spline(fx), spline(fy));
+}
+
+/// How high over the receiver, on the light's ray through it, is the plane of what texel (x, y) sees. Nearness of a surface
+/// that rises more and more from the receiver to the texel and on is a convex function f of the texels' coordinates, of which
+/// f(c) − (f(c + e) − f(c)) |r| is at most f(c − r e): taken away from the receiver, differences never put it into the shade
+/// of its own valley, be creases where they may.
+double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const {
+    const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
+    // Slopes away from the receiver over its plane. Of a convex surface three in a row grow; of the middle one in size a
+    // single step from one thing to another is no part.
+    const auto rise = [&](int step_x, int step_y) {
+        const int last = side() - 1;
+        const auto at = [&](int i) { return seen(std::clamp(x + i * step_x, 0, last), std::clamp(y + i * step_y, 0, last)); };
+        const double here = at(0), next = at(1), before = here - at(-1), after = next - here, beyond = at(2) - next;
+        return max(min(before, after), min(max(before, after), beyond)) - (plane.dx * step_x + plane.dy * step_y);
+    };
+    return seen(x, y) - (plane.at + plane.dx * right + plane.dy * below) - rise(right < 0 ? -1 : 1, 0) * std::abs(right) -
+           rise(0, below < 0 ? -1 : 1) * std::abs(below);
 }
 
 /// The texels from x0, y0 on, weighed.
@@ -87,21 +112,27 @@ template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
-    double dark = 0, known = 0;
+    double dark = 0, known = 0, under = 0;
+    bool contact = false;
     for (int row = 0; row < static_cast<int>(N); ++row)
         for (int column = 0; column < static_cast<int>(N); ++column) {
             const int x = x0 + column, y = y0 + row;
-            const double nearness = static_cast<double>(nearness_(x, y));
-            const double seen = orthographic_ ? -view_.near / nearness : nearness;
+            const double seen = this->seen(x, y);
             const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
             const double change = plane.dx * right + plane.dy * below, over = seen - (plane.at + change);
-            const double slack = plane.rounding + (change < 0 ? plane.behind : plane.before) * max(std::abs(right), std::abs(below));
-            const bool blocks = over > slack;
-            if (over < -slack || (blocks && seen <= plane.at)) continue;
+            const double beside = max(std::abs(right), std::abs(below));
+            const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
+            if (over < -slack(plane.falling)) continue;
+            const bool near = over <= slack(plane.rising);
+            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
+            if (blocks && seen <= plane.at) continue;
             const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
-            known += weight;
+            (over < -plane.rounding ? under : known) += weight;
             if (blocks) dark += weight;
+            contact = contact || (blocks && near);
         }
+    // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
+    if (!contact) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }
 

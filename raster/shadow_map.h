@@ -37,18 +37,22 @@ public:
     /// Each texel's depth is compared with that of the receiver's *plane* at the texel's centre (Isidoro 2006, «Shadow
     /// Mapping: GPU-based Tips and Techniques», receiver plane depth bias). On a plane both are the same number but for
     /// rounding, however steep the light: there is no slope to be guessed. A texel says
-    /// - lit, if what it sees is the receiver's surface. Of a curved one that is not the plane but facets that meet it at an
-    ///   angle, so that their heights over it grow in proportion to how far beside the receiver's own ray they are: what is
-    ///   on that ray has no slack at all, and shades at any contact, as a roof the wall that it lies on.
-    /// - dark, if it sees something over that.
-    /// - nothing, if it sees something behind that: the receiver's surface ends before, and what light there is beyond its
-    ///   edge does not leak back around it. Nor if what stands over the plane is farther from the light than the receiver.
+    /// - dark, if it sees something over that, under whose own plane the receiver is: of two points of which each is on the
+    ///   lit side of the other's plane neither shades the other, as on the facets of a valley, however light grazes them and
+    ///   however steeply they meet. The plane is what the map has around the texel. What is on the receiver's own ray has no
+    ///   slack at all, and shades at any contact, as a roof the wall that it lies on.
+    /// - nothing, if it sees something behind that, steeper than the facets of a ridge: the receiver's surface ends before,
+    ///   and what light there is beyond its edge does not leak back around it. Nor if what stands over the plane is farther
+    ///   from the light than the receiver.
+    /// - lit, else: it sees the receiver's surface. What is under the plane says so only where nothing lies on the receiver.
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
     static constexpr double kFilterRadius = 1.5, kLayeredRadius = 2;
     static constexpr double kMargin = 2.5; ///< texels that a receiver needs about its place, by either filter
-    static constexpr double kSteepest = 0.5;      ///< facets that meet at up to 27° do not shade each other,
-    static constexpr double kOfElevation = 0.23;  ///< or, on the light's side, as steep as this part of the light's own slope
+    static constexpr double kSteepest = 0.5;    ///< facets of one surface meet at up to 27°,
+    static constexpr double kOfElevation = 0.9; ///< or, on the light's side, at most nearly as steeply as light falls;
+    static constexpr double kFalling = 0.23;    ///< those under the receiver's plane at less of it
+    static constexpr double kDepths = 64; ///< times the receiver's rounding: that of planes through depths solved in float
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
 
     int side() const { return nearness_.width(); }
@@ -62,6 +66,12 @@ public:
 private:
     struct Plane;
     Plane plane(const Receiver& receiver, Vec3d place) const;
+    /// As Plane::at, what a texel sees; nothing is far away, but no infinity, of which no differences could be taken.
+    double seen(int x, int y) const {
+        const double nearness = max(static_cast<double>(nearness_(x, y)), 1e-30);
+        return orthographic_ ? -view_.near / nearness : nearness;
+    }
+    double height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const;
     template <std::size_t N>
     float lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                        const std::array<double, N>& down) const;
