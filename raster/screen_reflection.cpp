@@ -181,10 +181,10 @@ private:
         const bool inside = closed && near > depth; // it has come from behind or beside
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
-        if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
+        if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         const float fx = line_.x(met), fy = line_.y(met);
-        return touches_own(fx, fy) ? ScreenHit{middle(x), middle(y), length(step)} : ScreenHit{fx, fy, length(step)};
+        return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
     }
 
     /// Whether a look between pixels sees the mirror that the ray has left: there it has met something in its first steps.
@@ -255,6 +255,10 @@ private:
         hit.hidden = true;
         return hit;
     }
+    static ScreenHit of_alone(ScreenHit hit) {
+        hit.alone = true;
+        return hit;
+    }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;
@@ -266,6 +270,20 @@ private:
 };
 
 } // namespace
+
+float Scenery::width_within(float x, float y, float width) const {
+    const auto object_at = [&](float i, float k) {
+        const auto [column, row] = all.pixel_at({i, k, 0});
+        return at(column, row).first_look().objects(column, row);
+    };
+    const std::uint32_t seen = object_at(x, y);
+    for (; width > 1; width *= 0.7f) {
+        const float reach = 2 * width; // of the coarser level, between its pixels
+        const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
+        if (same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1)) return width;
+    }
+    return 1;
+}
 
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
     return ScreenTrace(scenery, scene, p, n, way, from_picture).follow();

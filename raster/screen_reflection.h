@@ -19,6 +19,8 @@ struct Scenery {
 
     bool is_own(int x, int y) const { return all.first_look().objects(x, y) == object; }
     const Screen& at(int x, int y) const { return without != nullptr && is_own(x, y) ? *without : all; }
+    /// Of a look at `width` pixels about a place how many see its object alone, one at least.
+    float width_within(float x, float y, float width) const;
     /// The one for a look at some pixels about a place, in which it must not see itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);
@@ -37,6 +39,7 @@ struct ScreenHit {
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
+    bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),

@@ -93,10 +93,12 @@ Rgb Surroundings::seen(const Look& look) const {
 }
 
 Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
-    if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
+    if (auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
         distance = hit->distance;
         const float there = max(scenery_.all.homogeneous(look.p + look.way * hit->distance)[2], scenery_.all.near());
-        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap) / scenery_.all.pixel_size(there);
+        float size = max(look.size(hit->distance), kGuessBlur * hit->gap) / scenery_.all.pixel_size(there);
+        if (hit->alone) size = scenery_.width_within(hit->x, hit->y, size);
+        if (hit->alone && size <= 1) hit->x = std::floor(hit->x) + 0.5f, hit->y = std::floor(hit->y) + 0.5f; // between pixels it sees another
         const Screen::FirstLook& shown = scenery_.about(hit->x, hit->y, size).first_look();
         // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
         // wherever what is met is guessed.

@@ -127,6 +127,35 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red);
     }
 
+    // From below, where only its back is met, and about the place where it touches the mirror.
+    TEST_CASE("a ball that lies on a mirror shows its own colour there, and nothing of the mirror and the sky beside it") {
+        Scene scene;
+        const Vec3d center(0, 0.7, 0);
+        constexpr double kRadius = 0.7;
+        add(scene, QuadList{{{Vec3(-6, 0, 6), Vec3(12, 0, 0), Vec3(0, 0, -12)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 3.2, 4.4}, {0, 0.3, 0}, 40), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int within = 0;
+        float worst = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at(-ray.origin.y / ray.direction.y), to = center - p;
+                const Vec3d way = normalize(Vec3d(ray.direction.x, -ray.direction.y, ray.direction.z));
+                if (length(to - way * dot(to, way)) > 0.95 * kRadius) continue;
+                worst = std::max(worst, found.radiance(x, y).g);
+                ++within;
+            }
+        CHECK(within > 2000);
+        CHECK(worst < 0.02f);
+    }
+
     TEST_CASE("where a floor meets a mirror the floor goes on in it: nothing of the mirror itself is seen between") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 5, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
