@@ -39,6 +39,7 @@ public:
 
 private:
     Rgb picture_or_environment(const Look& look, float& distance) const;
+    Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const; ///< What it shows where it is met.
 
     const PreparedData& data_;
     const Settings& settings_;

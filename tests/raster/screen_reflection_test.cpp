@@ -254,6 +254,29 @@ TEST_SUITE("unit") {
         CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
     }
 
+    TEST_CASE("what is hidden between two seen parts of a floor is of both: more of the nearer one") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-6, 0, 4), Vec3(12, 0, 0), Vec3(0, 0, -8)}}});
+        add(scene, Sphere{Vec3(0, 0.6f, 1), 0.6f});
+        add(scene, Sphere{Vec3(-2, 0.3f, -3), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        finish_scene(scene);
+        const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
+        const Box3 bounds{screen->relative(scene.bounds.low - Vec3(0.1f, 0.1f, 0.1f)), screen->relative(scene.bounds.high)};
+        const Vec3 from(-2.5f, 0.8f, -0.5f);
+        for (const float x : {-0.6f, 0.6f}) {
+            const Vec3 to(x, 0, -0.5f);
+            const auto hit = raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(1, 0, 0), normalize(to - from), false);
+            CAPTURE(x);
+            REQUIRE(hit);
+            CHECK(hit->hidden);
+            CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
+            REQUIRE(hit->before);
+            CHECK(hit->before->x < 0.5f * static_cast<float>(kView.width));
+            CHECK(hit->x > 0.5f * static_cast<float>(kView.width));
+            CHECK((hit->before->gap < hit->gap) == (x < 0));
+        }
+    }
+
     TEST_CASE("lamps that are not looked for stay in the picture that mirrors see, those that are do not: of glass, too") {
         for (const bool glass : {false, true}) {
             Scene scene;
