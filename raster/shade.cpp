@@ -164,7 +164,8 @@ private:
         const bool smooth = bsdf_.smooth();
         // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
         const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
-        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide, .lamps = smooth, .point = &point_}) * sample->weight;
+        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide, .alpha = min(alpha_as_wide(wide), 1.0f),
+                             .lamps = smooth, .point = &point_}) * sample->weight;
     }
 
     Surroundings around_;

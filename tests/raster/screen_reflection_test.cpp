@@ -332,6 +332,21 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("slightly rough metal mirrors an environment of stripes blurred, each ray by its share of the lobe") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.25f});
+        ImageRgb stripes(256, 64);
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 256; ++x) stripes(x, y) = Rgb(x % 4 < 2 ? 2.0f : 0.0f);
+        scene.environment = make_image_environment(std::move(stripes), 1, 0);
+        finish_scene(scene);
+        const ImageRgb found = render(scene, kView, plain()).radiance;
+        float least = kInfinity, most = 0;
+        for (int x = 40; x < 120; ++x) least = std::min(least, found(x, 70).g), most = std::max(most, found(x, 70).g);
+        CHECK(least > 0.5f);
+        CHECK(most - least < 0.2f);
+    }
+
     TEST_CASE("a metal that no object is of asks for no look at the picture") {
         for (const bool used : {false, true}) {
             Scene scene;
