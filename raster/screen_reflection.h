@@ -3,11 +3,10 @@
 
 #include "common/geometry/hit.h"
 #include "common/vec/box.h"
-#include "raster/screen.h"
+#include "raster/flat_look.h"
 
 #include <algorithm>
 #include <optional>
-#include <span>
 
 namespace duet::raster {
 
@@ -61,17 +60,6 @@ struct ScreenHit {
 ///
 /// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
-
-/// By how much the normal turns from pixel (x, y) to the next one on its surface, radians at most, of a screen that knows its
-/// objects: twice that is what a mirror's rays spread by. Half a radian where no neighbour is of its surface.
-float normal_turn(const Screen& screen, int x, int y);
-/// Of all pixels: Screen::set_turns.
-ImageFloat normal_turns(const Screen& screen, int threads);
-/// Screen::set_flat_look: the first look at flat surfaces and past all surfaces, the turns being known. Empty where there is
-/// neither. What lies behind all is a part of it, that where a flat surface ends what is hidden beside its edge changes
-/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves. Objects that are
-/// `mirrors`, not 0, are none of it: the first look does not know what they show.
-RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors);
 
 inline constexpr float kThickness = 0.02f;
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.

@@ -99,8 +99,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
     }
     if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
     const Environment& environment = data_.scene.environment;
-    return look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered ? data_.prefiltered->at(environment, look.way, look.alpha)
-                                               : radiance(environment, look.way);
+    const bool blurred = look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered;
+    return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {

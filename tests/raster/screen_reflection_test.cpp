@@ -224,11 +224,11 @@ TEST_SUITE("unit") {
     TEST_CASE("a picture known in part: what is known stays, the rest is filled from what is about it; of nothing, nothing") {
         ImageRgb picture(37, 21, Rgb(5.0f));
         Image<std::uint8_t> known(37, 21, 0);
-        CHECK(raster::RadiancePyramid(picture, known).empty());
+        CHECK(raster::RadiancePyramid(picture, known, 0).empty());
         for (int y = 0; y < 21; ++y)
             for (int x = 0; x < 37; ++x)
                 if (x < 6 || x > 30) known(x, y) = 1, picture(x, y) = Rgb(x < 6 ? 1.0f : 2.0f);
-        const raster::RadiancePyramid filled(picture, known);
+        const raster::RadiancePyramid filled(picture, known, 1);
         CHECK(filled.at(3, 10, 1).g == doctest::Approx(1));
         CHECK(filled.at(34, 10, 1).g == doctest::Approx(2));
         for (float x = 6; x < 31; ++x)
@@ -237,6 +237,9 @@ TEST_SUITE("unit") {
                 CHECK(filled.at(x, 10, wide).g < 2.01f);
             }
         CHECK(filled.at(10, 10, 1).g < filled.at(26, 10, 1).g);
+        const raster::RadiancePyramid by_two(picture, known, 2);
+        for (const float wide : {1.0f, 2.0f, 8.0f, 64.0f})
+            for (float x = 0; x < 37; ++x) CHECK(by_two.at(x, 9, wide) == filled.at(x, 9, wide));
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {
