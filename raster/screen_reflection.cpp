@@ -135,7 +135,7 @@ private:
         const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
         if (!block_is_beyond(scenery_.all, fx, fy, deepest)) return 0;
         before = last_depth;
-        hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth), last_before_ = pixel(i + more);
+        hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
         return more;
     }
 
@@ -147,7 +147,7 @@ private:
         const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
         const float distance = line_.distance(t, depth);
         if (far < seen_depth) {
-            hidden_from_ = -1, in_front_ = distance, last_before_ = {x, y};
+            hidden_from_ = -1, in_front_ = distance;
             return std::nullopt;
         }
         const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
@@ -155,7 +155,7 @@ private:
         if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
         if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
             const float crossed = meets_plane(screen, p_, way_, x, y);
-            if (crossed > hidden_from_ && crossed <= distance) return between(beside_edge(guess(screen, fx, fy, crossed), seen_depth));
+            if (crossed > hidden_from_ && crossed <= distance) return of_hidden(beside_edge(guess(screen, fx, fy, crossed), seen_depth));
         }
         if (behind) return std::nullopt;
         return meet(screen, i, t, x, y, near, known > 0);
@@ -245,19 +245,6 @@ private:
         hit.hidden = true;
         return hit;
     }
-    /// What is hidden between two sides: of the other one, where the ray went behind, if the surface is seen there, too.
-    ScreenHit between(ScreenHit hit) const {
-        hit = of_hidden(hit);
-        const auto [x, y] = last_before_;
-        if (!last_before_.valid() || scenery_.is_own(x, y)) return hit;
-        const Screen& screen = scenery_.at(x, y);
-        if (!is_flat(screen, x, y)) return hit;
-        const float crossed = meets_plane(screen, p_, way_, x, y);
-        if (!(std::abs(crossed - hit.distance) <= kSameSurface * hit.distance)) return hit;
-        const ScreenHit there = guess(screen, middle(x), middle(y), crossed);
-        hit.before = {there.x, there.y, there.gap};
-        return hit;
-    }
     static ScreenHit of_alone(ScreenHit hit) {
         hit.alone = true;
         return hit;
@@ -269,7 +256,6 @@ private:
     Vec3 p_, n_, way_;
     bool from_picture_;
     Crossing line_;
-    Pixel last_before_; ///< what it was last in front of
     float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
 };
 

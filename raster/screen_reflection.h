@@ -38,10 +38,6 @@ struct ScreenHit {
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
-    struct Place {
-        float x, y, gap;
-    };
-    std::optional<Place> before = std::nullopt; ///< of a hidden one: where its surface was last seen before it went behind
     bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
 };
 

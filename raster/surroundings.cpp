@@ -105,8 +105,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
     const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
-    const auto size = [&](float gap) { return max(look.size(hit.distance), kGuessBlur * gap) / scenery_.all.pixel_size(there); };
-    const float wide = hit.alone ? scenery_.width_within(hit.x, hit.y, size(hit.gap)) : size(hit.gap);
+    const float size = max(look.size(hit.distance), kGuessBlur * hit.gap) / scenery_.all.pixel_size(there);
+    const float wide = hit.alone ? scenery_.width_within(hit.x, hit.y, size) : size;
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
@@ -114,12 +114,7 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
     const bool is_lamp = shown.lamps(x, y) != 0;
     if (is_lamp) distance = kInfinity; // it hides none
-    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) {
-        const Rgb after = flat.at(hit.x, hit.y, wide);
-        if (!hit.before || !(hit.before->gap + hit.gap > 0)) return after;
-        // The nearer side counts the more; at each edge of what is hidden it alone: what is seen goes on there.
-        return lerp(flat.at(hit.before->x, hit.before->y, size(hit.before->gap)), after, hit.before->gap / (hit.before->gap + hit.gap));
-    }
+    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
     if (hit.alone && wide <= 1) return radiance_seen.finest()(x, y); // between pixels it sees another

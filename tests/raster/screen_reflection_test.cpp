@@ -257,39 +257,6 @@ TEST_SUITE("unit") {
         CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
     }
 
-    TEST_CASE("what is hidden between two seen parts of a floor is of both: more of the nearer one") {
-        Scene scene;
-        add(scene, QuadList{{{Vec3(-6, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
-        add(scene, QuadList{{{Vec3(0, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 0, 1)}});
-        add(scene, Sphere{Vec3(0, 0.6f, 1), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
-        add(scene, Sphere{Vec3(-2, 0.3f, -3), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
-        scene.environment = ConstantEnvironment{Rgb(1.0f)};
-        finish_scene(scene);
-        const raster::Prepared prepared = raster::prepare(scene, plain());
-        const raster::Settings settings = plain();
-        const auto screen = raster::screen_of(prepared, kView, settings);
-        const raster::Surroundings around(prepared.data(), settings, {*screen});
-        const Box3 bounds{screen->relative(scene.bounds.low - Vec3(0.1f, 0.1f, 0.1f)), screen->relative(scene.bounds.high)};
-        const Vec3 from(-2.5f, 0.8f, -0.5f);
-        for (const float x : {-0.6f, 0.6f}) {
-            const Vec3 to(x, 0, -0.5f);
-            const Vec3 p = screen->relative(from), n(1, 0, 0), way = normalize(to - from);
-            const auto hit = raster::trace_screen({*screen}, bounds, p, n, way, false);
-            CAPTURE(x);
-            REQUIRE(hit);
-            CHECK(hit->hidden);
-            CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
-            REQUIRE(hit->before);
-            CHECK(hit->before->x < 0.5f * static_cast<float>(kView.width));
-            CHECK(hit->x > 0.5f * static_cast<float>(kView.width));
-            CHECK((hit->before->gap < hit->gap) == (x < 0));
-            const Rgb seen = around.seen({.p = p, .n = n, .way = way, .from_picture = false});
-            CHECK(seen.r < 0.1f);
-            CHECK(std::abs(seen.g - seen.b) > 0.2f);
-            CHECK((seen.g > seen.b) == (x < 0));
-        }
-    }
-
     TEST_CASE("lamps that are not looked for stay in the picture that mirrors see, those that are do not: of glass, too") {
         for (const bool glass : {false, true}) {
             Scene scene;
