@@ -25,9 +25,8 @@ bool bulges(const Screen& screen, int x, int y) {
     return sum >= 0;
 }
 
-/// How wide GGX alpha makes what is seen through two boundaries: slopes turn a refracted ray by η − 1, a mirrored one by 2.
+/// How wide GGX alpha makes what is seen through two boundaries: slopes turn a refracted ray by η − 1.
 float blur_through(float eta, float alpha) { return 2.8f * std::abs(eta - 1) * alpha; }
-float blur_mirrored(float alpha) { return 4 * alpha; }
 
 } // namespace
 

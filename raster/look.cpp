@@ -23,17 +23,12 @@ const Rgb* known_radiance(const Screen::FirstLook& look, std::uint32_t key, int 
     return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
 }
 
-/// Of each object: whether all that it shows is mirrored, of which a first look knows but the environment.
+/// Of each object: whether all of it is_mirror.
 std::vector<std::uint8_t> mirrors(const Scene& scene) {
-    const auto is_mirror = [&](std::uint32_t material) {
-        const Material& m = scene.materials[material];
-        const auto* layers = std::get_if<Principled>(&m);
-        const bool metal = layers != nullptr ? layers->metallic.constant() && layers->metallic.value == 1 : std::holds_alternative<Metal>(m);
-        return metal && may_mirror(m);
-    };
+    const auto of_mirror = [&](std::uint32_t material) { return is_mirror(scene.materials[material]); };
     std::vector<std::uint8_t> result;
     for (const Object& object : scene.objects)
-        result.push_back(std::all_of(object.materials.begin(), object.materials.end(), is_mirror));
+        result.push_back(std::all_of(object.materials.begin(), object.materials.end(), of_mirror));
     return result;
 }
 
@@ -41,7 +36,8 @@ std::vector<std::uint8_t> mirrors(const Scene& scene) {
 class Looker {
 public:
     Looker(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& central, const Control& control)
-        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), mirrors_(mirrors(data.scene)), with_glass_(grid.size(), 0) {}
+        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), mirrors_(mirrors(data.scene)),
+          with_glass_(grid.size(), 0) {}
 
     std::unique_ptr<Screen> look() {
         GeometryLoan geometry(*data_.geometries);
@@ -69,7 +65,7 @@ private:
         });
     }
 
-    void set_flat_look(Screen& screen) const { screen.set_flat_look(flat_look(screen, mirrors_)); }
+    void set_flat_look(Screen& screen) const { screen.set_flat_look(flat_look(screen, mirrors_, settings_.threads)); }
 
     /// The depths and normals at the pixels' centres.
     std::unique_ptr<Screen> depths_and_normals(const Geometry& geometry) const {
@@ -309,7 +305,8 @@ Screen::FirstLook FirstLookPicture::finish() && {
     ImageRgb dark = radiance_;
     for (std::size_t i = 0; i < dark.size(); ++i)
         if (lamps_[i] != 0) dark[i] = Rgb();
-    return {std::move(keys_), std::move(objects_), std::move(lamps_), RadiancePyramid(std::move(radiance_)), RadiancePyramid(std::move(dark))};
+    return {std::move(keys_), std::move(objects_), std::move(lamps_), RadiancePyramid(std::move(radiance_)),
+            RadiancePyramid(std::move(dark))};
 }
 
 const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {

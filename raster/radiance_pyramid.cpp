@@ -1,11 +1,44 @@
 #include "raster/radiance_pyramid.h"
 
+#include "common/system/parallel.h"
 #include "raster/bilinear.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
+namespace {
+
+/// Small levels cost less than threads do.
+template <typename F> void for_rows(const ImageRgb& image, int threads, const F& visit) {
+    const auto rows = static_cast<std::size_t>(image.height());
+    parallel_for(rows, image.size() < 10000 ? 1 : threads, [&](std::size_t y) { visit(static_cast<int>(y)); });
+}
+
+/// Row y of a coarse level from two of the fine one: means by weight.
+void pull(const ImageRgb& fine, const ImageFloat& fine_weights, int y, ImageRgb& coarse, ImageFloat& coarse_weights) {
+    for (int row = 2 * y; row < std::min(2 * y + 2, fine.height()); ++row)
+        for (int x = 0; x < fine.width(); ++x) {
+            coarse(x / 2, y) += fine(x, row) * fine_weights(x, row);
+            coarse_weights(x / 2, y) += fine_weights(x, row);
+        }
+    for (int x = 0; x < coarse.width(); ++x) {
+        float& weight = coarse_weights(x, y);
+        if (weight > 0) coarse(x, y) = coarse(x, y) / weight;
+        weight = std::min(weight, 1.0f);
+    }
+}
+
+/// What row y of a fine level does not know is filled from the coarse one.
+void push(const ImageRgb& coarse, const ImageFloat& fine_weights, int y, ImageRgb& fine) {
+    for (int x = 0; x < fine.width(); ++x)
+        if (const float weight = fine_weights(x, y); weight < 1) {
+            const Rgb about = bilinear(coarse, 0.5f * (static_cast<float>(x) + 0.5f), 0.5f * (static_cast<float>(y) + 0.5f));
+            fine(x, y) = weight > 0 ? lerp(about, fine(x, y), weight) : about;
+        }
+}
+
+} // namespace
 
 RadiancePyramid::RadiancePyramid(ImageRgb picture) {
     levels_.push_back(std::move(picture));
@@ -22,24 +55,14 @@ RadiancePyramid::RadiancePyramid(ImageRgb picture) {
     }
 }
 
-RadiancePyramid::RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known) {
+RadiancePyramid::RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known, int threads) {
     std::vector<ImageFloat> weights{ImageFloat(known.width(), known.height())};
     for (std::size_t i = 0; i < known.size(); ++i) weights[0][i] = known[i] != 0 ? 1.0f : 0.0f;
     levels_.push_back(std::move(picture));
     while (levels_.back().width() > 1 || levels_.back().height() > 1) {
-        const ImageRgb& fine = levels_.back();
-        const ImageFloat& fine_weights = weights.back();
-        ImageRgb coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2);
+        ImageRgb coarse((levels_.back().width() + 1) / 2, (levels_.back().height() + 1) / 2);
         ImageFloat coarse_weights(coarse.width(), coarse.height());
-        for (int y = 0; y < fine.height(); ++y)
-            for (int x = 0; x < fine.width(); ++x) {
-                coarse(x / 2, y / 2) += fine(x, y) * fine_weights(x, y);
-                coarse_weights(x / 2, y / 2) += fine_weights(x, y);
-            }
-        for (std::size_t i = 0; i < coarse.size(); ++i) {
-            if (coarse_weights[i] > 0) coarse[i] = coarse[i] / coarse_weights[i];
-            coarse_weights[i] = std::min(coarse_weights[i], 1.0f);
-        }
+        for_rows(coarse, threads, [&](int y) { pull(levels_.back(), weights.back(), y, coarse, coarse_weights); });
         levels_.push_back(std::move(coarse)), weights.push_back(std::move(coarse_weights));
     }
     if (!(weights.back()[0] > 0)) {
@@ -47,12 +70,7 @@ RadiancePyramid::RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& kn
         return;
     }
     for (std::size_t i = levels_.size() - 1; i-- > 0;)
-        for (int y = 0; y < levels_[i].height(); ++y)
-            for (int x = 0; x < levels_[i].width(); ++x)
-                if (const float weight = weights[i](x, y); weight < 1) {
-                    const Rgb about = bilinear(levels_[i + 1], 0.5f * (static_cast<float>(x) + 0.5f), 0.5f * (static_cast<float>(y) + 0.5f));
-                    levels_[i](x, y) = weight > 0 ? lerp(about, levels_[i](x, y), weight) : about;
-                }
+        for_rows(levels_[i], threads, [&](int y) { push(levels_[i + 1], weights[i], y, levels_[i]); });
 }
 
 Rgb RadiancePyramid::at(float x, float y, float width) const {

@@ -14,8 +14,8 @@ public:
     RadiancePyramid() = default;
     explicit RadiancePyramid(ImageRgb picture);
     /// Of those pixels alone that are `known`, not 0; the others are filled from what is known about them (Gortler et al.
-    /// 1996, «The Lumigraph», §3.4: pull and push). Empty where none is.
-    RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known);
+    /// 1996, «The Lumigraph», §3.4: pull and push). Empty where none is. The same bits for any number of threads.
+    RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known, int threads);
 
     /// About (x, y), in pixels, over about `width` of them: between levels and between pixels linearly. At the picture's
     /// edge what is there goes on.

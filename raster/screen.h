@@ -116,7 +116,7 @@ public:
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
     const FirstLook& first_look() const { return first_look_; }
     /// The same of flat surfaces alone, which go on behind what stands before them, and of what is behind all (flat_look in
-    /// raster/screen_reflection.h), once it is there; else, and where there is neither, empty.
+    /// raster/flat_look.h), once it is there; else, and where there is neither, empty.
     void set_flat_look(RadiancePyramid look) { flat_look_ = std::move(look); }
     const RadiancePyramid& flat_look() const { return flat_look_; }
 

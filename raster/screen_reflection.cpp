@@ -1,7 +1,5 @@
 #include "raster/screen_reflection.h"
 
-#include "common/system/parallel.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +7,7 @@ namespace duet::raster {
 namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
-constexpr float kSameSurface = 0.05f; ///< of the depth: how far neighbouring pixels of one surface may be apart
-constexpr int kBlock = 16;            ///< pixels: blocks of the picture before which a ray is are passed at once
-constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve; and of a pixel alone
+constexpr int kBlock = 16;      ///< pixels: blocks of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
 float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
@@ -20,13 +16,6 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     const Vec3 n = screen.normal(x, y);
     const float towards = -dot(n, way), height = dot(n, p - *seen);
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
-}
-
-/// Whether what a pixel shows goes on as its plane does: its radius of curvature is more than its depth, however fine the
-/// picture.
-bool is_flat(const Screen& screen, int x, int y) {
-    const float depth = screen.depth(x, y);
-    return depth < kInfinity && screen.turn(x, y) * depth < screen.pixel_size(depth);
 }
 
 /// How many of at most `most` steps (sx, sy) from a place stay in its block of kBlock × kBlock pixels, or fewer.
@@ -181,10 +170,10 @@ private:
         const bool inside = closed && near > depth; // it has come from behind or beside
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
-        if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
+        if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         const float fx = line_.x(met), fy = line_.y(met);
-        return touches_own(fx, fy) ? ScreenHit{middle(x), middle(y), length(step)} : ScreenHit{fx, fy, length(step)};
+        return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
     }
 
     /// Whether a look between pixels sees the mirror that the ray has left: there it has met something in its first steps.
@@ -246,13 +235,18 @@ private:
     }
     /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
     ScreenHit beside_edge(ScreenHit hit, float depth) const {
-        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), 0.1f * static_cast<float>(scenery_.all.width()));
+        const float most = 0.1f * static_cast<float>(scenery_.all.width());
+        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), most);
         const float x = hit.x + aside * line_.step_x(), y = hit.y + aside * line_.step_y();
         if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
         return hit;
     }
     static ScreenHit of_hidden(ScreenHit hit) {
         hit.hidden = true;
+        return hit;
+    }
+    static ScreenHit of_alone(ScreenHit hit) {
+        hit.alone = true;
         return hit;
     }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
@@ -267,44 +261,22 @@ private:
 
 } // namespace
 
+float Scenery::width_within(float x, float y, float width) const {
+    const auto object_at = [&](float i, float k) {
+        const auto [column, row] = all.pixel_at({i, k, 0});
+        return at(column, row).first_look().objects(column, row);
+    };
+    const std::uint32_t seen = object_at(x, y);
+    for (; width > 1; width *= 0.7f) {
+        const float reach = 2 * width; // of the coarser level, between its pixels
+        const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
+        if (same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1)) return width;
+    }
+    return 1;
+}
+
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
     return ScreenTrace(scenery, scene, p, n, way, from_picture).follow();
-}
-
-float normal_turn(const Screen& screen, int x, int y) {
-    const Vec3 n = screen.normal(x, y);
-    const float depth = screen.depth(x, y);
-    if (!(depth < kInfinity)) return 0; // nothing is seen
-    const Image<std::uint32_t>& objects = screen.first_look().objects;
-    float most = -1;
-    for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
-        const int i = x + dx, k = y + dy;
-        if (i < 0 || k < 0 || i >= screen.width() || k >= screen.height()) continue;
-        if (objects(i, k) != objects(x, y) || !(std::abs(screen.depth(i, k) - depth) <= kSameSurface * depth)) continue;
-        const float turn = length(screen.normal(i, k) - n);
-        if (turn < kSmallTurn) most = std::max(most, turn);
-    }
-    return most < 0 ? kSmallTurn : most; // alone it is small, and any way round
-}
-
-ImageFloat normal_turns(const Screen& screen, int threads) {
-    ImageFloat turns(screen.width(), screen.height());
-    parallel_for(static_cast<std::size_t>(screen.height()), threads, [&](std::size_t row) {
-        for (int x = 0; x < screen.width(); ++x) turns(x, static_cast<int>(row)) = normal_turn(screen, x, static_cast<int>(row));
-    });
-    return turns;
-}
-
-RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors) {
-    const Screen::FirstLook& look = screen.first_look();
-    Image<std::uint8_t> known(screen.width(), screen.height(), 0);
-    for (int y = 0; y < screen.height(); ++y)
-        for (int x = 0; x < screen.width(); ++x) {
-            const bool nothing = !(screen.depth(x, y) < kInfinity);
-            const bool flat = !nothing && mirrors[look.objects(x, y)] == 0 && is_flat(screen, x, y);
-            known(x, y) = (nothing || flat) && look.lamps(x, y) == 0;
-        }
-    return RadiancePyramid(look.radiance.finest(), known);
 }
 
 } // namespace duet::raster

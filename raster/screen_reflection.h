@@ -3,11 +3,10 @@
 
 #include "common/geometry/hit.h"
 #include "common/vec/box.h"
-#include "raster/screen.h"
+#include "raster/flat_look.h"
 
 #include <algorithm>
 #include <optional>
-#include <span>
 
 namespace duet::raster {
 
@@ -19,6 +18,8 @@ struct Scenery {
 
     bool is_own(int x, int y) const { return all.first_look().objects(x, y) == object; }
     const Screen& at(int x, int y) const { return without != nullptr && is_own(x, y) ? *without : all; }
+    /// Of a look at `width` pixels about a place how many see its object alone, one at least.
+    float width_within(float x, float y, float width) const;
     /// The one for a look at some pixels about a place, in which it must not see itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);
@@ -37,6 +38,7 @@ struct ScreenHit {
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what is seen at that pixel to what is met, where that is only guessed to be alike
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
+    bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
@@ -54,17 +56,6 @@ struct ScreenHit {
 ///
 /// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
-
-/// By how much the normal turns from pixel (x, y) to the next one on its surface, radians at most, of a screen that knows its
-/// objects: twice that is what a mirror's rays spread by. Half a radian where no neighbour is of its surface.
-float normal_turn(const Screen& screen, int x, int y);
-/// Of all pixels: Screen::set_turns.
-ImageFloat normal_turns(const Screen& screen, int threads);
-/// Screen::set_flat_look: the first look at flat surfaces and past all surfaces, the turns being known. Empty where there is
-/// neither. What lies behind all is a part of it, that where a flat surface ends what is hidden beside its edge changes
-/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves. Objects that are
-/// `mirrors`, not 0, are none of it: the first look does not know what they show.
-RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors);
 
 inline constexpr float kThickness = 0.02f;
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.

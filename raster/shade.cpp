@@ -138,7 +138,8 @@ Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), kMirror
 class Mirrored {
 public:
     Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf)
-        : around_(data, settings, {screen, nullptr, point.surface.object}), point_(point), bsdf_(bsdf), p_(screen.relative(point.surface.p)) {
+        : around_(data, settings, {screen, nullptr, point.surface.object}), point_(point), bsdf_(bsdf),
+          p_(screen.relative(point.surface.p)) {
         const Vec3 place = screen.project(p_);
         if (place.z > 0) {
             const auto [x, y] = screen.pixel_at(place);
@@ -164,7 +165,8 @@ private:
         const bool smooth = bsdf_.smooth();
         // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
         const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
-        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide, .lamps = smooth, .point = &point_}) * sample->weight;
+        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide,
+                             .alpha = min(alpha_as_wide(wide), 1.0f), .lamps = smooth, .point = &point_}) * sample->weight;
     }
 
     Surroundings around_;
@@ -217,7 +219,8 @@ LightParts lit(const PreparedData& data, const Settings& settings, const PartSet
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
         !screen->first_look().radiance.empty() && metal->alpha <= kRoughestMirror)
         parts.reflection = Mirrored(data, settings, *screen, point, *metal)(taps);
-    if (is_glass(data, point.surface.object) && asked.reflection && settings.screen_refractions && screen != nullptr && screen->behind() != nullptr)
+    if (is_glass(data, point.surface.object) && asked.reflection && settings.screen_refractions && screen != nullptr &&
+        screen->behind() != nullptr)
         parts.reflection = std::visit(SeenThrough(data, settings, *screen, point), bsdf);
     return parts;
 }
@@ -293,6 +296,13 @@ bool may_mirror(const Material& material) {
     if (const auto* coated = std::get_if<Coated>(&material)) return mirrors(coated->roughness);
     const auto* layers = std::get_if<Principled>(&material);
     return layers != nullptr && (mirrors(layers->roughness) || mirrors(layers->clearcoat_roughness));
+}
+
+bool is_mirror(const Material& material) {
+    const auto* layers = std::get_if<Principled>(&material);
+    const bool metal = layers != nullptr ? layers->metallic.constant() && layers->metallic.value == 1
+                                         : std::holds_alternative<Metal>(material);
+    return metal && may_mirror(material);
 }
 
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,

@@ -33,6 +33,8 @@ bool needs_occlusion(const PreparedData& data, const Settings& settings);
 void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen);
 /// Whether a material, somewhere, mirrors what the picture shows.
 bool may_mirror(const Material& material);
+/// Whether that is all that one of it shows: a first look at the picture knows of it but the environment.
+bool is_mirror(const Material& material);
 /// Settings::occlusion_radius, or what its 0 stands for.
 double occlusion_radius(const PreparedData& data, const Settings& settings);
 

@@ -95,23 +95,30 @@ Rgb Surroundings::seen(const Look& look) const {
 Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
     if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
         distance = hit->distance;
-        const float there = max(scenery_.all.homogeneous(look.p + look.way * hit->distance)[2], scenery_.all.near());
-        const float size = max(look.size(hit->distance), kGuessBlur * hit->gap) / scenery_.all.pixel_size(there);
-        const Screen::FirstLook& shown = scenery_.about(hit->x, hit->y, size).first_look();
-        // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
-        // wherever what is met is guessed.
-        const auto [x, y] = scenery_.all.pixel_at({hit->x, hit->y, 0});
-        const bool is_lamp = shown.lamps(x, y) != 0;
-        if (is_lamp) distance = kInfinity; // it hides none
-        const RadiancePyramid& flat = scenery_.about(hit->x, hit->y, size).flat_look();
-        if (hit->hidden && !flat.empty()) return flat.at(hit->x, hit->y, size);
-        const bool lamps = look.lamps && hit->gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
-        return (lamps ? shown.radiance : shown.without_lamps).at(hit->x, hit->y, size);
+        return picture(look, *hit, distance);
     }
     if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
     const Environment& environment = data_.scene.environment;
-    return look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered ? data_.prefiltered->at(environment, look.way, look.alpha)
-                                               : radiance(environment, look.way);
+    const bool blurred = look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered;
+    return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
+}
+
+Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
+    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
+    const float size = max(look.size(hit.distance), kGuessBlur * hit.gap) / scenery_.all.pixel_size(there);
+    const float wide = hit.alone ? scenery_.width_within(hit.x, hit.y, size) : size;
+    const Screen& screen = scenery_.about(hit.x, hit.y, wide);
+    const Screen::FirstLook& shown = screen.first_look();
+    // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
+    // wherever what is met is guessed.
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const bool is_lamp = shown.lamps(x, y) != 0;
+    if (is_lamp) distance = kInfinity; // it hides none
+    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
+    const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
+    const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
+    if (hit.alone && wide <= 1) return radiance_seen.finest()(x, y); // between pixels it sees another
+    return radiance_seen.at(hit.x, hit.y, wide);
 }
 
 } // namespace duet::raster

@@ -26,6 +26,10 @@ struct Look {
     float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
 };
 
+/// By how much GGX alpha spreads a mirrored look, radians: slopes turn it by 2, to each side. And the other way round.
+constexpr float blur_mirrored(float alpha) { return 4 * alpha; }
+constexpr float alpha_as_wide(float spread) { return 0.25f * spread; }
+
 /// What a picture and the scene's lists know without tracing a ray through its surfaces: what the picture shows
 /// (raster/screen_reflection.h); lamps, which are few, wherever they stand; the environment behind all.
 class Surroundings {
@@ -39,6 +43,7 @@ public:
 
 private:
     Rgb picture_or_environment(const Look& look, float& distance) const;
+    Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const; ///< What it shows where it is met.
 
     const PreparedData& data_;
     const Settings& settings_;

@@ -127,6 +127,35 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red);
     }
 
+    // From below, where only its back is met, and about the place where it touches the mirror.
+    TEST_CASE("a ball that lies on a mirror shows its own colour there, and nothing of the mirror and the sky beside it") {
+        Scene scene;
+        const Vec3d center(0, 0.7, 0);
+        constexpr double kRadius = 0.7;
+        add(scene, QuadList{{{Vec3(-6, 0, 6), Vec3(12, 0, 0), Vec3(0, 0, -12)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 3.2, 4.4}, {0, 0.3, 0}, 40), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int within = 0;
+        float worst = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at(-ray.origin.y / ray.direction.y), to = center - p;
+                const Vec3d way = normalize(Vec3d(ray.direction.x, -ray.direction.y, ray.direction.z));
+                if (length(to - way * dot(to, way)) > 0.95 * kRadius) continue;
+                worst = std::max(worst, found.radiance(x, y).g);
+                ++within;
+            }
+        CHECK(within > 2000);
+        CHECK(worst < 0.02f);
+    }
+
     TEST_CASE("where a floor meets a mirror the floor goes on in it: nothing of the mirror itself is seen between") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 5, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
@@ -195,11 +224,11 @@ TEST_SUITE("unit") {
     TEST_CASE("a picture known in part: what is known stays, the rest is filled from what is about it; of nothing, nothing") {
         ImageRgb picture(37, 21, Rgb(5.0f));
         Image<std::uint8_t> known(37, 21, 0);
-        CHECK(raster::RadiancePyramid(picture, known).empty());
+        CHECK(raster::RadiancePyramid(picture, known, 0).empty());
         for (int y = 0; y < 21; ++y)
             for (int x = 0; x < 37; ++x)
                 if (x < 6 || x > 30) known(x, y) = 1, picture(x, y) = Rgb(x < 6 ? 1.0f : 2.0f);
-        const raster::RadiancePyramid filled(picture, known);
+        const raster::RadiancePyramid filled(picture, known, 1);
         CHECK(filled.at(3, 10, 1).g == doctest::Approx(1));
         CHECK(filled.at(34, 10, 1).g == doctest::Approx(2));
         for (float x = 6; x < 31; ++x)
@@ -208,6 +237,9 @@ TEST_SUITE("unit") {
                 CHECK(filled.at(x, 10, wide).g < 2.01f);
             }
         CHECK(filled.at(10, 10, 1).g < filled.at(26, 10, 1).g);
+        const raster::RadiancePyramid by_two(picture, known, 2);
+        for (const float wide : {1.0f, 2.0f, 8.0f, 64.0f})
+            for (float x = 0; x < 37; ++x) CHECK(by_two.at(x, 9, wide) == filled.at(x, 9, wide));
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {
@@ -278,6 +310,21 @@ TEST_SUITE("unit") {
             CHECK(pixels > 200);
             CHECK(worst < 0.04f);
         }
+    }
+
+    TEST_CASE("slightly rough metal mirrors an environment of stripes blurred, each ray by its share of the lobe") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.25f});
+        ImageRgb stripes(256, 64);
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 256; ++x) stripes(x, y) = Rgb(x % 4 < 2 ? 2.0f : 0.0f);
+        scene.environment = make_image_environment(std::move(stripes), 1, 0);
+        finish_scene(scene);
+        const ImageRgb found = render(scene, kView, plain()).radiance;
+        float least = kInfinity, most = 0;
+        for (int x = 40; x < 120; ++x) least = std::min(least, found(x, 70).g), most = std::max(most, found(x, 70).g);
+        CHECK(least > 0.5f);
+        CHECK(most - least < 0.2f);
     }
 
     TEST_CASE("a metal that no object is of asks for no look at the picture") {
