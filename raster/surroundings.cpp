@@ -105,8 +105,9 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
     const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
-    const float size = max(look.size(hit.distance), kGuessBlur * hit.gap) / scenery_.all.pixel_size(there);
-    const float wide = hit.alone ? scenery_.width_within(hit.x, hit.y, size) : size;
+    const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
+    // No narrower than a rough surface blurs: what it sees beside is not a guess.
+    const float wide = hit.alone ? max(scenery_.width_within(hit.x, hit.y, size), hit.distance * look.spread / pixel) : size;
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
