@@ -19,7 +19,7 @@ struct Fragment {
     std::uint16_t inside : 1 = 0; ///< well inside the triangle (edge_margins)
     std::uint16_t tile = 0;
 };
-static_assert(sizeof(Fragment) == 12);
+static_assert(sizeof(Fragment) == 12 && TileGrid::kTileSize * TileGrid::kTileSize <= 1 << 15);
 
 /// Samples of a triangle so small that a box of 8 × 8 has them all.
 struct Patch {

@@ -16,7 +16,7 @@ struct DepthTile::Edges {
     Values at; ///< at the tile's first sample
     Values right, down; ///< from block to block
     /// At a block's first sample, as floats have it: none of its samples is inside below the one, all are well inside from the other
-    /// on. By an error more than floats have: each of four roundings is of at most half a unit in the last place of what a function
+    /// on. By an error more than floats have: each of six roundings is of at most half a unit in the last place of what a function
     /// may be in the tile. So a block may be looked at for nothing, but none is missed.
     std::array<float, 3> none, all;
     Origin origin; ///< of the triangle's plane

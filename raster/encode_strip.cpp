@@ -17,7 +17,7 @@ constexpr double kDoubt = 0x1p-11;
 constexpr double kCode = 1 << 16, kMoved = (0.5 + kDoubt) * kCode;
 constexpr std::int32_t kNoDoubt = 0xffff & ~static_cast<std::int32_t>(2 * kDoubt * kCode - 1);
 
-/// 255 · 1.055 · 2^(e/2.4), of e from -15 on; of 0 the last.
+/// 255 · 1.055 · 2^(e/2.4) codes, of e from -15 on; of 0 the last.
 const StripOf<float> kScales = [] {
     StripOf<float> scales;
     for (std::size_t i = 0; i < kStrip; ++i)
@@ -28,7 +28,7 @@ const StripOf<float> kScales = [] {
 /// sRGB is a straight line up to here.
 constexpr float kStraight = 0.0031308f;
 
-/// 255 · srgb_encode(x) to within 1.6e-4, for x in (kStraight, 1]: x = m·2^e, m in [1, 2), and x^(5/12) is a polynomial in m
+/// The moved code of x, to within 1.6e-4 of a code, for x in (kStraight, 1]: x = m·2^e, m in [1, 2), and x^(5/12) is a polynomial in m
 /// (Chebyshev interpolation) times a power of two that a table has.
 Floats curved_code(const Floats& x) {
     constexpr std::array<float, 7> kPolynomial{0.3518701494f, 1.057500362f, -0.6761592627f, 0.3797715604f, -0.1397501379f, 0.029459171f, -0.002691525733f};

@@ -72,19 +72,6 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #endif
 }
 
-/// Whole numbers from memory to doubles.
-inline Doubles widened(const std::int32_t* from) {
-#if defined(__AVX512F__)
-    return _mm512_cvtepi32_pd(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
-#elif defined(__AVX__)
-    return _mm256_cvtepi32_pd(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
-#else
-    std::array<double, Doubles::size> wide;
-    for (std::size_t i = 0; i < Doubles::size; ++i) wide[i] = from[i];
-    return Doubles::load_unaligned(wide.data());
-#endif
-}
-
 /// Whole numbers of 32 bits to memory.
 inline void store_ints(const Doubles& value, std::int32_t* to) {
 #if defined(__AVX512F__)
@@ -108,18 +95,6 @@ inline Floats look_up(const StripOf<float>& table, const Ints& index) {
     index.store_aligned(at.data());
     for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i] & 15)];
     return Floats::load_aligned(found.data());
-#endif
-}
-
-/// The same of whole numbers.
-inline Ints look_up(const StripOf<std::int32_t>& table, const Ints& index) {
-#if defined(__AVX512F__)
-    return _mm512_permutexvar_epi32(index, load(table, 0));
-#else
-    alignas(64) std::array<std::int32_t, Ints::size> at;
-    index.store_aligned(at.data());
-    for (std::int32_t& place : at) place = table[static_cast<std::size_t>(place & 15)];
-    return Ints::load_aligned(at.data());
 #endif
 }
 

@@ -58,7 +58,7 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
     const Pinhole& pinhole = view.pinhole;
     const Source colors(data.scene, at);
     return shader.template fragment<float>(FragmentOf<S, float>{
-        derivatives, weighed(at.weights), at.ng,
+        derivatives, {at.ng}, weighed(at.weights),
         Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),
         Vec3(pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y),
         static_cast<float>(at.depth),

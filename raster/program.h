@@ -89,10 +89,11 @@ private:
             const Floats near(static_cast<float>(view_.pinhole.near));
             const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
                                                               : min(near / load(strip.depth, i), Floats(1.0f));
-            const Floats depth = kFacing ? near / nearness : load(strip.depth, i); // a strip of directions has none
+            // A strip of directions has no depths. (Where nothing is seen nearness is 0.)
+            const Floats depth = kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
             const FragmentOf<S, Floats, kPlain, kFacing> fragment{derivatives(strip, i),
+                                                 seen_side<kFacing>(strip, i),
                                                  varyings_at(strip.at, i),
-                                                 strips::vector(strip.ng, 0, i),
                                                  view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
                                                  ways_.at(x, y),
                                                  depth,
@@ -119,6 +120,12 @@ private:
             std::memcpy(reinterpret_cast<char*>(&result) + c * sizeof(number), static_cast<const void*>(&number), sizeof(number));
         }
         return result;
+    }
+    template <bool kFacing> static SeenSide<Floats, kFacing> seen_side(const Solved& strip, std::size_t i) {
+        if constexpr (kFacing)
+            return {};
+        else
+            return {strips::vector(strip.ng, 0, i)};
     }
     static auto derivatives(const Solved& strip, std::size_t i) {
         if constexpr (wants_derivatives<S>())

@@ -261,17 +261,19 @@ private:
 
 } // namespace
 
-float Scenery::width_within(float x, float y, float width) const {
+bool Scenery::one_object(float x, float y, float reach) const {
     const auto object_at = [&](float i, float k) {
         const auto [column, row] = all.pixel_at({i, k, 0});
         return at(column, row).first_look().objects(column, row);
     };
     const std::uint32_t seen = object_at(x, y);
-    for (; width > 1; width *= 0.7f) {
-        const float reach = 2 * width; // of the coarser level, between its pixels
-        const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
-        if (same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1)) return width;
-    }
+    const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
+    return same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1);
+}
+
+float Scenery::width_within(float x, float y, float width) const {
+    for (; width > 1; width *= 0.7f)
+        if (one_object(x, y, 2 * width)) return width; // of the coarser level, between its pixels
     return 1;
 }
 

@@ -20,6 +20,8 @@ struct Scenery {
     const Screen& at(int x, int y) const { return without != nullptr && is_own(x, y) ? *without : all; }
     /// Of a look at `width` pixels about a place how many see its object alone, one at least.
     float width_within(float x, float y, float width) const;
+    /// Whether a place's pixel and four about it, so far along each axis, show one object.
+    bool one_object(float x, float y, float reach) const;
     /// The one for a look at some pixels about a place, in which it must not see itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);

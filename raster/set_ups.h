@@ -58,8 +58,6 @@ public:
     void forget();
     /// Of each sample's triangle where its set-up is kept, which may be made by finish() only; where there is room.
     void keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
-    /// The same of one triangle.
-    std::uint32_t keep(std::uint32_t id) { return place_of(static_cast<std::int32_t>(id)); }
     void finish();
     /// Those kept from place 16·i on.
     const Sixteen& sixteen(std::size_t i) const { return kept_[i]; }
@@ -90,6 +88,7 @@ private:
     const ObjectView* view_of_object_ = nullptr;
     std::map<std::uint32_t, ObjectView> views_of_objects_;
 
+    static constexpr float kLeastCosine = 0.125f;
     static constexpr std::size_t kRoom = 512, kMost = kRoom / kStrip, kPlaces = 2 * kRoom; ///< at most half of which are taken
     static std::size_t first_place(std::uint32_t id) { return id * 0x9e3779b1u >> (32 - std::countr_zero(kPlaces)); }
     struct Place {
@@ -233,14 +232,17 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::
         }
 }
 
-/// A bit for each triangle, likewise, all of whose corners' normals are on the side that is seen.
+/// A bit for each triangle, likewise, all of whose corners' normals are on the side that is seen, and no farther from ng than
+/// leaves of what is interpolated kLeastCosine: its direction errs by at most 40ε·kSteepest / kLeastCosine, 2^-8 (mostly by less
+/// than 2^-12, as steepness and leaning seldom meet).
 template <VertexShader S, typename D>
 std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const Sixteen& of) const {
     const Vec3T<Floats> ng = view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
     std::uint32_t all = (1u << Floats::size) - 1;
     for (const auto& corner : corners) {
-        const Vec3T<Floats> n{load(corner[4], i), load(corner[5], i), load(corner[6], i)};
-        all &= lane_bits(dot(view_of_object_->normal(n), ng) > Floats(0.0f));
+        const Vec3T<Floats> n = view_of_object_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
+        const Floats cosine = dot(n, ng) * inverse_sqrt(Floats(dot(n, n) * dot(ng, ng)));
+        all &= lane_bits(cosine > Floats(kLeastCosine));
     }
     return all << i;
 }
@@ -347,7 +349,7 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up(const StripOf<st
     std::uint32_t facing_ones = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
         set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), to);
-        if (Sixteen::kDirections && view_of_object_->smooth) facing_ones |= facing(i, corners, to);
+        if (Sixteen::kDirections && view_of_object_->smooth && view_of_object_->even()) facing_ones |= facing(i, corners, to);
     }
     to.easy &= facing_ones;
     if (to.easy != 0)

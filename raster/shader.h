@@ -125,6 +125,11 @@ template <typename V> struct ScreenDerivatives<V, true> {
     V dx, dy; ///< exact derivatives of the varyings by the sample's place, along the row and down the column, per pixel
 };
 
+template <typename T, bool kFacing> struct SeenSide {
+    Vec3T<T> ng; ///< geometric normal on the side that is seen, in the object's space, of any length
+};
+template <typename T> struct SeenSide<T, true> {};
+
 /// A scene's lights. kSuns: they are suns, all of them.
 template <bool kSuns> struct Lights {
     std::span<const Light> all;
@@ -132,11 +137,10 @@ template <bool kSuns> struct Lights {
 
 /// What a fragment function is given: a sample that sees something. dx and dy are there where the shader says so. kPlain: the
 /// object has one colour, no map bends its normals, and suns are all the lights: then nothing is called, and batches stay in
-/// registers. kFacing: all interpolated normals are on the side that is seen.
+/// registers. kFacing: all interpolated normals are on the side that is seen, and ng is not there (wants_directions).
 template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
-struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
+struct FragmentInput : ScreenDerivatives<V, kDerivatives>, SeenSide<T, kFacing> {
     V at;                  ///< the varyings, interpolated as perspective shows them
-    Vec3T<T> ng;           ///< geometric normal on the side that is seen, in the object's space, of any length
     Vec3T<T> origin, way;  ///< the camera ray in the world: way's camera-space −z is 1
     T depth;               ///< camera-space −z, metres
     T nearness;            ///< near / depth, in (0, 1]
@@ -152,7 +156,10 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
     Vec3T<T> normal(Vec3T<T> n) const { return !kPlain && object.bent ? bent_normal() : smooth_normal(n); }
     /// The same, whatever maps say.
     Vec3T<T> smooth_normal(Vec3T<T> n) const {
-        return kFacing ? unit(object.normal(n)) : object.shading_normal(n, ng);
+        if constexpr (kFacing)
+            return unit(object.normal(n));
+        else
+            return object.shading_normal(n, this->ng);
     }
     RgbT<T> base_color() const;
 
@@ -209,7 +216,8 @@ template <typename S> constexpr bool wants_texture_coordinates() {
         return true;
 }
 /// Whether a shader's varyings matter by their directions alone: `static constexpr bool kDirections = true;` promises that its
-/// fragment function returns the same for any positive multiple of all of them, and saves the division by depth.
+/// fragment function returns the same for any positive multiple of all of them and does not read ng, and saves the division by
+/// depth.
 template <typename S> constexpr bool wants_directions() {
     if constexpr (requires { S::kDirections; })
         return S::kDirections && !wants_derivatives<S>();
@@ -245,10 +253,12 @@ concept VertexShader = requires(const S& s, const VertexInput<float>& one, const
 /// And a fragment function: linear radiance, in W/(m² sr) where it is meant to compare with light.
 template <typename S>
 concept Shader = VertexShader<S> && requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many,
-                                             const FragmentOf<S, Floats, true>& plain) {
+                                             const FragmentOf<S, Floats, true>& plain,
+                                             const FragmentOf<S, Floats, true, wants_directions<S>()>& facing) {
     { s.template fragment<float>(one) } -> std::same_as<Rgb>;
     { s.template fragment<Floats>(many) } -> std::same_as<RgbT<Floats>>;
     { s.template fragment<Floats>(plain) } -> std::same_as<RgbT<Floats>>;
+    { s.template fragment<Floats>(facing) } -> std::same_as<RgbT<Floats>>;
 };
 
 } // namespace duet::raster

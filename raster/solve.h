@@ -23,7 +23,7 @@ template <VertexShader S, typename D> struct SolvedStrip {
     StripOf<float> b1, b2; ///< barycentrics of the second and third corner: of D double as a Hit has them
     StripOf<D> depth;      ///< camera-space −z
     std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
-    /// A bit for each sample that lies in the unsnapped triangle for certain, where the solution holds as it is.
+    /// A bit for each sample that lies in the unsnapped triangle for certain, where the solution holds as it is. (Not of directions.)
     std::uint32_t inside = 0;
     /// Of `at` the direction is all that is known, nothing else but the samples is, and all normals are on the side that is
     /// seen (SetUp::easy).

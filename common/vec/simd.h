@@ -81,7 +81,7 @@ xsimd::batch<float, Arch> fused_minus(xsimd::batch<float, Arch> a, xsimd::batch<
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fnmadd_ps(a, b, c);
 #endif
-    return xsimd::fma(-a, b, c);
+    return fused(-a, b, c);
 }
 
 inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
@@ -92,7 +92,13 @@ inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 #endif
 }
 /// The same of one number.
-inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
+inline float fused(float a, float b, float c) {
+#if defined(__FMA__)
+    return std::fma(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
 
 /// A bit for each lane that holds true, lane 0 the lowest.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {

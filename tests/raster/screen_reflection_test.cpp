@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <random>
+
 using namespace duet;
 using namespace duet::test;
 
@@ -237,9 +239,23 @@ TEST_SUITE("unit") {
                 CHECK(filled.at(x, 10, wide).g < 2.01f);
             }
         CHECK(filled.at(10, 10, 1).g < filled.at(26, 10, 1).g);
-        const raster::RadiancePyramid by_two(picture, known, 2);
+    }
+
+    TEST_CASE("a pyramid of what is known is the same by any number of threads") {
+        constexpr int kWidth = 320, kHeight = 203;
+        ImageRgb picture(kWidth, kHeight);
+        Image<std::uint8_t> known(kWidth, kHeight, 0);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> uniform(0, 1);
+        for (Rgb& c : picture.pixels()) c = Rgb(uniform(random), uniform(random), uniform(random));
+        for (std::uint8_t& k : known.pixels()) k = uniform(random) < 0.2f;
+        const raster::RadiancePyramid by_one(picture, known, 1), by_two(picture, known, 2), by_seven(picture, known, 7);
         for (const float wide : {1.0f, 2.0f, 8.0f, 64.0f})
-            for (float x = 0; x < 37; ++x) CHECK(by_two.at(x, 9, wide) == filled.at(x, 9, wide));
+            for (float y = 0; y < kHeight; y += 3)
+                for (float x = 0; x < kWidth; x += 3) {
+                    CHECK(by_two.at(x, y, wide) == by_one.at(x, y, wide));
+                    CHECK(by_seven.at(x, y, wide) == by_one.at(x, y, wide));
+                }
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {
