@@ -41,7 +41,7 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
-/// The image texture that colours all of an object, if it is filtered.
+/// The slot of the image texture that colours all of an object, if it is filtered.
 std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];

@@ -25,15 +25,15 @@ public:
         solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
             const StripSamples& samples = *strip.samples;
             seen[s] = samples.seen;
-            place_ = &places[s];
-            surface_.move_to(*place_, samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
+            const StripPlace& place = places[s];
+            surface_.move_to(place, samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
             if (samples.seen == 0) return;
             if (samples.on_mesh != samples.seen)
-                shade_one_by_one(*place_, samples, colors[s]);
+                shade_one_by_one(place, samples, colors[s]);
             else if (only_suns_ && strip.object_view->even())
-                shade_as<true>(*place_, strip, colors[s]);
+                shade_as<true>(place, strip, colors[s]);
             else
-                shade_as<false>(*place_, strip, colors[s]);
+                shade_as<false>(place, strip, colors[s]);
         });
     }
 
@@ -142,7 +142,6 @@ private:
     StripSolver<S, float> solver_;
     Linear ways_, eyes_; ///< camera rays
     bool only_suns_;     ///< are the scene's lights
-    const StripPlace* place_ = nullptr; ///< of the strip at hand
 };
 
 /// A shader, kept by value.

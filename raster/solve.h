@@ -71,8 +71,7 @@ private:
         };
         std::array<Pair, kStrip / 2> pairs;
         std::size_t pair_count = 0;
-        bool one = false;  ///< triangle is all that they see
-        bool easy = false; ///< are all their triangles (SetUp::easy)
+        bool one = false; ///< triangle is all that they see
     };
 
     /// get(i, of): of each sample from the i-th on, as many as there are lanes, its own number; of() says which, of sixteen
@@ -250,8 +249,8 @@ void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positi
 /// Whether that is all there is to it: the samples lie where they seem to, and nothing of them is looked up.
 template <VertexShader S, typename D>
 bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
-    return Sixteen::kDirections && samples.easy && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && set_ups_.object().even() &&
-           !sabotaged(Guard::kPerspective);
+    return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && set_ups_.object().even() &&
+           all_easy(samples) && !sabotaged(Guard::kPerspective);
 }
 
 template <VertexShader S, typename D>
@@ -337,14 +336,14 @@ template <VertexShader S, typename D> void StripSolver<S, D>::find_pairs(ReadStr
         seconds |= here;
         strip.pairs[strip.pair_count++] = {first, second, firsts | here};
     }
-    if (seconds != 0)
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-            const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
-            store(strip.lanes, i, load(strip.lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
-        }
-    strip.easy = Sixteen::kDirections && all_easy(strip);
+    if (seconds == 0) return;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
+        store(strip.lanes, i, load(strip.lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
+    }
 }
 
+/// SetUp::easy of all that they see.
 template <VertexShader S, typename D> bool StripSolver<S, D>::all_easy(const ReadStrip& strip) {
     std::uint32_t easy = 0;
     for (std::size_t k = 0; k < strip.pair_count; ++k) {

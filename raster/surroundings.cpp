@@ -118,8 +118,8 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
-    if (hit.alone && wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f)) return radiance_seen.finest()(x, y); // between pixels it sees another
-    return radiance_seen.at(hit.x, hit.y, wide);
+    const bool sees_another = hit.alone && wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f); // between pixels
+    return sees_another ? radiance_seen.finest()(x, y) : radiance_seen.at(hit.x, hit.y, wide);
 }
 
 } // namespace duet::raster

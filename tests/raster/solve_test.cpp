@@ -131,6 +131,7 @@ TEST_SUITE("unit") {
             CHECK(worst_mended < 1e-6);
         }
     }
+
     TEST_CASE("coverage vouches only for samples that lie in their unsnapped triangles, and for most of those") {
         for (const View& view : {perspective(), orthographic()}) {
             const Strips picture(slivers(), view);
