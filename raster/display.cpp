@@ -8,7 +8,6 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 namespace duet::raster {
@@ -22,40 +21,30 @@ bool is_empty(const Geometry& geometry, std::size_t index) {
            (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
 }
 
-/// Asks for the lines of memory that a row of pixels will be written to: the machine guesses those of one row, but not the next row's.
-template <typename Pixel> void fetch_row(Pixel* row, int width) {
-    constexpr int kLine = 64 / sizeof(Pixel);
-    for (int x = 0; x < width; x += kLine) __builtin_prefetch(row + x, 1);
-}
-
-template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
-    static_assert(sizeof(Pixel) == 4);
-    const Pixel value = pixel; // of one's own, so that the compiler makes wide stores
-    const int width = rect.width(), end = rect.y1;
-    constexpr int kAhead = 8;
-    for (int y = rect.y0; y < end; ++y) {
-        if (y + kAhead < end) fetch_row(&picture(rect.x0, y + kAhead), width);
-        Pixel* row = &picture(rect.x0, y);
-        for (int i = 0; i < width; ++i) std::memcpy(static_cast<void*>(row + i), &value, sizeof(Pixel));
-    }
-}
-
 constexpr int kBlock = DepthTile::kBlock;
 
-/// Rows of blocks of a tile to the picture, from pixel row y on: whole rows of memory at a time. row_of(block, row) is where
-/// eight pixels of the block lie.
+/// Rows of blocks of a tile to the picture, from pixel row y on: row_of(block, row) is where eight pixels of the block lie. Whole
+/// lines go past the caches: a frame is more than those keep until the next.
 template <typename Pixel, typename RowOf>
 void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>& picture) {
+    static_assert(2 * kBlock * sizeof(Pixel) == 64);
     for (int row = 0; row < std::min(kBlock, rect.y1 - y); ++row) {
         Pixel* to = &picture(rect.x0, y + row);
-        for (int column = 0, width = rect.width(); width > 0; ++column, width -= kBlock, to += kBlock) {
-            const Pixel* from = row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
-            if (width >= kBlock)
-                std::memcpy(static_cast<void*>(to), from, sizeof(Pixel) * kBlock);
-            else
-                std::copy_n(from, width, to);
-        }
+        const auto block = [&](int column) { return row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row)); };
+        int column = 0, left = rect.width();
+        if (begins_line(to))
+            for (; left >= 2 * kBlock; left -= 2 * kBlock, column += 2) stream_line(block(column), block(column + 1), to + column * kBlock);
+        for (; left > 0; left -= kBlock, ++column) std::copy_n(block(column), std::min(left, kBlock), to + column * kBlock);
     }
+}
+
+/// A tile that nothing is in.
+template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
+    std::array<Pixel, kBlock> eight;
+    eight.fill(pixel);
+    for (int y = rect.y0; y < rect.y1; y += kBlock)
+        copy_blocks(rect, y, [&](std::size_t, std::size_t) { return eight.data(); }, picture);
+    finish_streams();
 }
 
 void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
@@ -68,6 +57,7 @@ void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
         };
         copy_blocks(rect, y, row_of, picture);
     }
+    finish_streams();
 }
 
 /// A tile's pixels, strip by strip: by the program, or one at a time.
@@ -86,7 +76,6 @@ public:
         for (int y = rect.y0; y < rect.y1; y += kBlock) {
             std::uint32_t place = tile_.place(rect.x0, y);
             std::size_t slot = 0;
-            for (int row = y; row < std::min(y + kBlock, rect.y1); ++row) fetch_row(&picture_(rect.x0, row), rect.width());
             for (int x = rect.x0; x < rect.x1; x += kBlock, place += kBlockSamples, slot += kStrips) block(x, y, place, slot);
             shade_together();
             const auto row_of = [&](std::size_t column, std::size_t row) {
@@ -95,6 +84,7 @@ public:
             };
             copy_blocks(rect, y, row_of, picture_);
         }
+        finish_streams();
     }
 
 private:

@@ -51,6 +51,28 @@ inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& v
 using duet::fused;
 using duet::fused_minus;
 
+/// A line of memory, in two halves, past the caches: what is not read soon need not push out what is, nor be fetched before it is
+/// overwritten. Other threads see it after finish_streams().
+inline void stream_line(const void* first_half, const void* second_half, void* line) {
+#if defined(__AVX__)
+    const __m256i first = _mm256_loadu_si256(static_cast<const __m256i*>(first_half)),
+                  second = _mm256_loadu_si256(static_cast<const __m256i*>(second_half));
+#if defined(__AVX512F__)
+    _mm512_stream_si512(static_cast<__m512i*>(line), _mm512_inserti64x4(_mm512_castsi256_si512(first), second, 1));
+#else
+    _mm256_stream_si256(static_cast<__m256i*>(line), first);
+    _mm256_stream_si256(static_cast<__m256i*>(line) + 1, second);
+#endif
+#else
+    const auto *first = static_cast<const __m128i*>(first_half), *second = static_cast<const __m128i*>(second_half);
+    auto* to = static_cast<__m128i*>(line);
+    for (int i = 0; i < 2; ++i) _mm_stream_si128(to + i, _mm_loadu_si128(first + i));
+    for (int i = 0; i < 2; ++i) _mm_stream_si128(to + 2 + i, _mm_loadu_si128(second + i));
+#endif
+}
+inline void finish_streams() { _mm_sfence(); }
+inline bool begins_line(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
+
 /// Of as many vectors side by side, by fused steps.
 inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) { return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z))); }
 
