@@ -32,8 +32,8 @@ struct EdgeFunction {
         b = dx;
         c = dy * from.x - dx * from.y;
         // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs right.
-        const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-        if (!left_or_top && !sabotaged(Guard::kTopLeftRule)) c -= 1;
+        const bool left_or_top = (dy < 0) | ((dy == 0) & (dx > 0)); // without branches: no machine guesses those
+        c -= !left_or_top & !sabotaged(Guard::kTopLeftRule);
     }
     std::int64_t at(std::int64_t x, std::int64_t y) const {
         const std::int64_t value = a * x + b * y + c;
@@ -108,13 +108,22 @@ struct alignas(64) DrawTriangle { // a line of the cache
     NearnessPlane nearness{};
 };
 
+/// The box that three points span. (Two by two: std::min of a list branches.)
+inline FixedPoint least(const std::array<FixedPoint, 3>& p) {
+    return {std::min(std::min(p[0].x, p[1].x), p[2].x), std::min(std::min(p[0].y, p[1].y), p[2].y)};
+}
+inline FixedPoint most(const std::array<FixedPoint, 3>& p) {
+    return {std::max(std::max(p[0].x, p[1].x), p[2].x), std::max(std::max(p[0].y, p[1].y), p[2].y)};
+}
+
 /// A pixel beside the outline, within the picture: where Interpolation and NearnessPlane count from.
 struct Origin {
     int x, y;
 };
 inline Origin origin(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
-    return {floor_pixel(std::clamp(std::min({p[0].x, p[1].x, p[2].x}), 0, viewport.width * kSubPixels)),
-            floor_pixel(std::clamp(std::min({p[0].y, p[1].y, p[2].y}), 0, viewport.height * kSubPixels))};
+    const FixedPoint low = least(p);
+    return {floor_pixel(std::clamp(low.x, 0, viewport.width * kSubPixels)),
+            floor_pixel(std::clamp(low.y, 0, viewport.height * kSubPixels))};
 }
 /// At one sample, the naive way.
 Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
@@ -129,10 +138,9 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
 
 /// The pixels in which a sample of `offset` lies within the closed box that three grid points span.
 inline PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
-    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    return {ceil_pixel(x0 - offset.x), ceil_pixel(y0 - offset.y), floor_pixel(x1 - offset.x) + 1,
-            floor_pixel(y1 - offset.y) + 1};
+    const FixedPoint low = least(p), high = most(p);
+    return {ceil_pixel(low.x - offset.x), ceil_pixel(low.y - offset.y), floor_pixel(high.x - offset.x) + 1,
+            floor_pixel(high.y - offset.y) + 1};
 }
 
 /// How far inside of each edge of the snapped outline, in values of its edge function, a sample that the outline covers must
