@@ -112,7 +112,7 @@ TEST_SUITE("unit") {
             double lit = 0; // metres of full light, across the wall
             for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
             CAPTURE(way.x);
-            CHECK(lit < 0.0005);
+            CHECK(lit < 0.00002);
         }
     }
 
