@@ -52,7 +52,7 @@ struct ArchedWall {
 
     void add(MeshBuilder& mesh) const {
         for (const double side : {-0.5, 0.5}) {
-            Sheet face{.columns = 48, .rows = 10, .point = {}};
+            Sheet face{.columns = 48, .rows = kRows, .point = {}};
             face.point = [*this, side](double s, double t) {
                 s = side > 0 ? 1 - s : s; // outwards
                 return lerp(at(arch(s, half, foot, spring), side), at(border(s), side), t);
@@ -62,12 +62,29 @@ struct ArchedWall {
         Sheet reveal{.columns = 48, .rows = 4, .point = {}};
         reveal.point = [*this](double s, double t) { return at(arch(s, half, foot, spring), t - 0.5); };
         add_sheet(mesh, reveal);
-        if (foot > low) // below the sill
-            for (const double side : {-0.5, 0.5})
-                add_patch(mesh, at({-kBay / 2, low}, side), Vec3d(0, 0, kBay), Vec3d(0, foot - low, 0), 16, 4);
+        if (foot > low) add_sill(mesh);
     }
 
 private:
+    static constexpr int kRows = 10, kSillColumns = 4; ///< of cells beside the opening, and in it
+
+    /// The sill and the wall below it, whose vertices are those of the wall beside the opening: no cracks.
+    void add_sill(MeshBuilder& mesh) const {
+        add_patch(mesh, at({-half, foot}, -0.5), Vec3d(0, 0, 2 * half), Vec3d(kThick, 0, 0), kSillColumns, 4);
+        constexpr int kColumns = 2 * kRows + kSillColumns;
+        const auto along = [&](int column) {
+            if (column < kRows) return lerp(-half, -kBay / 2, (kRows - column) / double{kRows});
+            if (column > kRows + kSillColumns) return lerp(half, kBay / 2, (column - kRows - kSillColumns) / double{kRows});
+            return lerp(-half, half, (column - kRows) / double{kSillColumns});
+        };
+        for (const double side : {-0.5, 0.5}) {
+            Sheet below{.columns = kColumns, .rows = 4, .point = {}};
+            below.point = [&](double s, double t) {
+                return at({along(static_cast<int>(std::lround((side > 0 ? 1 - s : s) * kColumns))), lerp(low, foot, t)}, side);
+            };
+            add_sheet(mesh, below);
+        }
+    }
     Vec3d at(Vec2d along_and_height, double side) const {
         return {x + side * kThick, along_and_height.y, middle + along_and_height.x};
     }

@@ -143,9 +143,9 @@ const HemispherePoints& hemisphere_points() {
 
 } // namespace
 
-OcclusionPattern OcclusionPattern::of_row(int x, int y, int side) {
+OcclusionPattern OcclusionPattern::of_row(int x, int y) {
     alignas(64) std::array<std::int32_t, Ints::size> which;
-    for (int i = 0; i < static_cast<int>(Ints::size); ++i) which[static_cast<std::size_t>(i)] = kPatternOf[static_cast<std::size_t>((x + i) % side + y % side * kSide)];
+    for (int i = 0; i < static_cast<int>(Ints::size); ++i) which[static_cast<std::size_t>(i)] = kPatternOf[static_cast<std::size_t>((x + i) % kSide + y % kSide * kSide)];
     return {Ints::load_aligned(which.data())};
 }
 OcclusionPattern OcclusionPattern::of_point(int first) {

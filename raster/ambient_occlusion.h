@@ -20,8 +20,8 @@ struct OcclusionPattern {
 
     Ints which; ///< in [0, kPatterns)
 
-    /// Of Floats::size pixels of a row from column x on, where blocks of `side` × `side` pixels, 4 or 8, are to look everywhere.
-    static OcclusionPattern of_row(int x, int y, int side);
+    /// Of Floats::size pixels of a row from column x on.
+    static OcclusionPattern of_row(int x, int y);
     /// Patterns `first` and the following, of one point.
     static OcclusionPattern of_point(int first);
 };

@@ -48,7 +48,9 @@ RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mi
 
 bool is_flat(const Screen& screen, int x, int y) {
     const float depth = screen.depth(x, y);
-    return depth < kInfinity && screen.turn(x, y) * depth < screen.pixel_size(depth);
+    if (!(depth < kInfinity)) return false;
+    const float pixel = screen.pixel_size(depth);
+    return screen.turn(x, y) * (screen.perspective() ? depth : pixel * static_cast<float>(screen.height())) < pixel;
 }
 
 } // namespace duet::raster

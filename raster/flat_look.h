@@ -23,7 +23,7 @@ ImageFloat normal_turns(const Screen& screen, int threads);
 RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors, int threads);
 
 /// Whether what a pixel shows goes on as its plane does: its radius of curvature is more than its depth, however fine the
-/// picture.
+/// picture; or, seen from infinitely far, than what the picture shows is high.
 bool is_flat(const Screen& screen, int x, int y);
 
 } // namespace duet::raster

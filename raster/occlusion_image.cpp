@@ -4,19 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace duet::raster {
 namespace {
 
 constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
 constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
-constexpr int kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are little
+constexpr float kCoarse = 160, kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are wide, and of those in which they are little
 /// By the distance from the middle: a box of 4 pixels; and one of 8, softened by one of 4, so that what a pattern meets comes
-/// and goes slowly. In both each pattern counts alike.
-constexpr std::array<float, 3> kBox{1, 1, 0.5f};
-constexpr std::array<float, 7> kSoftBox{4, 4, 3.75f, 3, 2, 1, 0.25f};
+/// and goes slowly. In both each place in 4 × 4 pixels counts alike, and so, in the second, each pattern.
+constexpr std::array<float, 7> kBox{0.25f, 0.25f, 0.125f, 0, 0, 0, 0};
+constexpr std::array<float, 7> kSoftBox{0.125f, 0.125f, 3.75f / 32, 3.0f / 32, 2.0f / 32, 1.0f / 32, 0.25f / 32};
 constexpr int kLanesWide = static_cast<int>(Floats::size);
+
+/// From the first to the second, as pictures grow from coarse to fine: no size looks other than the next one.
+std::array<float, 7> kernel_of(const Screen& screen) {
+    const float side = static_cast<float>(std::min(screen.width(), screen.height()));
+    const float soft = clamp((side - kCoarse) / (kFine - kCoarse), 0.0f, 1.0f);
+    std::array<float, 7> kernel;
+    for (std::size_t i = 0; i < kernel.size(); ++i) kernel[i] = lerp(kBox[i], kSoftBox[i], soft);
+    return kernel;
+}
 
 /// 1 on the same plane facing the same way, 0 off it.
 template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, T tolerance) {
@@ -41,7 +49,7 @@ template <typename F> void for_batches(int width, const F& use) {
 } // namespace
 
 OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads)
-    : screen_(screen), kind_(kind), radius_(radius), side_(std::min(screen.width(), screen.height()) < kFine ? 4 : 8) {
+    : screen_(screen), kind_(kind), radius_(radius), kernel_(kernel_of(screen)) {
     if (screen.width() < kLanesWide) return; // every point is looked at by itself
     const auto rows = static_cast<std::size_t>(screen.height());
     Planes along_rows;
@@ -65,7 +73,7 @@ void OcclusionImage::look_row(int y) {
         points.p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
         points.n = normals_from(screen_, x, y);
         points.to_viewer = screen_.to_viewer(points.p);
-        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y, side_));
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
         const std::array<Floats, 4> numbers{seen.visible, seen.hidden.x, seen.hidden.y, seen.hidden.z};
         for (std::size_t k = 0; k < 4; ++k)
             xsimd::select(nearness > Floats(0.0f), numbers[k], Floats(0.0f)).store_unaligned(&found_[k](x, y));
@@ -74,8 +82,7 @@ void OcclusionImage::look_row(int y) {
 
 void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to) const {
     const int width = screen_.width(), height = screen_.height();
-    const std::span<const float> kernel = side_ == 4 ? std::span<const float>(kBox) : std::span<const float>(kSoftBox);
-    const int reach = static_cast<int>(kernel.size()) - 1;
+    const int reach = static_cast<int>(std::ranges::find(kernel_, 0.0f) - kernel_.begin()) - 1;
     const Floats none(0.0f), last(static_cast<float>(width - 1));
     for_batches(width, [&](int x) {
         const Floats nearness = load_from(screen_.nearness(), x, y);
@@ -97,7 +104,7 @@ void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to
             const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
             const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
             const auto counts = (other > none) & (at >= none) & (at <= last);
-            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kernel[static_cast<std::size_t>(std::abs(step))]), none);
+            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kernel_[static_cast<std::size_t>(std::abs(step))]), none);
             weights += weight;
             for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(from[k]), none);
         }

@@ -6,8 +6,8 @@
 namespace duet::raster {
 
 /// The occlusion of what a Screen shows, once a pixel however many samples it has. Each pixel looks in a few directions;
-/// what it finds is averaged with those of its neighbours, 8 × 8 of which look everywhere (4 × 4 in small pictures, where so
-/// many pixels are wide), that lie on the same surface:
+/// what it finds is averaged with those of its neighbours, 8 × 8 of which look everywhere (of 4 × 4, nearly, in small
+/// pictures, where so many pixels are wide), that lie on the same surface:
 /// within a pixel's width or two of its plane, facing nearly its way. Along rows, then along columns: on a plane that is
 /// the mean of all 64, and elsewhere near enough (Pham and van Vliet 2005, «Separable Bilateral Filtering for Fast Video
 /// Preprocessing»).
@@ -38,7 +38,7 @@ private:
     const Screen& screen_;
     AmbientOcclusion kind_;
     float radius_;
-    int side_; ///< of the blocks that look everywhere
+    std::array<float, 7> kernel_; ///< weights of the mean, by the distance from the middle
     Planes found_;
 };
 

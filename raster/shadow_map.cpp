@@ -107,6 +107,15 @@ double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int
            rise(0, below < 0 ? -1 : 1) * std::abs(below);
 }
 
+/// Whether the four texels about the place all see what is over the receiver: then its ray goes through that, for of what
+/// is convex they are corners of a part. A roof that lies on a steep wall does so where most texels see it under the
+/// wall's plane, as they would see what is beyond a ridge.
+bool ShadowMap::is_covered(const Plane& plane, Vec3d place) const {
+    const int x = static_cast<int>(std::floor(place.x - 0.5)), y = static_cast<int>(std::floor(place.y - 0.5));
+    const auto over = [&](int column, int row) { return height_at_receiver(plane, place, column, row) > kFourDepths * plane.rounding; };
+    return over(x, y) && over(x + 1, y) && over(x, y + 1) && over(x + 1, y + 1);
+}
+
 /// The texels from x0, y0 on, weighed.
 template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
@@ -131,6 +140,7 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             if (blocks) dark += weight;
             contact = contact || (blocks && near);
         }
+    if (dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
     // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
     if (!contact) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));

@@ -1,6 +1,6 @@
 #include "raster/shadows.h"
 
-#include "raster/light_views.h"
+#include "raster/screen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,8 @@
 namespace duet::raster {
 namespace {
 
-constexpr double kSpotGuard = 4;                     ///< texels
+constexpr int kSeenWidth = 256;                      ///< pixels
+constexpr double kGuard = 4;                         ///< texels
 constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
 constexpr double kFloor = 1e-4;                      ///< of the scene's size: how far things may dip into a floor
 
@@ -70,6 +71,25 @@ bool only_shines(const Scene& scene, std::uint32_t object) {
                        [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
 }
 
+/// What the scene's camera sees, through a picture of few pixels.
+std::vector<SeenPoint> seen_points(const PreparedData& data, int threads) {
+    const Scene& scene = data.scene;
+    const double aspect = static_cast<double>(scene.height) / scene.width;
+    const View view{scene.camera, kSeenWidth, static_cast<int>(std::clamp(kSeenWidth * aspect, 1.0, 4.0 * kSeenWidth))};
+    Settings settings;
+    settings.output = Output::kNearness;
+    settings.threads = threads;
+    Control control;
+    const Prepared all = caster_scene(data, std::vector<bool>(scene.objects.size(), true));
+    const Screen screen(CameraModel(view).through(), {}, render(all, view, settings, control).nearness);
+    std::vector<SeenPoint> result;
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x)
+            if (const std::optional<Vec3> p = screen.seen(x, y))
+                result.push_back({Vec3d(screen.absolute(*p)), static_cast<double>(screen.pixel_size(screen.depth(x, y)))});
+    return result;
+}
+
 std::vector<SurfaceLight> surface_lights(const Scene& scene, const std::vector<std::size_t>& lights) {
     std::vector<SurfaceLight> result;
     for (const std::size_t i : lights) result.push_back(std::get<SurfaceLight>(scene.lights[i]));
@@ -107,6 +127,8 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
     for (int i = 0; i < (moving ? kMoments : 1); ++i)
         moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) * (i + 0.5) / kMoments
                                   : camera.shutter_open);
+    if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
+        seen_ = seen_points(data, settings.threads);
     std::int64_t cubes = 0;
     for (const Source& source : sources_)
         cubes += static_cast<std::int64_t>(std::max<std::size_t>(source.cells.size(), 1) * moments_.size());
@@ -163,11 +185,11 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         std::vector<bool> casts(scene_.objects.size());
         for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
         const Box3 bounds = bounds_of(data, casts);
-        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera));
+        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera, seen_, side_, kGuard));
         return;
     }
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
-        const std::vector<Camera> views = spot_views(*spot, scene_size_, side_, kSpotGuard);
+        const std::vector<Camera> views = spot_views(*spot, scene_size_, side_, kGuard);
         if (!views.empty()) return add_views(caster_scene(data, kept), views);
         maps.cubes.push_back(
             draw_cube(caster_scene(data, kept), Vec3d(spot->position), nullptr, true, moment, cube_side_, settings.threads));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raster/direct.h"
+#include "raster/light_views.h"
 #include "raster/prepare.h"
 #include "raster/soft_shadow.h"
 
@@ -59,6 +60,7 @@ private:
     std::vector<Source> sources_;
     std::vector<std::size_t> source_of_; ///< of each light; sources_.size(): none
     std::vector<double> moments_;
+    std::vector<SeenPoint> seen_; ///< where there is a sun
     std::size_t unshadowed_ = 0;
     std::int64_t memory_bytes_ = 0;
 };

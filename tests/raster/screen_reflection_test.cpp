@@ -1,6 +1,7 @@
 // What metal mirrors of the picture, against the mirrored ray itself.
 #include "tests/raster/scenes.h"
 
+#include "raster/flat_look.h"
 #include "raster/screen_reflection.h"
 #include "raster/split.h"
 #include "raster/surroundings.h"
@@ -204,6 +205,26 @@ TEST_SUITE("unit") {
                     CHECK(seen.g > 0.2f);
                     CHECK(seen.r - seen.b < 0.01f); // the ball's share: the sky has as much of both, the floor none
                 }
+        }
+    }
+
+    TEST_CASE("seen from infinitely far the same is flat wherever the eye stands: a floor, and no ball") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}});
+        add(scene, Sphere{Vec3(0, 0.6f, 0), 0.6f});
+        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        for (const double height : {1.3, 3.0, 300.0}) {
+            Camera camera = look({0, height, 0}, {0, 0, 0});
+            camera.projection = Camera::Projection::kOrthographic;
+            camera.up = {0, 0, -1};
+            camera.height = 4;
+            const View view{camera, 200, 200};
+            const auto screen = raster::screen_of(raster::prepare(scene, plain()), view, plain());
+            CAPTURE(height);
+            CHECK(raster::is_flat(*screen, 160, 160));
+            CHECK_FALSE(raster::is_flat(*screen, 100, 100));
         }
     }
 

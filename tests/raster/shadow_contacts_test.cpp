@@ -98,22 +98,24 @@ private:
 TEST_SUITE("unit") {
 
     TEST_CASE("no light under a roof: the wall that it lies on is dark all the way up") {
-        for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-1, -0.5f, 0.2f), Vec3(-0.3f, -1, 0)}) {
-            Scene scene = with_sun(way);
-            add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
-            add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
-            finish_scene(scene);
-            raster::Settings settings;
-            settings.shadow_map_side = 512;
-            Camera camera = look({0.5, 0.9, 0}, {0, 0.9, 0});
-            camera.projection = Camera::Projection::kOrthographic;
-            camera.height = 0.2;
-            const ImageFloat found = arriving(scene, {camera, 100, 100}, settings);
-            double lit = 0; // metres of full light, across the wall
-            for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
-            CAPTURE(way.x);
-            CHECK(lit < 0.0005);
-        }
+        for (const int side : {256, 400, 512})
+            for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-1, -0.5f, 0.2f), Vec3(-0.3f, -1, 0)}) {
+                Scene scene = with_sun(way);
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = side;
+                Camera camera = look({0.5, 0.9, 0}, {0, 0.9, 0});
+                camera.projection = Camera::Projection::kOrthographic;
+                camera.height = 0.2;
+                const ImageFloat found = arriving(scene, {camera, 100, 100}, settings);
+                double lit = 0; // metres of full light, across the wall
+                for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
+                CAPTURE(way.x);
+                CAPTURE(side);
+                CHECK(lit < 0.0002);
+            }
     }
 
     TEST_CASE("no light through a vault's thin shell, where it begins to turn away from the sun, either") {
@@ -174,7 +176,7 @@ TEST_SUITE("unit") {
                 CAPTURE(facets);
                 CAPTURE(turn);
                 CHECK(lines == 0);
-                CHECK(leaks <= 2);
+                CHECK(leaks <= 4); // of 8000 pixels
             }
     }
 

@@ -1,0 +1,62 @@
+// A floor seen from above, and which part of the light arrives on it.
+#pragma once
+
+#include "tests/raster/scenes.h"
+
+#include <doctest/doctest.h>
+
+namespace duet::test {
+
+inline constexpr int kSize = 200;      ///< pixels
+inline constexpr double kSquare = 4.0; ///< side of the floor's part in the picture, metres
+
+/// Straight down on [−2, 2]² of the floor, from below all that casts shadows there.
+inline View over_floor(double height = 0.25) {
+    Camera camera = look({0, height, 0}, {0, 0, 0});
+    camera.projection = Camera::Projection::kOrthographic;
+    camera.up = {0, 0, -1};
+    camera.height = kSquare;
+    return {camera, kSize, kSize};
+}
+inline Vec3d floor_point(int x, int y) {
+    return {(x + 0.5) * kSquare / kSize - kSquare / 2, 0, (y + 0.5) * kSquare / kSize - kSquare / 2};
+}
+
+inline Scene floor_scene(float half = 4) {
+    Scene scene;
+    add(scene, QuadList{{{Vec3(-half, 0, half), Vec3(2 * half, 0, 0), Vec3(0, 0, -2 * half)}}});
+    scene.camera = over_floor().camera;
+    return scene;
+}
+
+/// The part of the light that arrives at each pixel.
+inline ImageFloat visible(const Scene& scene, const View& view, raster::Settings settings = {}) {
+    const ImageRgb shaded = render(scene, view, settings).radiance;
+    settings.shadows = false;
+    const ImageRgb open = render(scene, view, settings).radiance;
+    ImageFloat result(view.width, view.height);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = open[i].g > 0 ? shaded[i].g / open[i].g : 1;
+    return result;
+}
+
+/// Visibility against an outline of which `inside` tells how far within it a point is (negative: without): all dark
+/// or all lit farther than `reach` from it, and of the right area to `tolerance` metres along `perimeter`.
+template <typename Inside>
+void check_outline(const ImageFloat& found, const Inside& inside, double reach, double perimeter, double tolerance) {
+    constexpr double kPixel = kSquare / kSize;
+    double area = 0, expected = 0;
+    int wrong = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const double depth = inside(floor_point(x, y));
+            area += 1 - static_cast<double>(found(x, y));
+            expected += depth > 0;
+            if (depth > reach) wrong += found(x, y) > 0;
+            if (depth < -reach) wrong += found(x, y) < 1;
+        }
+    CHECK(wrong == 0);
+    // Pixels whose centres decide are themselves off by up to half a pixel along the outline; by 1/8 in the mean.
+    CHECK(std::abs(area - expected) * kPixel * kPixel < perimeter * (tolerance + kPixel / 8));
+}
+
+} // namespace duet::test

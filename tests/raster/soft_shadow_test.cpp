@@ -1,0 +1,181 @@
+// Soft shadows against the part of a lamp that is seen.
+#include "tests/raster/shadow_floor.h"
+
+#include "common/light/lambert.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+TEST_SUITE("unit") {
+
+    // What a square hides of a square lamp, both parallel to the floor, is where the lines through its corners meet the
+    // lamp: the irradiance that arrives is in closed form, too.
+    TEST_CASE("a square before a square lamp: the penumbra of the closed form, to 1 % in the mean") {
+        Scene scene = floor_scene();
+        constexpr float kLamp = 0.5f, kHeight = 3, kSide = 0.6f, kAbove = 1;
+        add(scene, QuadList{{{Vec3(-kLamp, kHeight, -kLamp), Vec3(2 * kLamp, 0, 0), Vec3(0, 0, 2 * kLamp)}}}, Mat4(),
+            Emissive{Rgb(5)});
+        add(scene, QuadList{{{Vec3(-kSide, kAbove, kSide), Vec3(2 * kSide, 0, 0), Vec3(0, 0, -2 * kSide)}}});
+        finish_scene(scene);
+        for (const int cells : {1, 2, 4}) {
+            raster::Settings settings;
+            settings.shadow_cells = cells;
+            settings.shadow_map_side = 1024;
+            const ImageFloat found = visible(scene, over_floor(), settings);
+            double sum = 0;
+            int penumbra = 0;
+            for (int y = 0; y < kSize; y += 4)
+                for (int x = 0; x < kSize; x += 4) {
+                    const Vec3d p = floor_point(x, y);
+                    const auto hidden = [&](double at) { // an interval of the lamp, along one axis
+                        const double a = at + (-static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove),
+                                     b = at + (static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove);
+                        const double lamp = static_cast<double>(kLamp);
+                        return Vec2d(std::clamp(a, -lamp, lamp), std::clamp(b, -lamp, lamp));
+                    };
+                    const Vec2d u = hidden(p.x), v = hidden(p.z);
+                    const auto factor = [&](Vec2d a, Vec2d b) {
+                        const double h = static_cast<double>(kHeight);
+                        const std::array<Vec3, 4> q = {Vec3(Vec3d(a.x, h, b.x)), Vec3(Vec3d(a.y, h, b.x)),
+                                                       Vec3(Vec3d(a.y, h, b.y)), Vec3(Vec3d(a.x, h, b.y))};
+                        return polygon_form_factor_times_pi(Vec3(p), Vec3(0, 1, 0), q);
+                    };
+                    const double lamp = static_cast<double>(kLamp), all = factor({-lamp, lamp}, {-lamp, lamp});
+                    const double part = u.x < u.y && v.x < v.y ? 1 - factor(u, v) / all : 1;
+                    sum += std::abs(static_cast<double>(found(x, y)) - part);
+                    penumbra += part > 0.05 && part < 0.95;
+                }
+            const double error = sum / (kSize * kSize / 16);
+            CAPTURE(cells);
+            CHECK(penumbra > 100);
+            CHECK(error < 0.01);
+        }
+    }
+
+    // What a square hides of a lamp of any shape, by points all over that.
+    TEST_CASE("shadows of squares, slivers of 1 : 10,000, straight and slanting, and thin triangles, from a micrometre to 1000 km") {
+        struct Lamp {
+            Vec3 u, v;
+            bool triangle;
+        };
+        const std::array<Lamp, 4> lamps{Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
+                                        Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
+        constexpr double kHeight = 3, kSide = 0.6;
+        for (const double size : {1e-6, 1.0, 1e6})
+            for (const Lamp& lamp : lamps) {
+                const float s = static_cast<float>(size);
+                Scene scene;
+                add(scene, QuadList{{{Vec3(-4, 0, 4) * s, Vec3(8, 0, 0) * s, Vec3(0, 0, -8) * s}}});
+                add(scene, QuadList{{{Vec3(-0.6f, 1, 0.6f) * s, Vec3(1.2f, 0, 0) * s, Vec3(0, 0, -1.2f) * s}}});
+                const Vec3 corner = (Vec3(0, 3, 0) - (lamp.u + lamp.v) * 0.5f) * s, u = lamp.u * s, v = lamp.v * s;
+                Mesh mesh;
+                mesh.positions = {corner, corner + u, corner + v};
+                mesh.triangles = {{0, 1, 2}};
+                add(scene, lamp.triangle ? Shape(mesh) : Shape(QuadList{{{corner, u, v}}}), Mat4(), Emissive{Rgb(5)});
+                View view = over_floor();
+                view.camera.eye *= size, view.camera.height *= size;
+                scene.camera = view.camera;
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = 1024;
+                settings.shadow_cells = 1;
+                const ImageFloat found = visible(scene, view, settings);
+                const auto expected = [&](Vec3d p) {
+                    constexpr int kSteps = 32;
+                    double all = 0, open = 0;
+                    for (int i = 0; i < kSteps * kSteps; ++i) {
+                        const double a = (i % kSteps + 0.5) / kSteps, b = (i / kSteps + 0.5) / kSteps;
+                        if (lamp.triangle && a + b > 1) continue;
+                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(lamp.u) * (a - 0.5) + Vec3d(lamp.v) * (b - 0.5), way = at - p;
+                        const Vec3d met = p + way / kHeight;
+                        const double weight = 1 / sqr(dot(way, way));
+                        all += weight;
+                        if (std::abs(met.x) > kSide || std::abs(met.z) > kSide) open += weight;
+                    }
+                    return open / all;
+                };
+                double sum = 0;
+                int dark = 0;
+                for (int y = 0; y < kSize; y += 4)
+                    for (int x = 0; x < kSize; x += 4) {
+                        const double part = expected(floor_point(x, y));
+                        sum += std::abs(static_cast<double>(found(x, y)) - part);
+                        dark += part == 0;
+                    }
+                CAPTURE(size);
+                CAPTURE(lamp.v.x);
+                CAPTURE(lamp.triangle);
+                CHECK(dark > 50);
+                CHECK(sum / (kSize * kSize / 16) < 0.02);
+            }
+    }
+
+    TEST_CASE("a lamp too thin to have an outline, 1 : 10,000,000, still throws a shadow") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{{{Vec3(-1, 3, -0.5e-7f), Vec3(1, 0, 0), Vec3(1, 0, 1e-7f)}}}, Mat4(), Emissive{Rgb(1e7f)});
+        add(scene, QuadList{{{Vec3(-1, 1, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}});
+        finish_scene(scene);
+        const ImageFloat found = visible(scene, over_floor());
+        CHECK(found(kSize / 2, kSize / 2) == 0);
+        CHECK(found(2, 2) > 0.9f);
+    }
+
+    // From close under the ball it covers but a few of the texels between the floor's lit part and the lamp.
+    TEST_CASE("no light in the umbra: a slanting lamp beside a ball that nearly touches the floor") {
+        constexpr double kRadius = 0.86, kMiddle = 0.98;
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-6, 0, 6), Vec3(12, 0, 0), Vec3(0, 0, -9)}}});
+        add(scene, Sphere{Vec3(0, 0.98f, 0), 0.86f});
+        add(scene, QuadList{{{Vec3(-3.2f, 2, 0.3f), Vec3(1.2f, 1.6f, 0), Vec3(0, 0, 2)}}}, Mat4(), Emissive{Rgb(12)});
+        scene.camera = look({0, 1.9, 5.2}, {0, 0.86, 0});
+        finish_scene(scene);
+        const ImageFloat found = visible(scene, over_floor(0.1));
+        int umbra = 0, lit = 0;
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const Vec3d p = floor_point(x, y);
+                bool dark = true; // however many points of the lamp
+                for (int i = 0; i < 81 && dark; ++i) {
+                    const Vec3d way = normalize(Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0) - p);
+                    const Vec3d to = Vec3d(0, kMiddle, 0) - p;
+                    dark = dot(to, way) > 0 && length(to - way * dot(to, way)) < 0.95 * kRadius;
+                }
+                umbra += dark;
+                lit += dark && found(x, y) > 0.15f; // less than one of the lamp's four pieces
+            }
+        CHECK(umbra > 1000);
+        CHECK(lit == 0);
+    }
+
+    TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra is wide") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
+        add(scene, Sphere{Vec3(0.9f, 0.3f, 0), 0.3f});
+        add(scene, QuadList{box_quads(Vec3(-1.2f, 0, -0.3f), Vec3(-0.6f, 0.6f, 0.3f))});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 1024;
+        for (const int spp : {1, 4}) {
+            settings.samples_per_pixel = spp;
+            View from_above = over_floor(2);
+            const ImageFloat found = visible(scene, from_above, settings);
+            int dots = 0, shaded = 0;
+            for (int y = 1; y + 1 < kSize; ++y)
+                for (int x = 1; x + 1 < kSize; ++x) {
+                    float least = 1, most = 0; // of the pixels around
+                    for (int i = 0; i < 9; ++i)
+                        if (i != 4) {
+                            const float other = found(x + i % 3 - 1, y + i / 3 - 1);
+                            least = std::min(least, other), most = std::max(most, other);
+                        }
+                    dots += found(x, y) < least - 0.1f || found(x, y) > most + 0.1f;
+                    shaded += found(x, y) < 0.99f;
+                }
+            CAPTURE(spp);
+            CHECK(shaded > 500);
+            CHECK(dots == 0);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+// Shadows of what has holes or lets a part of the light through.
+#include "tests/raster/shadow_floor.h"
+
+#include "raster/shadow_map.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a cut-out lattice under each kind of light: dark and light cells where the light's rays take them, to a texel") {
+        enum { kSun, kSpot, kPoint };
+        for (const int kind : {kSun, kSpot, kPoint}) {
+            Scene scene = floor_scene();
+            add(scene, QuadList{{{Vec3(-0.5f, 1, 0.5f), Vec3(1, 0, 0), Vec3(0, 0, -1)}}});
+            scene.textures.textures = {CheckerTexture{Rgb(1), Rgb(0), 4}};
+            scene.maps.resize(2);
+            scene.maps[1].opacity = {1, 0};
+            scene.maps[1].cutoff = 0.5f;
+            const Vec3 way = normalize(Vec3(0.4f, -1, 0.2f));
+            if (kind == kSun) scene.lights.push_back(SunLight{way, Rgb(2)});
+            if (kind == kSpot) scene.lights.push_back(SpotLight{Vec3(0, 3, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
+            if (kind == kPoint) scene.lights.push_back(PointLight{Vec3(0, 3, 0), Rgb(20)});
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.shadow_map_side = 2048;
+            const double half = kind == kSun ? 0.5 : 0.75, cell = half / 2;
+            const Vec3d middle = kind == kSun ? Vec3d(0.4, 0, 0.2) : Vec3d();
+            const double texel = 8.0 / (settings.shadow_map_side / (kind == kPoint ? 2 : 1));
+            CAPTURE(kind);
+            check_outline(visible(scene, over_floor(), settings),
+                          [&](Vec3d p) {
+                              const double x = p.x - middle.x + half, z = middle.z + half - p.z; // along u and v
+                              const double beyond = half - max(std::abs(x - half), std::abs(z - half));
+                              if (beyond < 0) return beyond;
+                              const auto to_line = [&](double at) { return std::abs(at - std::round(at / cell) * cell); };
+                              const bool even = (static_cast<int>(x / cell) + static_cast<int>(z / cell)) % 2 == 0;
+                              return even ? min(to_line(x), to_line(z)) : -min(to_line(x), to_line(z));
+                          },
+                          (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * 4 * cell, texel / 2);
+        }
+    }
+
+    // The texels' numbers are a fixed dither, of which the filter of hard shadows leaves one rank of 16: half a sixteenth,
+    // rms, at most. Soft shadows leave more. Were they as random as 0.2 rms of the light is wide, a mean of 3300 and more
+    // pixels would be off by 0.017 or more with a chance of 10^-6.
+    TEST_CASE("veils let the part of the light through that they do not stop, one or stacked, quads and balls, whatever the light") {
+        enum { kSun, kSpot, kPoint, kLamp };
+        struct Veils {
+            int count;
+            float opacity;
+            bool ball;
+        };
+        for (const Veils veils : {Veils{1, 0.5f, false}, Veils{1, 0.45f, false}, Veils{1, 0.1f, false}, Veils{2, 0.5f, false},
+                                  Veils{3, 0.3f, false}, Veils{1, 0.4f, true}})
+            for (const int kind : {kSun, kSpot, kPoint, kLamp}) {
+                Scene scene = floor_scene();
+                for (int i = 0; i < veils.count; ++i) {
+                    const float y = 1 + 0.1f * static_cast<float>(i);
+                    add(scene, veils.ball ? Shape(Sphere{Vec3(0, 1, 0), 0.8f}) : Shape(QuadList{{{Vec3(-1, y, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}}));
+                    scene.maps.resize(scene.materials.size());
+                    scene.maps.back().opacity = veils.opacity;
+                }
+                if (kind == kSun) scene.lights.push_back(SunLight{normalize(Vec3(0.1f, -1, 0.05f)), Rgb(2)});
+                if (kind == kSpot) scene.lights.push_back(SpotLight{Vec3(0, 4, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
+                if (kind == kPoint) scene.lights.push_back(PointLight{Vec3(0, 4, 0), Rgb(20)});
+                if (kind == kLamp)
+                    add(scene, QuadList{{{Vec3(-0.1f, 4, -0.1f), Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f)}}}, Mat4(), Emissive{Rgb(50)});
+                finish_scene(scene);
+                const ImageFloat found = visible(scene, over_floor(0.1));
+                double sum = 0, squares = 0;
+                int pixels = 0;
+                for (int y = 0; y < kSize; ++y)
+                    for (int x = 0; x < kSize; ++x) {
+                        const Vec3d p = floor_point(x, y); // where both sides of the ball are between it and the light
+                        if (veils.ball ? length(p) > 0.65 : max(std::abs(p.x), std::abs(p.z)) > 0.8) continue;
+                        sum += static_cast<double>(found(x, y));
+                        squares += sqr(static_cast<double>(found(x, y)));
+                        ++pixels;
+                    }
+                const double mean = sum / pixels, rms = std::sqrt(max(squares / pixels - sqr(mean), 0.0));
+                CAPTURE(kind);
+                CAPTURE(veils.count);
+                CAPTURE(veils.opacity);
+                CAPTURE(veils.ball);
+                CHECK(pixels >= 3300);
+                CHECK(std::abs(mean - std::pow(1 - static_cast<double>(veils.opacity), veils.ball ? 2 : veils.count)) < 0.017);
+                CHECK(rms < (kind == kLamp ? 0.22 : 1.0 / 32 + 0.002));
+            }
+    }
+
+    TEST_CASE("what may be seen through does not shade itself, and a veil is shaded by what is whole before it") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-2, 0, 2), Vec3(4, 0, 0), Vec3(0, 0, -4)}}});
+        scene.maps.resize(1);
+        scene.maps[0].opacity = 0.5f;
+        scene.camera = over_floor().camera;
+        scene.lights.push_back(SunLight{normalize(Vec3(0.4f, -1, 0.2f)), Rgb(2)});
+        Scene shaded = scene;
+        finish_scene(scene);
+        for (const float part : visible(scene, over_floor())) CHECK(part == 1);
+        add(shaded, QuadList{{{Vec3(-3, 1, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}});
+        finish_scene(shaded);
+        CHECK(visible(shaded, over_floor())(kSize / 2, kSize / 2) == 0);
+    }
+}
