@@ -16,6 +16,7 @@ constexpr double kEnd = 18, kBay = 6;                    // in z: the end walls;
 constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6; // heights: of arches' feet, of the nave's walls, of the aisles' roofs
 constexpr double kThick = 0.5;                           // of walls
 constexpr int kBays = 6;
+constexpr int kVaultColumns = 40; // of cells, from its foot to the crown
 
 /// A flat patch corner + s u + t v, cut into cells.
 void add_patch(MeshBuilder& mesh, Vec3d corner, Vec3d u, Vec3d v, int columns, int rows) {
@@ -117,7 +118,7 @@ void add_column(MeshBuilder& mesh, double x, double z) {
 /// The nave's vault, a half cylinder with coffers, open along the crown between the middle bays.
 void add_vault(MeshBuilder& mesh) {
     for (const double side : {-1.0, 1.0}) {
-        Sheet sheet{.columns = 40, .rows = 240, .point = {}};
+        Sheet sheet{.columns = kVaultColumns, .rows = 240, .point = {}};
         sheet.point = [side](double s, double t) {
             const double z = lerp(-kEnd, kEnd, t);
             const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z)); // of the angle, on each side of the crown
@@ -133,7 +134,8 @@ void add_vault(MeshBuilder& mesh) {
 
 /// The far end, with a round window.
 void add_end_wall(MeshBuilder& mesh) {
-    Sheet sheet{.columns = 96, .rows = 24, .closed_s = true, .point = {}};
+    // As finely cut as the vault, four of whose sheets go round: corner to corner there is no gap between them.
+    Sheet sheet{.columns = 4 * kVaultColumns, .rows = 24, .closed_s = true, .point = {}};
     sheet.point = [](double s, double t) {
         const double angle = 2 * kPi * s;
         const Vec2d direction(std::cos(angle), std::sin(angle));

@@ -1,6 +1,7 @@
 // Ink lines where what is seen changes: an image-space stage over what each sample sees.
 #pragma once
 
+#include "raster/cover.h"
 #include "raster/depth_tile.h"
 #include "raster/geometry.h"
 #include "raster/strip_shader.h"
@@ -20,6 +21,10 @@ struct SeenPicture {
     SeenPicture(int width, int height) : nearness(width, height), normal(width, height), object(width, height) {}
     /// A tile's part. `normals`: smooth_normal_program's, for that tile.
     void add(const DepthTile& tile, const Geometry& geometry, StripShader& normals);
+    /// And before it surfaces with holes and veils, of process_layers: the nearest beyond which less than half of the light is
+    /// seen. `tile`: of what is behind them; `offset`: its samples'.
+    void add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset, std::size_t tile_index,
+                    const HitTile& tile, const Program& normals);
 };
 
 /// How much ink a pixel takes, in [0, 1], by the strongest of three: another object beside it; a step in depth; a crease.

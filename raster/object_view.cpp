@@ -11,8 +11,9 @@ ObjectView::ObjectView(const PreparedData& data_, const PassView& pass_, std::ui
     const Object& placed = data.scene.objects[object];
     const Mesh* mesh = std::get_if<Mesh>(&data.scene.shapes[placed.shape]);
     smooth = std::holds_alternative<Sphere>(data.scene.shapes[placed.shape]) || (mesh != nullptr && !mesh->normals.empty());
-    bent = std::any_of(placed.materials.begin(), placed.materials.end(),
-                       [&](std::uint32_t material) { return data.scene.maps[material].bends_normals(); });
+    const auto any_material = [&](const auto& is) { return std::any_of(placed.materials.begin(), placed.materials.end(), is); };
+    bent = any_material([&](std::uint32_t material) { return data.scene.maps[material].bends_normals(); });
+    emits = any_material([&](std::uint32_t material) { return emitter(data.scene.materials[material]) != nullptr; });
     identity = placed.identity;
     if (identity) return;
     const ObjectTransform at = object_transform(placed, pass.time);

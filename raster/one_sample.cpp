@@ -117,6 +117,12 @@ Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d 
     return dot(surface.ng, ray.direction) > 0 ? -surface.ns : surface.ns;
 }
 
+Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel) {
+    const Ray ray = rounded(view.pinhole.ray(pixel), view.time);
+    const SurfacePoint surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
+    return emitted(scene.materials[surface.material], scene.textures, surface, -ray.direction);
+}
+
 HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel) {
     const Scene& scene = object.data.scene;
     HitCorners at;

@@ -26,6 +26,9 @@ Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hi
 /// The shading normal there, likewise, on the side that is seen.
 Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
+/// And the radiance of its own towards the viewer.
+Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
+
 /// The colour of a hit of the ray through `pixel`. `nearness`: known, or null.
 template <Shader S>
 Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
@@ -34,10 +37,15 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
         const Scene& scene;
         const HitCorners& at;
         const SurfacePoint& surface;
-        Source(const Scene& scene_, const HitCorners& at_) : scene(scene_), at(at_), surface(at_.surface) {}
+        Vec3 to_viewer;
+        Source(const Scene& scene_, const HitCorners& at_, Vec3 to_viewer_)
+            : scene(scene_), at(at_), surface(at_.surface), to_viewer(to_viewer_) {}
         Vec3 bent_normal(std::size_t) const override { return at.ns; }
         Rgb base_color(std::size_t) const override {
             return duet::base_color(scene.materials[surface.material], scene.textures, surface);
+        }
+        Rgb emitted(std::size_t) const override {
+            return duet::emitted(scene.materials[surface.material], scene.textures, surface, to_viewer);
         }
     };
     const ObjectView object(data, view, hit.object);
@@ -56,12 +64,12 @@ Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, c
     ScreenDerivatives<V, wants_derivatives<S>()> derivatives;
     if constexpr (wants_derivatives<S>()) derivatives = {weighed(at.dx), weighed(at.dy)};
     const Pinhole& pinhole = view.pinhole;
-    const Source colors(data.scene, at);
+    const Vec3 way(pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y);
+    const Source colors(data.scene, at, -way);
     return shader.template fragment<float>(FragmentOf<S, float>{
         derivatives, {at.ng}, weighed(at.weights),
         Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),
-        Vec3(pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y),
-        static_cast<float>(at.depth),
+        way, static_cast<float>(at.depth),
         nearness != nullptr ? *nearness : static_cast<float>(min(pinhole.near / at.depth, 1.0)), object, colors, 0});
 }
 

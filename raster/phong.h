@@ -73,7 +73,7 @@ struct LightAtVertices {
         return phong_light(Lights<false>{v.object.data.scene.lights}, [&] { return p; }, n, v.object.to_viewer(p));
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        return phong(f.at, f.object.data.ambient, f.base_color());
+        return f.with_emitted(phong(f.at, f.object.data.ambient, f.base_color()));
     }
 };
 

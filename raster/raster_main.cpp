@@ -1,4 +1,5 @@
 // raster SCENE -o OUT: renders a scene by projecting its primitives onto the pixels.
+#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "raster/multisample.h"
 #include "raster/render.h"
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
                        "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
         app.add_option("--occlusion-radius", occlusion_radius,
                        "Metres that it may be away (default 0: half of the scene's size or the camera's distance, of ssao an eighth)")
-            ->check(CLI::NonNegativeNumber);
+            ->check(nonnegative_number());
         app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
                      "Rough metal and frosted glass show a blurred environment, not as if smooth (default: on)");
         app.add_flag("--transformed-cosines,!--no-transformed-cosines", transformed_cosines,

@@ -221,9 +221,12 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
     const std::unique_ptr<Program> normals = smooth_normal_program(); // relief is no edge
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
         render_tile(frame, pass_view, i, picture);
+        const SampleOffset offset = pass_view.samples.front();
         DepthTile depths;
-        cover(frame.geometry, pass_view, pass_view.samples.front(), frame.grid.tile(i), i, depths);
+        cover(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
+        if (frame.layers != nullptr)
+            seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view), *normals);
     });
     if (!frame.control.stopped()) overlay.add_edges(seen);
 }

@@ -47,9 +47,11 @@ struct ObjectView {
     bool identity;             ///< its space is the world's
     bool smooth;               ///< it has normals at its vertices
     bool bent;                 ///< a material of it has a normal or bump map
+    bool emits;                ///< a material of it is a lamp's
     Mat4 to_world, to_object;  ///< at the pass's moment
     std::optional<Rgb> color;  ///< its base colour, if it has but one
-    bool even() const { return color && !bent; } ///< where on a triangle a sample lies makes no difference to its material
+    /// Where on a triangle a sample lies makes no difference to its material, and it has no light of its own.
+    bool even() const { return color && !bent && !emits; }
     Vec3 eye, forward;         ///< the viewer, and unit, the way the camera looks
     bool orthographic;
 
@@ -118,6 +120,7 @@ public:
         return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
     }
     virtual Vec3 bent_normal(std::size_t sample) const = 0; ///< in the world, unit, on the side that is seen
+    virtual Rgb emitted(std::size_t sample) const = 0; ///< radiance of its own towards the viewer
 };
 
 template <typename V, bool kDerivatives> struct ScreenDerivatives {};
@@ -162,9 +165,12 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives>, SeenSide<T, kFacing> 
             return object.shading_normal(n, this->ng);
     }
     RgbT<T> base_color() const;
+    /// And the light of its own, where it is a lamp.
+    RgbT<T> with_emitted(RgbT<T> reflected) const { return !kPlain && object.emits ? reflected + emitted() : reflected; }
 
 private:
     Vec3T<T> bent_normal() const;
+    RgbT<T> emitted() const;
 };
 
 /// A strip's base colours from sample `first` on. Never inlined: so a fragment whose object has one colour need not lie in
@@ -198,6 +204,24 @@ Vec3T<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::bent_normal() const
         return colors.bent_normal(first);
     else
         return sampled_normals<T>(colors, first);
+}
+
+/// And the light of their own.
+template <typename T> [[gnu::noinline]] RgbT<T> sampled_emission(const ColorSource& colors, std::size_t first) {
+    RgbT<StripOf<float>> found;
+    for (std::size_t lane = 0; lane < T::size; ++lane) {
+        const Rgb c = colors.emitted(first + lane);
+        found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
+    }
+    return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+}
+
+template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
+RgbT<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::emitted() const {
+    if constexpr (std::same_as<T, float>)
+        return colors.emitted(first);
+    else
+        return sampled_emission<T>(colors, first);
 }
 
 /// Whether a shader asks for derivatives: `static constexpr bool kDerivatives = true;`

@@ -59,6 +59,13 @@ Vec3 StripSurface::bent_normal(std::size_t sample) const {
                       samples_per_pixel(*place_, view_));
 }
 
+Rgb StripSurface::emitted(std::size_t sample) const {
+    if (!(samples_->seen >> sample & 1)) return {};
+    const Vec2d pixel = place_->position(sample);
+    return hit_emission(data_.scene, view_, find_hit(geometry_, view_, samples_->id(sample), pixel), pixel,
+                        samples_per_pixel(*place_, view_));
+}
+
 /// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
 /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
 Rgb StripSurface::base_color(std::size_t sample) const {

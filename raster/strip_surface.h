@@ -28,6 +28,7 @@ public:
     Rgb base_color(std::size_t sample) const override;
     RgbT<Floats> base_colors(std::size_t first) const override;
     Vec3 bent_normal(std::size_t sample) const override;
+    Rgb emitted(std::size_t sample) const override;
 
 private:
     TexturePlaces texture_places(std::size_t first) const;

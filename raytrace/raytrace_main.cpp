@@ -1,4 +1,5 @@
 // raytrace SCENE -o OUT: renders a scene by sending rays from the pixels into it.
+#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
@@ -68,9 +69,9 @@ int main(int argc, char** argv) {
                        "How a pixel weighs the light around its centre: box (default, the pixel itself) or "
                        "blackman-harris (a smooth bell over 3 x 3 pixels)");
         app.add_option("--time", settings.time_limit, "Stop after this many seconds, between passes")
-            ->check(CLI::PositiveNumber);
+            ->check(positive_number());
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
-            ->check(CLI::PositiveNumber);
+            ->check(positive_number());
         // As a function: of an optional flag CLI11 would make false what is not given.
         app.add_flag_function("--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
                               "More samples where the error is, --spp in the mean (default with --time or --error, "
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
             "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows its "
             "error, and goes on with these alone. `raytrace merge` joins films");
         app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
-            ->check(CLI::NonNegativeNumber)
+            ->check(nonnegative_number())
             ->needs(film_option);
         app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
         app.add_option("--pixel", pixel,

@@ -56,13 +56,17 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     return Vec3(normalize(n - gradient));
 }
 
-/// Bent just so far that the mirror direction of the viewer (on the side of ng) lies above the surface.
-Vec3 kept_consistent(Vec3 ns, Vec3 ng, Vec3 to_viewer) {
+/// Bent just so far that the mirror direction of the viewer lies above the horizon. Interpolated normals near a silhouette
+/// lean away from the viewer, who then counts as looking along their horizon (as in lifted_above_horizon): both directions
+/// below it have no normal between them that is above.
+Vec3 kept_consistent(Vec3 ns, Vec3 horizon, Vec3 to_viewer) {
+    const float facing = dot(to_viewer, horizon);
+    if (facing < 0) to_viewer = normalize(to_viewer - horizon * facing);
     const Vec3 mirrored = reflect(to_viewer, ns);
-    const float above = dot(mirrored, ng);
+    const float above = dot(mirrored, horizon);
     constexpr float kLowest = 0.01f;
     if (above >= kLowest) return ns;
-    return normalize(to_viewer + normalize(mirrored + ng * (kLowest - above)));
+    return normalize(to_viewer + normalize(mirrored + horizon * (kLowest - above)));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // The arguments of `compare bench`.
+#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
 #include "compare/bench/bench.h"
@@ -32,13 +33,13 @@ Subcommand add_bench(CLI::App& app) {
                       "cycles: measure Blender's path tracer beside ours, where Blender is installed");
     bench->add_option("--at-seconds", options.moments, "Compare errors at these times, too: 1,4,15")
         ->delimiter(',')
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     bench->add_option("--repeats", options.measure.repeats, "Seeds a measurement, at least 2 (default 5)")
         ->check(CLI::Range(2, 10000));
     bench
         ->add_option("--time-limit", options.measure.time_limit,
                      "Begin no further seed after measuring a scene this long, seconds (default 600); two are made")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     bench->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default: the scene's shape with 65536 pixels)");
     bench->add_option("--depth", options.choice.depth, "The path tracer's scattering events at most (default 64)")
         ->check(CLI::Range(0, 1 << 20));

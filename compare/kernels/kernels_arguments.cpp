@@ -1,4 +1,5 @@
 // The arguments of `compare kernels`.
+#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
 #include "compare/kernels/kernels.h"
@@ -49,7 +50,7 @@ Subcommand add_kernels(CLI::App& app) {
                      "or room is closed; 0: none (default "
                      "1000000)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
-    kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)");
+    kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(no_minus());
     kernels->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     kernels->add_flag("--quiet", options.quiet, "No table, no progress bar; faults are still explained");
     kernels->footer(

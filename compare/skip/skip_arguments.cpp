@@ -1,4 +1,5 @@
 // The arguments of `compare skip`.
+#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
 #include "compare/skip/skip.h"
@@ -33,7 +34,8 @@ Subcommand add_skip(CLI::App& app) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     skip->add_option("--threads", options.settings.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    skip->add_option("--seed", options.measure.seed, "The first seed; each repeat takes the next (default 0)");
+    skip->add_option("--seed", options.measure.seed, "The first seed; each repeat takes the next (default 0)")
+        ->check(no_minus());
     skip->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     skip->add_flag("--quiet", options.quiet, "No table, no progress bar");
     skip->footer(std::string("Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"

@@ -1,4 +1,5 @@
 // The arguments of `compare stop`.
+#include "common/program/option_checks.h"
 #include "compare/arguments.h"
 #include "compare/stop/stop.h"
 
@@ -15,9 +16,9 @@ Subcommand add_stop(CLI::App& app) {
     StopOptions& options = *all;
     stop->add_option("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj)")->required();
     stop->add_option("--error", options.settings.error, "The relMSE to ask for (default 0.001)")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     stop->add_option("--time", options.settings.time, "Also ask for renders of so many seconds")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     stop->add_option("--seeds", options.settings.seeds, "Renders, each of a seed of its own (default 20)")
         ->check(CLI::Range(1, 10000));
     stop->add_option("--size", *size,

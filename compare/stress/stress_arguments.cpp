@@ -1,4 +1,5 @@
 // The arguments of `compare stress`.
+#include "common/program/option_checks.h"
 #include "common/system/sabotage.h"
 #include "compare/arguments.h"
 #include "compare/stress/suite.h"
@@ -19,7 +20,7 @@ Subcommand add_stress(CLI::App& app) {
                        "A test, or how the names of some begin: intersection, departure/self-hits; may be given more "
                        "than once");
     stress->add_flag("--list", options.list, "Say what each test is, its bound and the bound's source; run none");
-    stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)");
+    stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(no_minus());
     stress->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     stress->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     if constexpr (kSabotageBuild)

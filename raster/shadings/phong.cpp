@@ -11,7 +11,7 @@ struct PhongShader : NormalVaryings {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         const PreparedData& data = f.object.data;
         const auto place = [origin = f.origin, way = f.way, depth = f.depth] { return origin + way * depth; }; // seldom asked
-        return phong(f.lights(), data.ambient, f.base_color(), place, f.normal(f.at.n), f.wo());
+        return f.with_emitted(phong(f.lights(), data.ambient, f.base_color(), place, f.normal(f.at.n), f.wo()));
     }
 };
 

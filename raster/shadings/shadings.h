@@ -17,8 +17,8 @@ std::unique_ptr<Program> gouraud_program();
 std::unique_ptr<Program> flat_program();
 std::unique_ptr<Program> toon_program();
 std::unique_ptr<Program> wireframe_program();
-std::unique_ptr<Program> normal_program(); ///< of surface_colors.cpp, as the next two
-std::unique_ptr<Program> smooth_normal_program(); ///< whatever maps say: what edges are drawn by
+std::unique_ptr<Program> normal_program();
+std::unique_ptr<Program> smooth_normal_program(); ///< of normal.cpp, whatever maps say: what edges are drawn by
 std::unique_ptr<Program> albedo_program();
 std::unique_ptr<Program> depth_program(const Camera& camera);
 

@@ -46,7 +46,7 @@ struct ToonShader {
             sum.irradiance += arriving.irradiance * band;
             sum.highlights += arriving.irradiance * (band * spot * T(0.5f * kPhongSpecular));
         });
-        return phong(sum, f.object.data.ambient, f.base_color());
+        return f.with_emitted(phong(sum, f.object.data.ambient, f.base_color()));
     }
 };
 

@@ -1,7 +1,7 @@
-// Wireframe with hidden lines removed: a triangle's edges, a pixel wide and anti-aliased, in the base colour; its inside
-// black. The distance of a sample to an edge is barycentric: b / |∇b| pixels, exact on the edge (Bærentzen, Nielsen, Gjøl,
-// Larsen and Christensen 2006, «Single-pass Wireframe Rendering»). A quad's diagonal is no edge; a sphere has none.
-// Lines through and through: raster/lines.h.
+// Wireframe with hidden lines removed: a triangle's edges, a pixel wide and anti-aliased, in the base colour (of a lamp in
+// its light); its inside black. The distance of a sample to an edge is barycentric: b / |∇b| pixels, exact on the edge
+// (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, «Single-pass Wireframe Rendering»). A quad's diagonal is no
+// edge; a sphere has none. Lines through and through: raster/lines.h.
 #include "raster/program.h"
 #include "raster/shadings/shadings.h"
 
@@ -23,7 +23,7 @@ struct WireframeShader {
             nearest = min(nearest, f.at.edges[k] * inverse_sqrt(max(steep, T(1e-24f))));
         }
         constexpr float kHalfWidth = 0.5f;
-        return f.base_color() * clamp(T(kHalfWidth + 0.5f) - nearest, T(0), T(1));
+        return f.with_emitted(f.base_color()) * clamp(T(kHalfWidth + 0.5f) - nearest, T(0), T(1));
     }
 };
 

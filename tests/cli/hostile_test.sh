@@ -75,6 +75,7 @@ for program in raster raytrace; do
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --size 0x5; one_line_error --size
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --size 5; one_line_error --size
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --spp 0; one_line_error --spp
+    expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --seed -1; one_line_error 'found -1, expected a whole number'
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --aov colour; one_line_error colour
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --colour; one_line_error --colour
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/no/folder/x.png"; one_line_error folder
@@ -84,4 +85,10 @@ done
 expect 2 "$bin/raytrace" "$in/good.json" -o "$scratch/x.png" --integrator magic; one_line_error magic
 expect 2 "$bin/raytrace" "$in/good.json" -o "$scratch/x.png" --sampler magic; one_line_error magic
 expect 2 "$bin/raster" "$in/good.json" -o "$scratch/x.png" --shading magic; one_line_error magic
+for number in nan inf -1 far; do
+    expect 2 "$bin/raster" "$in/good.json" -o "$scratch/x.png" --occlusion-radius $number
+    one_line_error "--occlusion-radius: found $number, expected a finite number of at least 0"
+    expect 2 "$bin/raytrace" "$in/good.json" -o "$scratch/x.png" --time $number
+    one_line_error "--time: found $number, expected a finite number above 0"
+done
 finish

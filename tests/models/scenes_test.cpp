@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 #include <vector>
 
 using namespace duet;
@@ -216,6 +218,11 @@ TEST_SUITE("unit") {
         }
         CHECK(flat == 0);
         CHECK(Box3d{Vec3d(scene.bounds.low), Vec3d(scene.bounds.high)}.contains(scene.camera.eye));
+        // The far wall meets the vault corner to corner: other corners would leave gaps, and the sky between.
+        std::set<float> on_vaults_edge;
+        for (const Vec3 p : mesh.positions)
+            if (p.z == -18 && p.y >= 8 && std::abs(std::hypot(p.x, p.y - 8) - 5) < 1e-4f) on_vaults_edge.insert(p.x);
+        CHECK(on_vaults_edge.size() == 2 * 40 + 1);
     }
 
     TEST_CASE("furnace.json is white, closed and lit evenly") {

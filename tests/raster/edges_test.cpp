@@ -75,6 +75,34 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("what has holes is inked where it is whole, hides the lines behind, and shows them through its holes and a thin veil") {
+        const auto square = [](float half, float z) { return QuadList{{Quad{{-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}}}}; };
+        Scene scene;
+        ImageRgb halves(2, 1);
+        halves(0, 0) = Rgb(1.0f), halves(1, 0) = Rgb(0.0f); // the left one is there
+        scene.textures = {{ImageTexture{0, {1, 1}, TextureFilter::kNearest}}, {halves}};
+        add(scene, square(1, 0.0f));
+        add(scene, square(0.5f, -1));
+        const View view{look({0, 0, 6}, {0, 0, 0}, 30), 240, 240};
+        const auto inked_at = [&](ScalarSlot opacity, double x, double y, double z) {
+            scene.maps.resize(scene.materials.size());
+            scene.maps[0].opacity = opacity;
+            finish_scene(scene);
+            const Vec3d at = CameraModel(view).through().project({x, y, z});
+            return ink_near(inked(scene, view).radiance, static_cast<int>(at.x), static_cast<int>(at.y));
+        };
+        const ScalarSlot half{1, 0};
+        CHECK(inked_at(half, -1, 0.3, 0));
+        CHECK(inked_at(half, 0, 0.8, 0));  // the hole's border
+        CHECK(!inked_at(half, 1, 0.3, 0)); // there is nothing
+        CHECK(inked_at(half, 0.5, 0.3, -1));
+        CHECK(!inked_at(half, -0.5, 0.3, -1));
+        CHECK(inked_at(0.4f, -0.5, 0.3, -1));
+        CHECK(!inked_at(0.4f, -1, 0.3, 0));
+        CHECK(!inked_at(0.6f, -0.5, 0.3, -1));
+        CHECK(inked_at(0.6f, -1, 0.3, 0));
+    }
+
     TEST_CASE("every silhouette has its line; the overlay keeps the picture elsewhere; threads don't matter") {
         const Scene scene = varied_scene(120);
         const View view = perspective();

@@ -240,6 +240,34 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("lamps shine in every shading that shows light, in strips and alone, as materials and lights have them") {
+        Scene scene = varied_scene(60);
+        scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
+        for (Material& material : scene.materials) material = Emissive{.radiance = Rgb(2.0f), .two_sided = true, .radiance_texture = 0};
+        finish_scene(scene);
+        scene.lights.clear(); // of which there would be highlights
+        raster::Settings settings = with_hits();
+        settings.environment = false;
+        const raster::Prepared prepared = raster::prepare(scene, settings);
+        const View view = perspective();
+        Control control;
+        const Rendering lit = raster::render(prepared, view, settings, control);
+        for (const raster::Shading shading :
+             {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat, raster::Shading::kToon}) {
+            settings.shading = shading;
+            const Rendering shown = raster::render(prepared, view, settings, control);
+            int seen = 0, apart = 0;
+            for (std::size_t i = 0; i < lit.hit.size(); ++i) {
+                if (!lit.hit[i].valid()) continue;
+                ++seen;
+                apart += max_component(shown.radiance[i] - lit.radiance[i]) > 1e-6f || max_component(lit.radiance[i] - shown.radiance[i]) > 1e-6f;
+            }
+            CAPTURE(static_cast<int>(shading));
+            CHECK(seen > 6000);
+            CHECK(apart == 0);
+        }
+    }
+
     TEST_CASE("flat: a triangle has one colour; Gouraud and Phong agree where triangles are small") {
         const Scene coarse = varied_scene(12), fine = varied_scene(400);
         const View view = perspective();

@@ -101,6 +101,23 @@ TEST_SUITE("unit") {
         CHECK(bent > 1000); // else nothing was tested
     }
 
+    TEST_CASE("near silhouettes, where smooth normals lean away from the viewer, an even map changes nothing, another little") {
+        const Vec3 to_viewer = normalize(Vec3(1, 0, 0.03f));
+        const auto bent = [&](Vec3 smooth, Rgb color) {
+            SurfacePoint point = flat();
+            point.ns = point.horizon = smooth;
+            bend_normal(plain(color), with_normal(), -to_viewer, point);
+            return point.ns;
+        };
+        for (int degrees = 0; degrees <= 20; ++degrees) {
+            const float lean = static_cast<float>(degrees) * 3.14159265f / 180;
+            const Vec3 smooth{-std::sin(lean), 0, std::cos(lean)};
+            CAPTURE(degrees);
+            CHECK(near(bent(smooth, {0.5f, 0.5f, 1}), smooth, 0.01f));
+            CHECK(dot(bent(smooth, {0.5f, 0.65f, 0.95f}), smooth) > 0.9f); // 18° towards y, at most
+        }
+    }
+
     TEST_CASE("opacity: number, texture, cutoff") {
         SurfaceMaps maps;
         CHECK_FALSE(maps.cuts_out());

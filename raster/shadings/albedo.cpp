@@ -1,0 +1,16 @@
+// Base colours as they are, under no light.
+#include "raster/program.h"
+#include "raster/shadings/shadings.h"
+
+namespace duet::raster {
+namespace {
+
+struct AlbedoShader : NoVaryings {
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return f.base_color(); }
+};
+
+} // namespace
+
+std::unique_ptr<Program> albedo_program() { return std::make_unique<ProgramOf<AlbedoShader>>(AlbedoShader{}); }
+
+} // namespace duet::raster

@@ -1,0 +1,22 @@
+// How near surfaces are: white at the camera, half as bright as far away as what it looks at, black at infinity.
+#include "raster/program.h"
+#include "raster/shadings/shadings.h"
+
+namespace duet::raster {
+namespace {
+
+struct DepthShader : NoVaryings {
+    float half = 1; ///< that distance
+
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(T(half) / (T(half) + f.depth)); }
+};
+
+} // namespace
+
+std::unique_ptr<Program> depth_program(const Camera& camera) {
+    DepthShader shader;
+    shader.half = static_cast<float>(length(camera.look_at - camera.eye));
+    return std::make_unique<ProgramOf<DepthShader>>(shader);
+}
+
+} // namespace duet::raster
