@@ -7,6 +7,11 @@
 #include <utility>
 
 namespace duet::raster {
+namespace {
+
+constexpr float kNothing = 0.95f; ///< how well what is behind all is known to be there behind what stands before it: RadiancePyramid
+
+} // namespace
 
 float normal_turn(const Screen& screen, int x, int y) {
     const Vec3 n = screen.normal(x, y);
@@ -34,16 +39,16 @@ ImageFloat normal_turns(const Screen& screen, int threads) {
 
 RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors, int threads) {
     const Screen::FirstLook& look = screen.first_look();
-    Image<std::uint8_t> known(screen.width(), screen.height(), 0);
+    ImageFloat known(screen.width(), screen.height());
     parallel_for(static_cast<std::size_t>(screen.height()), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < screen.width(); ++x) {
             const bool nothing = !(screen.depth(x, y) < kInfinity);
             const bool flat = !nothing && mirrors[look.objects(x, y)] == 0 && is_flat(screen, x, y);
-            known(x, y) = (nothing || flat) && look.lamps(x, y) == 0;
+            known(x, y) = look.lamps(x, y) != 0 ? 0.0f : nothing ? kNothing : flat ? 1.0f : 0.0f;
         }
     });
-    return RadiancePyramid(look.radiance.finest(), known, threads);
+    return RadiancePyramid(look.radiance.finest(), std::move(known), threads);
 }
 
 bool is_flat(const Screen& screen, int x, int y) {

@@ -15,7 +15,7 @@ template <typename F> void for_rows(const ImageRgb& image, int threads, const F&
     parallel_for(rows, image.size() < 10000 ? 1 : threads, [&](std::size_t y) { visit(static_cast<int>(y)); });
 }
 
-/// Row y of a coarse level from two of the fine one: means by weight.
+/// Row y of a coarse level from two of the fine one: means by weight. What is not known for sure counts half as much from level to level.
 void pull(const ImageRgb& fine, const ImageFloat& fine_weights, int y, ImageRgb& coarse, ImageFloat& coarse_weights) {
     for (int row = 2 * y; row < std::min(2 * y + 2, fine.height()); ++row)
         for (int x = 0; x < fine.width(); ++x) {
@@ -25,7 +25,10 @@ void pull(const ImageRgb& fine, const ImageFloat& fine_weights, int y, ImageRgb&
     for (int x = 0; x < coarse.width(); ++x) {
         float& weight = coarse_weights(x, y);
         if (weight > 0) coarse(x, y) = coarse(x, y) / weight;
-        weight = std::min(weight, 1.0f);
+        weight = 0;
+        for (int row = 2 * y; row < std::min(2 * y + 2, fine.height()); ++row)
+            for (int i = 2 * x; i < std::min(2 * x + 2, fine.width()); ++i) weight = std::max(weight, fine_weights(i, row));
+        if (weight < 1) weight *= 0.5f;
     }
 }
 
@@ -55,9 +58,9 @@ RadiancePyramid::RadiancePyramid(ImageRgb picture) {
     }
 }
 
-RadiancePyramid::RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known, int threads) {
-    std::vector<ImageFloat> weights{ImageFloat(known.width(), known.height())};
-    for (std::size_t i = 0; i < known.size(); ++i) weights[0][i] = known[i] != 0 ? 1.0f : 0.0f;
+RadiancePyramid::RadiancePyramid(ImageRgb picture, ImageFloat known, int threads) {
+    std::vector<ImageFloat> weights;
+    weights.push_back(std::move(known));
     levels_.push_back(std::move(picture));
     while (levels_.back().width() > 1 || levels_.back().height() > 1) {
         ImageRgb coarse((levels_.back().width() + 1) / 2, (levels_.back().height() + 1) / 2);

@@ -3,7 +3,6 @@
 
 #include "common/image/image.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace duet::raster {
@@ -13,9 +12,10 @@ class RadiancePyramid {
 public:
     RadiancePyramid() = default;
     explicit RadiancePyramid(ImageRgb picture);
-    /// Of those pixels alone that are `known`, not 0; the others are filled from what is known about them (Gortler et al.
-    /// 1996, «The Lumigraph», §3.4: pull and push). Empty where none is. The same bits for any number of threads.
-    RadiancePyramid(ImageRgb picture, const Image<std::uint8_t>& known, int threads);
+    /// Of pixels by how well they are `known`, in [0, 1]; those of less than 1 are filled from what is known about them
+    /// (Gortler et al. 1996, «The Lumigraph», §3.4: pull and push), and count the less the farther off it is that is filled.
+    /// Empty where nothing is known. The same bits for any number of threads.
+    RadiancePyramid(ImageRgb picture, ImageFloat known, int threads);
 
     /// About (x, y), in pixels, over about `width` of them: between levels and between pixels linearly. At the picture's
     /// edge what is there goes on.

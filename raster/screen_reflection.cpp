@@ -1,5 +1,7 @@
 #include "raster/screen_reflection.h"
 
+#include "raster/crossing.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,8 @@ namespace duet::raster {
 namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
+constexpr float kFacing = 0.3f; ///< cosine: of a closed thing that they meet more steeply rays beside them meet the same
+constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for a metre from the nearer side: far behind it means alone are known
 constexpr int kBlock = 16;      ///< pixels: blocks of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
@@ -32,64 +36,6 @@ bool block_is_beyond(const Screen& screen, float x, float y, float depth) {
     const int x0 = static_cast<int>(x) / kBlock * kBlock, y0 = static_cast<int>(y) / kBlock * kBlock;
     return depth < screen.least_depth(x0, y0, std::min(x0 + kBlock, screen.width()) - 1, std::min(y0 + kBlock, screen.height()) - 1);
 }
-
-/// A ray's way across the picture, from 0 where it begins to 1, in whole steps of a pixel. Along it 1/depth is linear (under
-/// perspective; a parallel view's depth is itself).
-class Crossing {
-public:
-    Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
-        if (!(from_.z > 0)) return;
-        const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
-        // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
-        reach_ = std::min(deeper < 0 ? 0.5f * from_.z / -deeper : kInfinity, 1e3f * from_.z);
-        to_ = screen.project(p + way * reach_);
-        pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
-        if (!moves()) return;
-        float in = 0, out = 1;
-        clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
-        clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
-        if (!(in <= out)) return;
-        // A start far beside the picture may be any number of pixels away.
-        const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
-        first_ = std::max(1, whole(std::ceil(in * pixels_))), last_ = whole(std::floor(out * pixels_));
-    }
-
-    Vec3 from() const { return from_; }
-    bool moves() const { return pixels_ > 1; }
-    int first() const { return first_; } ///< steps at which it is in the picture: rays may begin beside that
-    int last() const { return last_; }
-    float part(int step) const { return static_cast<float>(step) / pixels_; }
-    float x(float t) const { return lerp(from_.x, to_.x, t); }
-    float y(float t) const { return lerp(from_.y, to_.y, t); }
-    float step_x() const { return (to_.x - from_.x) / pixels_; }
-    float step_y() const { return (to_.y - from_.y) / pixels_; }
-    float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
-    /// The other way round; the end where it keeps its depth.
-    float part_at(float depth) const {
-        const float gained = perspective_ ? 1 / to_.z - 1 / from_.z : to_.z - from_.z;
-        return gained != 0 ? (perspective_ ? 1 / depth - 1 / from_.z : depth - from_.z) / gained : 1;
-    }
-    /// Metres gone at t, where it has a depth: a ray across the view keeps that.
-    float distance(float t, float depth) const {
-        return std::abs(to_.z - from_.z) > 1e-3f * from_.z ? reach_ * (depth - from_.z) / (to_.z - from_.z) : reach_ * t;
-    }
-
-private:
-    /// Of one axis: where the line from `at` on stays within [0, size).
-    static void clip(float at, float way, float size, float& in, float& out) {
-        if (way == 0) {
-            if (!(at >= 0 && at < size)) out = -1;
-            return;
-        }
-        const float a = -at / way, b = (size - at) / way;
-        in = std::max(in, std::min(a, b)), out = std::min(out, std::max(a, b));
-    }
-
-    Vec3 from_, to_; ///< in pixels, and depth
-    bool perspective_;
-    float reach_ = 0, pixels_ = 0;
-    int first_ = 1, last_ = 0;
-};
 
 /// One ray on its way.
 class ScreenTrace {
@@ -151,14 +97,27 @@ private:
             return std::nullopt;
         }
         const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
-        const bool behind = near > seen_depth + thickness;
+        const bool glass = is_passed_glass(screen, x, y);
+        const bool behind = near > seen_depth + (glass ? 0 : thickness);
         if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
         if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
             const float crossed = meets_plane(screen, p_, way_, x, y);
-            if (crossed > hidden_from_ && crossed <= distance) return of_hidden(beside_edge(guess(screen, fx, fy, crossed), seen_depth));
+            if (crossed > hidden_from_ && crossed <= distance) {
+                const ScreenHit hit = guess(screen, fx, fy, crossed);
+                return of_hidden(flat_at(hit, beside_edge(hit, seen_depth)));
+            }
         }
-        if (behind) return std::nullopt;
-        return meet(screen, i, t, x, y, near, known > 0);
+        if (behind || glass) return std::nullopt;
+        const auto hit = meet(screen, i, t, x, y, near, known > 0);
+        if (!hit || hidden_from_ < 0) return hit;
+        const auto flat = goes_on(last_flat(i), hidden_from_); // it may have gone under that, hidden
+        return flat && flat->distance < hit->distance ? flat : hit;
+    }
+
+    /// Whether a pixel shows glass that the ray comes through the other way: what it shows the viewer it does not show the ray.
+    bool is_passed_glass(const Screen& screen, int x, int y) const {
+        const Screen* behind = screen.behind();
+        return behind != nullptr && line_.comes_nearer() && behind->first_look().objects(x, y) != screen.first_look().objects(x, y);
     }
 
     /// What is seen at a pixel, where the ray is no nearer and not behind it.
@@ -171,8 +130,11 @@ private:
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
         if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
+        const float facing = -dot(screen.normal(x, y), way_);
+        if (closed && facing <= 0) return std::nullopt; // it comes past its edge
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         const float fx = line_.x(met), fy = line_.y(met);
+        if (closed && facing > kFacing) return of_alone({within(fx, x), within(fy, y), length(step)});
         return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
     }
 
@@ -194,9 +156,9 @@ private:
         const auto [x, y] = scenery_.all.pixel_at(line_.from());
         return {x, y};
     }
-    /// The last one that shows a flat surface that it is before.
-    Pixel last_flat() const {
-        for (int i = line_.last(); i >= line_.first(); --i) {
+    /// The last one, up to a step, that shows a flat surface that it is before.
+    Pixel last_flat(int i) const {
+        for (; i >= line_.first(); --i) {
             const Pixel at = pixel(i);
             if (!at.valid() || scenery_.is_own(at.x, at.y) || !is_flat(scenery_.at(at.x, at.y), at.x, at.y)) continue;
             const float depth = scenery_.at(at.x, at.y).depth(at.x, at.y);
@@ -210,28 +172,60 @@ private:
         return scenery_.all.contains(fx, fy) ? Pixel{static_cast<int>(fx), static_cast<int>(fy)} : Pixel{};
     }
 
+    /// Where it meets the plane of a flat surface that a pixel shows, farther than `from`.
+    std::optional<ScreenHit> goes_on(Pixel at, float from) const {
+        if (!at.valid()) return std::nullopt;
+        const Screen& screen = scenery_.at(at.x, at.y);
+        const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
+        if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
+        const ScreenHit hit = guess(screen, middle(at.x), middle(at.y), crossed);
+        return of_hidden(flat_at(hit, hit));
+    }
+
     std::optional<ScreenHit> beyond_edge() const {
         const Pixel end = last();
-        const auto goes_on = [&](Pixel at, float from) -> std::optional<ScreenHit> {
-            if (!at.valid()) return std::nullopt;
-            const Screen& screen = scenery_.at(at.x, at.y);
-            const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
-            if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
-            return of_hidden(guess(screen, middle(at.x), middle(at.y), crossed));
-        };
         if (hidden_from_ >= 0) {
-            if (const auto hit = goes_on(last_flat(), hidden_from_)) return hit;
+            if (const auto hit = goes_on(last_flat(line_.last()), hidden_from_)) return hit;
             return of_hidden(guess(scenery_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_from_));
         }
         const Screen& screen = scenery_.at(end.x, end.y);
         if (scenery_.is_own(end.x, end.y) || !screen.seen(end.x, end.y)) return std::nullopt;
-        return is_flat(screen, end.x, end.y) ? goes_on(end, 0) : goes_on(last_flat(), 0); // something round stands before it there
+        const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
+        return goes_on(flat ? end : last_flat(line_.last()), 0);
     }
 
     /// What a pixel shows stands for what is met at a distance.
     ScreenHit guess(const Screen& screen, float x, float y, float distance) const {
         const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
         return {x, y, distance, seen ? length(*seen - p_ - way_ * distance) : 0.0f};
+    }
+    /// Whether across the ray's way another object than at a place begins behind it.
+    bool at_own_edge(float fx, float fy) const {
+        const auto [x, y] = scenery_.all.pixel_at({fx, fy, 0});
+        const std::uint32_t object = scenery_.at(x, y).first_look().objects(x, y);
+        for (const float side : {-1.0f, 1.0f}) {
+            const auto [i, k] = scenery_.all.pixel_at({fx - side * line_.step_y(), fy + side * line_.step_x(), 0});
+            const Screen& screen = scenery_.at(i, k);
+            if (screen.first_look().objects(i, k) != object && screen.depth(i, k) > scenery_.at(x, y).depth(x, y)) return true;
+        }
+        return false;
+    }
+    /// A flat surface's hit, moved to where it would be seen: in the flat look surfaces go on behind round things as they are about
+    /// them, and at the picture's edge as they are there. `otherwise` behind a flat thing, and at the surface's own edge.
+    ScreenHit flat_at(ScreenHit hit, const ScreenHit& otherwise) const {
+        const Vec3 place = scenery_.all.project(p_ + way_ * hit.distance);
+        if (!(place.z > 0) || !scenery_.all.contains(place.x, place.y)) {
+            const Pixel end = last();
+            hit.x = middle(end.x), hit.y = middle(end.y);
+            return hit;
+        }
+        const auto [x, y] = scenery_.all.pixel_at(place);
+        const Screen& there = scenery_.at(x, y);
+        if (is_flat(there, x, y) && there.depth(x, y) < (1 - kSameSurface) * place.z) return otherwise;
+        if (at_own_edge(hit.x, hit.y)) return otherwise;
+        if (hidden_from_ >= 0) hit.gap = kHiddenBlur * std::min(hit.gap, hit.distance - hidden_from_);
+        hit.x = place.x, hit.y = place.y;
+        return hit;
     }
     /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
     ScreenHit beside_edge(ScreenHit hit, float depth) const {
@@ -249,6 +243,7 @@ private:
         hit.alone = true;
         return hit;
     }
+    static float within(float at, int pixel) { return clamp(at, static_cast<float>(pixel), static_cast<float>(pixel) + 0.99f); }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;

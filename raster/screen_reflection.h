@@ -53,8 +53,9 @@ struct ScreenHit {
 /// What the picture does not show it may still tell of. A flat surface that the ray, when it comes out from behind
 /// something, has already crossed by its plane is what it has met there; one that it was last seen before goes on behind
 /// what hides the ray up to the picture's edge, which stands for what it meets where there is none; and flat surfaces go on
-/// beyond the edge as they are there, up to the bounds of the scene (relative to the eye). Empty where the ray meets
-/// nothing so.
+/// beyond the edge as they are there, up to the bounds of the scene (relative to the eye). Where that is behind something
+/// round it is looked up at its own place, which the flat look fills from all sides. Glass that the ray comes through
+/// towards the viewer is not met: what that shows the viewer it does not show the ray. Empty where the ray meets nothing so.
 ///
 /// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);

@@ -246,7 +246,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a picture known in part: what is known stays, the rest is filled from what is about it; of nothing, nothing") {
         ImageRgb picture(37, 21, Rgb(5.0f));
-        Image<std::uint8_t> known(37, 21, 0);
+        ImageFloat known(37, 21);
         CHECK(raster::RadiancePyramid(picture, known, 0).empty());
         for (int y = 0; y < 21; ++y)
             for (int x = 0; x < 37; ++x)
@@ -265,11 +265,11 @@ TEST_SUITE("unit") {
     TEST_CASE("a pyramid of what is known is the same by any number of threads") {
         constexpr int kWidth = 320, kHeight = 203;
         ImageRgb picture(kWidth, kHeight);
-        Image<std::uint8_t> known(kWidth, kHeight, 0);
+        ImageFloat known(kWidth, kHeight);
         std::mt19937 random(3);
         std::uniform_real_distribution<float> uniform(0, 1);
         for (Rgb& c : picture.pixels()) c = Rgb(uniform(random), uniform(random), uniform(random));
-        for (std::uint8_t& k : known.pixels()) k = uniform(random) < 0.2f;
+        for (float& k : known.pixels()) k = uniform(random) < 0.2f ? 1.0f : 0.0f;
         const raster::RadiancePyramid by_one(picture, known, 1), by_two(picture, known, 2), by_seven(picture, known, 7);
         for (const float wide : {1.0f, 2.0f, 8.0f, 64.0f})
             for (float y = 0; y < kHeight; y += 3)
@@ -292,6 +292,86 @@ TEST_SUITE("unit") {
         CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
         CHECK(hit->gap == 0);
         CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
+    }
+
+    TEST_CASE("what is hidden of a floor is of both sides about it: more of the nearer one, seen where it lies") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-6, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        add(scene, QuadList{{{Vec3(0, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 0, 1)}});
+        add(scene, Sphere{Vec3(0, 0.6f, 1), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        add(scene, Sphere{Vec3(-2, 0.3f, -3), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Prepared prepared = raster::prepare(scene, plain());
+        const auto screen = raster::screen_of(prepared, kView, plain());
+        const raster::Surroundings around(prepared.data(), plain(), {*screen});
+        const Box3 bounds{screen->relative(scene.bounds.low - Vec3(0.1f, 0.1f, 0.1f)), screen->relative(scene.bounds.high)};
+        const Vec3 from(-2.5f, 0.8f, -0.5f);
+        for (const float x : {-0.6f, -0.3f, 0.3f, 0.6f}) {
+            const Vec3 to(x, 0, -0.5f);
+            const Vec3 p = screen->relative(from), n(1, 0, 0), way = normalize(to - from);
+            const auto hit = raster::trace_screen({*screen}, bounds, p, n, way, false);
+            CAPTURE(x);
+            REQUIRE(hit);
+            CHECK(hit->hidden);
+            CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
+            const Vec3 place = screen->project(screen->relative(to));
+            CHECK(std::abs(hit->x - place.x) < 1);
+            CHECK(std::abs(hit->y - place.y) < 1);
+            const Rgb seen = around.seen({.p = p, .n = n, .way = way, .from_picture = false});
+            CHECK(seen.r < 0.2f); // of the sky
+            CHECK(std::abs(seen.g - seen.b) > 0.02f);
+            CHECK((seen.g > seen.b) == (x < 0));
+        }
+    }
+
+    TEST_CASE("rays that meet a ball steeply where the picture shows its outline see the ball alone, not what is behind it") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        add(scene, Sphere{Vec3(0, 0.6f, 0.5f), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Prepared prepared = raster::prepare(scene, plain());
+        const auto screen = raster::screen_of(prepared, kView, plain());
+        const raster::Surroundings around(prepared.data(), plain(), {*screen});
+        int beside = 0;
+        const Vec3 way = normalize(Vec3(1, 0, 0.5f));
+        for (float z = 0.55f; z < 0.75f; z += 0.002f) {
+            const Vec3 to(-std::sqrt(sqr(0.6f) - sqr(z - 0.5f)), 0.6f, z);
+            const Rgb seen = around.seen({.p = screen->relative(to - way), .n = way, .way = way, .from_picture = false});
+            beside += !(seen.r > 0.95f && seen.g < 0.05f);
+        }
+        CHECK(beside == 0);
+    }
+
+    TEST_CASE("a mirror behind a glass ball shows the floor under it, not what the ball shows the viewer") {
+        Scene scene;
+        const Vec3d center(0, 0.6, 1.5);
+        constexpr double kRadius = 0.5;
+        add(scene, QuadList{{{Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 5, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-8, 0, 6), Vec3(16, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Dielectric{1.5f});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({1.8, 1.6, 5}, {0, 0.6, 0}, 45), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int within = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z);
+                const Vec3d way = normalize(Vec3d(ray.direction.x, ray.direction.y, -ray.direction.z)), to = center - p;
+                const Vec3d floor = p + way * (-p.y / way.y);
+                if (length(to - way * dot(to, way)) > 0.9 * kRadius || !(way.y < 0 && floor.z < 4)) continue;
+                ++within;
+                const Rgb seen = found.radiance(x, y);
+                CHECK(seen.g - seen.r > 0.5f);
+            }
+        CHECK(within > 40);
     }
 
     TEST_CASE("lamps that are not looked for stay in the picture that mirrors see, those that are do not: of glass, too") {
