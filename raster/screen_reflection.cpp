@@ -9,7 +9,6 @@ namespace duet::raster {
 namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
-constexpr float kFacing = 0.3f; ///< cosine: of a closed thing that they meet more steeply rays beside them meet the same
 constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for a metre from the nearer side: far behind it means alone are known
 constexpr int kBlock = 16;      ///< pixels: blocks of the picture before which a ray is are passed at once
 
@@ -130,11 +129,9 @@ private:
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
         if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
-        const float facing = -dot(screen.normal(x, y), way_);
-        if (closed && facing <= 0) return std::nullopt; // it comes past its edge
+        if (closed && dot(screen.normal(x, y), way_) >= 0) return std::nullopt; // it comes past its edge
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         const float fx = line_.x(met), fy = line_.y(met);
-        if (closed && facing > kFacing) return of_alone({within(fx, x), within(fy, y), length(step)});
         return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
     }
 
@@ -243,7 +240,6 @@ private:
         hit.alone = true;
         return hit;
     }
-    static float within(float at, int pixel) { return clamp(at, static_cast<float>(pixel), static_cast<float>(pixel) + 0.99f); }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;
