@@ -75,7 +75,8 @@ std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Ca
         whole.extend({p.x, p.y}, 0);
         first = min(first, p.z), last = max(last, p.z);
     }
-    const double depth = last - first, slack = 0.01 * (length(Vec3d(whole.most.x - whole.least.x, whole.most.y - whole.least.y, depth)) + 1e-30);
+    const double depth = last - first;
+    const double slack = 0.01 * (length(Vec3d(whole.most.x - whole.least.x, whole.most.y - whole.least.y, depth)) + 1e-30);
     const auto view = [&](Vec2d middle, double width) {
         Camera result;
         result.projection = Camera::Projection::kOrthographic;
@@ -100,7 +101,8 @@ std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Ca
         const auto steps = static_cast<std::size_t>(std::ceil(std::log(all / finest) / std::log(kStep)));
         const std::size_t count = std::min(steps, kMostSunViews - 1);
         for (std::size_t i = 0; i < count; ++i)
-            views.push_back(view({target.x, target.y}, finest * std::pow(all / finest, static_cast<double>(i) / static_cast<double>(count))));
+            views.push_back(view({target.x, target.y},
+                                 finest * std::pow(all / finest, static_cast<double>(i) / static_cast<double>(count))));
     }
     views.push_back(view(whole.middle(), all));
     std::ranges::stable_sort(views, {}, &Camera::height);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
 constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
-constexpr float kCoarse = 160, kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are wide, and of those in which they are little
+constexpr float kCoarse = 160, kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are wide, and little
 /// By the distance from the middle: a box of 4 pixels; and one of 8, softened by one of 4, so that what a pattern meets comes
 /// and goes slowly. In both each place in 4 × 4 pixels counts alike, and so, in the second, each pattern.
 constexpr std::array<float, 7> kBox{0.25f, 0.25f, 0.125f, 0, 0, 0, 0};

@@ -36,7 +36,8 @@ TEST_SUITE("unit") {
         const Box3 casters{Vec3(-6, 0, -41), Vec3(6, 9, 1)};
         const Camera camera = look({0, 1.7, 0}, {0, 1.7, -20}, 60);
         const std::vector<SeenPoint> seen = hall_floor();
-        const std::vector<Camera> views = sun_views(sun, casters, camera, seen, kSide, 4), others = sun_views(sun, casters, camera, {}, kSide, 4);
+        const std::vector<Camera> views = sun_views(sun, casters, camera, seen, kSide, 4),
+                                  others = sun_views(sun, casters, camera, {}, kSide, 4);
         REQUIRE(views.size() > 1);
         CHECK(std::ranges::is_sorted(views, {}, &Camera::height));
         CHECK(views.front().height < 0.4 * others.front().height);
