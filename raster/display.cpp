@@ -8,6 +8,7 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace duet::raster {
@@ -34,7 +35,8 @@ void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>
         int column = 0, left = rect.width();
         if (begins_line(to))
             for (; left >= 2 * kBlock; left -= 2 * kBlock, column += 2) stream_line(block(column), block(column + 1), to + column * kBlock);
-        for (; left > 0; left -= kBlock, ++column) std::copy_n(block(column), std::min(left, kBlock), to + column * kBlock);
+        for (; left >= kBlock; left -= kBlock, ++column) std::copy_n(block(column), kBlock, to + column * kBlock);
+        if (left > 0) std::copy_n(block(column), left, to + column * kBlock);
     }
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 namespace duet::raster {
@@ -54,7 +55,10 @@ using duet::fused_minus;
 /// A line of memory, in two halves, past the caches: what is not read soon need not push out what is, nor be fetched before it is
 /// overwritten. Other threads see it after finish_streams().
 inline void stream_line(const void* first_half, const void* second_half, void* line) {
-#if defined(__AVX__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) // which do not see such stores
+    std::memcpy(line, first_half, 32);
+    std::memcpy(static_cast<char*>(line) + 32, second_half, 32);
+#elif defined(__AVX__)
     const __m256i first = _mm256_loadu_si256(static_cast<const __m256i*>(first_half)),
                   second = _mm256_loadu_si256(static_cast<const __m256i*>(second_half));
 #if defined(__AVX512F__)

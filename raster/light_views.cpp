@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kWidestSpot = 60; ///< degrees from the axis: beyond it one picture's texels grow too unequal
 constexpr double kStep = 4;        ///< from one of the sun's views to the next, at most
-constexpr std::size_t kMostSunViews = 5;
+constexpr std::size_t kMostSteps = 4; ///< beside the view of all, and those of ranges
 constexpr std::size_t kRanges = 3;  ///< of distance, that have views of their own
 constexpr double kFiner = 1.3;      ///< what a view must be, at least, to be worth its map
 
@@ -99,7 +99,7 @@ std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Ca
     if (all > (views.empty() ? 1 : kFiner) * finest) {
         const Vec3d target = frame.to_local(camera.look_at);
         const auto steps = static_cast<std::size_t>(std::ceil(std::log(all / finest) / std::log(kStep)));
-        const std::size_t count = std::min(steps, kMostSunViews - 1);
+        const std::size_t count = std::min(steps, kMostSteps);
         for (std::size_t i = 0; i < count; ++i)
             views.push_back(view({target.x, target.y},
                                  finest * std::pow(all / finest, static_cast<double>(i) / static_cast<double>(count))));

@@ -3,7 +3,9 @@
 #include "raster/prepare.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace duet::raster {
 
@@ -121,10 +123,13 @@ template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
+    constexpr int kSide = static_cast<int>(N);
+    const auto bit = [](int row, int column) { return std::uint64_t{1} << ((row + 1) * (kSide + 2) + column + 1); }; // with a border
+    const auto weight_of = [&](int row, int column) { return across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)]; };
     double dark = 0, known = 0, under = 0;
-    bool contact = false;
-    for (int row = 0; row < static_cast<int>(N); ++row)
-        for (int column = 0; column < static_cast<int>(N); ++column) {
+    std::uint64_t blocking = 0, contacts = 0;
+    for (int row = 0; row < kSide; ++row)
+        for (int column = 0; column < kSide; ++column) {
             const int x = x0 + column, y = y0 + row;
             const double seen = this->seen(x, y);
             const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
@@ -135,14 +140,26 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const bool near = over <= slack(plane.rising);
             const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
             if (blocks && seen <= plane.at) continue;
-            const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+            const double weight = weight_of(row, column);
             (over < -plane.rounding ? under : known) += weight;
-            if (blocks) dark += weight;
-            contact = contact || (blocks && near);
+            if (!blocks) continue;
+            blocking |= bit(row, column);
+            if (near)
+                contacts |= bit(row, column);
+            else
+                dark += weight;
         }
-    if (dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
+    // What lies on the receiver's surface is wider than a texel. One by itself sees a facet finer than the map's texels rise over
+    // the plane of another.
+    for (int row = 0; row < kSide; ++row)
+        for (int column = 0; column < kSide; ++column) {
+            const std::uint64_t here = bit(row, column), three = here << 1 | here | here >> 1;
+            const std::uint64_t beside = (three << (kSide + 2) | three | three >> (kSide + 2)) & ~here;
+            if ((contacts & here) != 0 && std::popcount(blocking & beside) >= kBeside) dark += weight_of(row, column);
+        }
+    if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
     // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
-    if (!contact) known += under;
+    if (contacts == 0) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }
 

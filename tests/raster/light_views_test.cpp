@@ -55,7 +55,7 @@ TEST_SUITE("unit") {
         const Box3 casters{Vec3(-1, 0, -1), Vec3(1, 1, 1)};
         const Camera camera = look({0, 3, 3}, {0, 0, 0}, 40);
         std::vector<SeenPoint> seen;
-        for (int i = 0; i < 400; ++i) seen.push_back({Vec3d(i % 20 / 10.0 - 0.95, 0, i / 20 / 10.0 - 0.95), 0.1});
+        for (int i = 0; i < 400; ++i) seen.push_back({Vec3d(i % 20 * 1.8 / 19 - 0.9, 0, i / 20 * 1.8 / 19 - 0.9), 0.01});
         CHECK(sun_views(sun, casters, camera, seen, kSide, 4).size() == sun_views(sun, casters, camera, {}, kSide, 4).size());
     }
 }

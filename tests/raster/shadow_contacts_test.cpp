@@ -1,4 +1,5 @@
 // Shadows where they are hardest: where what throws them touches what they fall on, and where they fade away.
+#include "common/sampling/hash.h"
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -147,6 +148,33 @@ TEST_SUITE("unit") {
                 CAPTURE(way.z);
                 CHECK(*std::ranges::min_element(found) == 1);
             }
+    }
+
+    // Not none: where facets are finer than texels the map does not know them.
+    TEST_CASE("relief finer than the map's texels, all of which the sun sees, loses less than a quarter of its light") {
+        constexpr std::uint32_t kGrid = 240;
+        constexpr float kStep = 2.0f / kGrid;
+        Mesh mesh;
+        for (std::uint32_t j = 0; j <= kGrid; ++j)
+            for (std::uint32_t i = 0; i <= kGrid; ++i) {
+                const float bump = static_cast<float>(mix_bits(j * (kGrid + 1) + i + 1) % 1000) / 1000;
+                mesh.positions.push_back({static_cast<float>(i) * kStep - 1, 1 + bump * 0.2f * kStep, 1 - static_cast<float>(j) * kStep});
+            }
+        for (std::uint32_t j = 0; j < kGrid; ++j)
+            for (std::uint32_t i = 0; i < kGrid; ++i) {
+                const std::uint32_t a = j * (kGrid + 1) + i, b = a + 1, c = a + kGrid + 1, d = c + 1;
+                mesh.triangles.push_back({a, b, d});
+                mesh.triangles.push_back({a, d, c});
+            }
+        Scene scene = with_sun({-1, -1, 0.2f}); // steeper than any slope
+        add(scene, std::move(mesh));
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.shadow_map_side = 128;
+        const ImageFloat found = arriving(scene, {from_above(3, 1.6), 200, 200}, settings);
+        double sum = 0;
+        for (const float lit : found) sum += static_cast<double>(lit);
+        CHECK(sum > 0.75 * 40000); // 0.65 were each texel's word taken
     }
 
     // The truth: lines to the sun against the facets' outline, left out where the filter sees the border of a shadow.
