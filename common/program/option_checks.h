@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -27,11 +29,17 @@ inline CLI::Validator positive_number() {
 inline CLI::Validator nonnegative_number() {
     return number_check("NONNEGATIVE", "a finite number of at least 0", [](double x) { return x >= 0; });
 }
-/// Of an unsigned option: what is no number its conversion refuses.
-inline CLI::Validator no_minus() {
+/// From `low` to `high`; `expected` says so.
+inline CLI::Validator number_within(double low, double high, const char* expected) {
+    return number_check("", expected, [=](double x) { return x >= low && x <= high; });
+}
+/// Decimal digits alone: what conversion to an unsigned number would skip, wrap or cut off is refused.
+inline CLI::Validator whole_number() {
     return {[](std::string& text) -> std::string {
-                if (!text.starts_with('-')) return {};
-                return "found " + text + ", expected a whole number of at least 0";
+                std::uint64_t value = 0;
+                const char *const begin = text.data(), *const end = begin + text.size();
+                if (const auto [rest, error] = std::from_chars(begin, end, value); error == std::errc() && rest == end) return {};
+                return "found " + text + ", expected a whole number from 0 to 2^64 - 1";
             },
             ""};
 }

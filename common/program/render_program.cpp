@@ -32,7 +32,7 @@ void add_common_options(CLI::App& app, Options& options, const std::string& spp_
     app.add_option("--size", options.size, "Picture size WIDTHxHEIGHT (default: the scene's)");
     app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
     app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(no_minus());
+    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(whole_number());
     app.add_option("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
     app.add_option("--aov", options.aovs,
                    "Auxiliary pictures, a list of depth,normal,albedo,hit,variance,samples: channels of an "

@@ -67,7 +67,7 @@ Subcommand add_bench(CLI::App& app) {
         ->add_option("--drift", options.drift,
                      "By what part a machine's pace may change between runs (default 0.15): slower or faster by no "
                      "more is no finding")
-        ->check(CLI::Range(0.0, 10.0));
+        ->check(number_within(0, 10, "a number from 0 to 10"));
     bench->add_option("--stats", options.stats,
                       "Write the figures of report.json to this file too (-: standard output)");
     bench->add_flag("--quiet", options.quiet, "No progress bar, no tables");

@@ -28,14 +28,14 @@ Subcommand add_skip(CLI::App& app) {
     skip->add_option("--budget", options.measure.budget,
                      "Seconds at most for each skip whose pictures differ in bits: they are rendered in pairs until a "
                      "bias of 0.1 % would be found with 99 % power (default 120)")
-        ->check(CLI::Range(0.0, 1e7));
+        ->check(number_within(0, 1e7, "a number from 0 to 1e7"));
     skip->add_option("--only", options.only,
                      "A skip by name (raster/back_faces, or lens for both pipelines'); may be given more than once")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     skip->add_option("--threads", options.settings.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     skip->add_option("--seed", options.measure.seed, "The first seed; each repeat takes the next (default 0)")
-        ->check(no_minus());
+        ->check(whole_number());
     skip->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     skip->add_flag("--quiet", options.quiet, "No table, no progress bar");
     skip->footer(std::string("Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"

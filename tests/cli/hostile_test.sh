@@ -75,7 +75,9 @@ for program in raster raytrace; do
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --size 0x5; one_line_error --size
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --size 5; one_line_error --size
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --spp 0; one_line_error --spp
-    expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --seed -1; one_line_error 'found -1, expected a whole number'
+    for seed in -1 ' -1' 0x10 99999999999999999999; do
+        expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --seed "$seed"; one_line_error "found $seed, expected a whole number"
+    done
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --aov colour; one_line_error colour
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/x.png" --colour; one_line_error --colour
     expect 2 "$bin/$program" "$in/good.json" -o "$scratch/no/folder/x.png"; one_line_error folder
@@ -85,6 +87,12 @@ done
 expect 2 "$bin/raytrace" "$in/good.json" -o "$scratch/x.png" --integrator magic; one_line_error magic
 expect 2 "$bin/raytrace" "$in/good.json" -o "$scratch/x.png" --sampler magic; one_line_error magic
 expect 2 "$bin/raster" "$in/good.json" -o "$scratch/x.png" --shading magic; one_line_error magic
+for number in nan inf -1; do
+    expect 2 "$bin/compare" stress --list --trials $number; one_line_error "--trials: found $number, expected a number from"
+    expect 2 "$bin/compare" kernels "$in/good.json" --seconds $number; one_line_error "--seconds: found $number, expected seconds from"
+    expect 2 "$bin/compare" skip "$in/good.json" --budget $number; one_line_error "--budget: found $number, expected a number from"
+    expect 2 "$bin/compare" bench "$in/good.json" --drift $number; one_line_error "--drift: found $number, expected a number from"
+done
 for number in nan inf -1 far; do
     expect 2 "$bin/raster" "$in/good.json" -o "$scratch/x.png" --occlusion-radius $number
     one_line_error "--occlusion-radius: found $number, expected a finite number of at least 0"
