@@ -9,7 +9,7 @@ namespace duet::raster {
 namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
-constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for a metre from the nearer side: far behind it means alone are known
+constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for each metre behind the nearer side of what hides: deep in, means alone are known
 constexpr int kBlock = 16;      ///< pixels: blocks of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.

@@ -125,7 +125,9 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
     const Plane plane = this->plane(receiver, place);
     constexpr int kSide = static_cast<int>(N);
     const auto bit = [](int row, int column) { return std::uint64_t{1} << ((row + 1) * (kSide + 2) + column + 1); }; // with a border
-    const auto weight_of = [&](int row, int column) { return across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)]; };
+    const auto weight_of = [&](int row, int column) {
+        return across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+    };
     double dark = 0, known = 0, under = 0;
     std::uint64_t blocking = 0, contacts = 0;
     for (int row = 0; row < kSide; ++row)
