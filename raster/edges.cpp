@@ -39,7 +39,6 @@ void SeenPicture::add(const DepthTile& tile, const Geometry& geometry, StripShad
 void SeenPicture::add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset,
                              std::size_t tile_index, const HitTile& tile, const Program& normals) {
     HitLists lists(layers, view, offset, tile_index, tile);
-    if (lists.empty()) return;
     const PixelRect& r = tile.rect();
     ImageFloat through(r.width(), r.height(), 1.0f);
     lists.for_each([&](int x, int y, const Hit& hit) {

@@ -4,6 +4,7 @@
 #include "raster/cover.h"
 #include "raster/display.h"
 #include "raster/geometry.h"
+#include "raster/hit_lists.h"
 #include "raster/layered_nearness.h"
 #include "raster/layers.h"
 #include "raster/look.h"
@@ -225,7 +226,7 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
         DepthTile depths;
         cover(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
-        if (frame.layers != nullptr)
+        if (frame.layers != nullptr && touches(*frame.layers, i))
             seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view), *normals);
     });
     if (!frame.control.stopped()) overlay.add_edges(seen);

@@ -105,6 +105,16 @@ template <typename T> struct VertexInput {
     Vec3T<T> world_ng() const { return unit(object.normal(ng)); }
 };
 
+/// What is asked of samples one by one, side by side: three numbers each.
+template <typename Ask> std::array<Floats, 3> one_by_one(std::size_t first, const Ask& ask) {
+    std::array<StripOf<float>, 3> found;
+    for (std::size_t lane = 0; lane < Floats::size; ++lane) {
+        const auto answer = ask(first + lane);
+        for (std::size_t axis = 0; axis < 3; ++axis) found[axis][lane] = answer[axis];
+    }
+    return {load(found[0], 0), load(found[1], 0), load(found[2], 0)};
+}
+
 /// Looks up what has no batches: base colours of the samples of a strip, and normals by their materials' maps.
 class ColorSource {
 public:
@@ -112,12 +122,8 @@ public:
     virtual Rgb base_color(std::size_t sample) const = 0;
     /// Of as many samples from `first` on as a batch has lanes.
     virtual RgbT<Floats> base_colors(std::size_t first) const {
-        RgbT<StripOf<float>> found;
-        for (std::size_t lane = 0; lane < Floats::size; ++lane) {
-            const Rgb c = base_color(first + lane);
-            found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
-        }
-        return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+        const auto [r, g, b] = one_by_one(first, [&](std::size_t sample) { return base_color(sample); });
+        return {r, g, b};
     }
     virtual Vec3 bent_normal(std::size_t sample) const = 0; ///< in the world, unit, on the side that is seen
     virtual Rgb emitted(std::size_t sample) const = 0; ///< radiance of its own towards the viewer
@@ -189,13 +195,9 @@ RgbT<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::base_color() const {
 }
 
 /// And its normals, likewise.
-template <typename T> [[gnu::noinline]] Vec3T<T> sampled_normals(const ColorSource& colors, std::size_t first) {
-    Vec3T<StripOf<float>> found;
-    for (std::size_t lane = 0; lane < T::size; ++lane) {
-        const Vec3 n = colors.bent_normal(first + lane);
-        found.x[lane] = n.x, found.y[lane] = n.y, found.z[lane] = n.z;
-    }
-    return {load(found.x, 0), load(found.y, 0), load(found.z, 0)};
+[[gnu::noinline]] inline Vec3T<Floats> sampled_normals(const ColorSource& colors, std::size_t first) {
+    const auto [x, y, z] = one_by_one(first, [&](std::size_t sample) { return colors.bent_normal(sample); });
+    return {x, y, z};
 }
 
 template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
@@ -203,17 +205,13 @@ Vec3T<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::bent_normal() const
     if constexpr (std::same_as<T, float>)
         return colors.bent_normal(first);
     else
-        return sampled_normals<T>(colors, first);
+        return sampled_normals(colors, first);
 }
 
 /// And the light of their own.
-template <typename T> [[gnu::noinline]] RgbT<T> sampled_emission(const ColorSource& colors, std::size_t first) {
-    RgbT<StripOf<float>> found;
-    for (std::size_t lane = 0; lane < T::size; ++lane) {
-        const Rgb c = colors.emitted(first + lane);
-        found.r[lane] = c.r, found.g[lane] = c.g, found.b[lane] = c.b;
-    }
-    return {load(found.r, 0), load(found.g, 0), load(found.b, 0)};
+[[gnu::noinline]] inline RgbT<Floats> sampled_emission(const ColorSource& colors, std::size_t first) {
+    const auto [r, g, b] = one_by_one(first, [&](std::size_t sample) { return colors.emitted(sample); });
+    return {r, g, b};
 }
 
 template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
@@ -221,7 +219,7 @@ RgbT<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::emitted() const {
     if constexpr (std::same_as<T, float>)
         return colors.emitted(first);
     else
-        return sampled_emission<T>(colors, first);
+        return sampled_emission(colors, first);
 }
 
 /// Whether a shader asks for derivatives: `static constexpr bool kDerivatives = true;`

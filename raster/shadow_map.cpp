@@ -123,8 +123,8 @@ template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
-    constexpr int kSide = static_cast<int>(N);
-    const auto bit = [](int row, int column) { return std::uint64_t{1} << ((row + 1) * (kSide + 2) + column + 1); }; // with a border
+    constexpr int kSide = static_cast<int>(N), kRow = kSide + 2; // of bits, with a border
+    const auto bit = [](int row, int column) { return std::uint64_t{1} << ((row + 1) * kRow + column + 1); };
     const auto weight_of = [&](int row, int column) {
         return across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
     };
@@ -153,12 +153,12 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
         }
     // What lies on the receiver's surface is wider than a texel. One by itself sees a facet finer than the map's texels rise over
     // the plane of another.
-    for (int row = 0; row < kSide; ++row)
-        for (int column = 0; column < kSide; ++column) {
-            const std::uint64_t here = bit(row, column), three = here << 1 | here | here >> 1;
-            const std::uint64_t beside = (three << (kSide + 2) | three | three >> (kSide + 2)) & ~here;
-            if ((contacts & here) != 0 && std::popcount(blocking & beside) >= kBeside) dark += weight_of(row, column);
-        }
+    for (std::uint64_t left = contacts; left != 0; left &= left - 1) {
+        const int at = std::countr_zero(left);
+        const std::uint64_t here = std::uint64_t{1} << at, three = here << 1 | here | here >> 1;
+        const std::uint64_t beside = (three << kRow | three | three >> kRow) & ~here;
+        if (std::popcount(blocking & beside) >= kBeside) dark += weight_of(at / kRow - 1, at % kRow - 1);
+    }
     if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
     // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
     if (contacts == 0) known += under;

@@ -127,8 +127,9 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
     for (int i = 0; i < (moving ? kMoments : 1); ++i)
         moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) * (i + 0.5) / kMoments
                                   : camera.shutter_open);
+    std::vector<SeenPoint> seen;
     if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
-        seen_ = seen_points(data, settings.threads);
+        seen = seen_points(data, settings.threads);
     std::int64_t cubes = 0;
     for (const Source& source : sources_)
         cubes += static_cast<std::int64_t>(std::max<std::size_t>(source.cells.size(), 1) * moments_.size());
@@ -138,7 +139,7 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
         sources_[i].moments.resize(moments_.size());
         for (std::size_t k = 0; k < moments_.size(); ++k)
-            draw(data, settings, sources_[i], moments_[k], sources_[i].moments[k]);
+            draw(data, settings, seen, sources_[i], moments_[k], sources_[i].moments[k]);
     }
 }
 
@@ -171,7 +172,8 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
     return sources;
 }
 
-void Shadows::draw(const PreparedData& data, const Settings& settings, Source& source, double moment, Maps& maps) {
+void Shadows::draw(const PreparedData& data, const Settings& settings, const std::vector<SeenPoint>& seen, Source& source,
+                   double moment, Maps& maps) {
     std::vector<bool> kept(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
     const auto add_views = [&](const Prepared& casters, std::vector<Camera> views) {
@@ -185,7 +187,7 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, Source& s
         std::vector<bool> casts(scene_.objects.size());
         for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
         const Box3 bounds = bounds_of(data, casts);
-        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera, seen_, side_, kGuard));
+        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera, seen, side_, kGuard));
         return;
     }
     if (const auto* spot = std::get_if<SpotLight>(&light)) {

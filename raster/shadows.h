@@ -48,7 +48,9 @@ private:
         std::vector<Maps> moments;      ///< parallel to moments_
     };
     std::vector<Source> find_sources(const Scene& scene, int cells);
-    void draw(const PreparedData& data, const Settings& settings, Source& source, double moment, Maps& maps);
+    /// `seen`: what the scene's camera sees, where there is a sun.
+    void draw(const PreparedData& data, const Settings& settings, const std::vector<SeenPoint>& seen, Source& source, double moment,
+              Maps& maps);
     /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
     CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment, int side,
                       int threads);
@@ -60,7 +62,6 @@ private:
     std::vector<Source> sources_;
     std::vector<std::size_t> source_of_; ///< of each light; sources_.size(): none
     std::vector<double> moments_;
-    std::vector<SeenPoint> seen_; ///< where there is a sun
     std::size_t unshadowed_ = 0;
     std::int64_t memory_bytes_ = 0;
 };
