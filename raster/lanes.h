@@ -115,12 +115,29 @@ inline void store_ints(const Doubles& value, std::int32_t* to) {
 inline Floats look_up(const StripOf<float>& table, const Ints& index) {
 #if defined(__AVX512F__)
     return _mm512_permutexvar_ps(index, load(table, 0));
+#elif defined(__AVX2__)
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), index), _mm256_permutevar8x32_ps(load(table, 8), index),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
 #else
     alignas(64) std::array<std::int32_t, Ints::size> at;
     alignas(64) std::array<float, Floats::size> found;
     index.store_aligned(at.data());
     for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i] & 15)];
     return Floats::load_aligned(found.data());
+#endif
+}
+inline Floats look_up(const StripOf<float>& table, const StripOf<std::int32_t>& index, std::size_t i) {
+    return look_up(table, load(index, i));
+}
+/// The same of doubles, by numbers from the i-th on.
+inline Doubles look_up(const StripOf<double>& table, const StripOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
+    return _mm512_permutex2var_pd(load(table, 0), at, load(table, 8));
+#else
+    alignas(64) std::array<double, Doubles::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) found[k] = table[static_cast<std::size_t>(index[i + k] & 15)];
+    return Doubles::load_aligned(found.data());
 #endif
 }
 
@@ -144,13 +161,7 @@ inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second,
     return _mm512_permutex2var_ps(load(first, 0), load(index, i), load(second, 0));
 #elif defined(__AVX2__)
     const __m256i at = load(index, i);
-    const auto sixteen = [&](const StripOf<float>& table) {
-        return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), at), _mm256_permutevar8x32_ps(load(table, 8), at),
-                                _mm256_castsi256_ps(_mm256_slli_epi32(at, 28)));
-    };
-    const __m256 found = sixteen(first);
-    if (&first == &second) return found;
-    return _mm256_blendv_ps(found, sixteen(second), _mm256_castsi256_ps(_mm256_slli_epi32(at, 27)));
+    return _mm256_blendv_ps(look_up(first, at), look_up(second, at), _mm256_castsi256_ps(_mm256_slli_epi32(at, 27)));
 #else
     alignas(64) std::array<float, Floats::size> found;
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -178,9 +189,7 @@ inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32
 inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& second, const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)
     const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
-    const auto sixteen = [&](const StripOf<double>& table) { return _mm512_permutex2var_pd(load(table, 0), at, load(table, 8)); };
-    if (&first == &second) return sixteen(first);
-    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), sixteen(first), sixteen(second));
+    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), look_up(first, index, i), look_up(second, index, i));
 #else
     alignas(64) std::array<double, Doubles::size> found;
     for (std::size_t k = 0; k < found.size(); ++k) {

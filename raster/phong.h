@@ -14,15 +14,15 @@ inline constexpr float kPhongDiffuse = kInvPi;
 inline constexpr float kPhongSpecular = 0.04f * ((1 << kPhongSquarings) + 2) * kInvPi / 2;
 
 /// What becomes of light from wi: the cosine at which it arrives, and the part of the rest that the highlight sends on
-/// towards wo, by solid angle. n, wo and wi are unit; light from behind (n·wi <= 0) gives none.
+/// towards wo, by solid angle. wi is unit; light from behind (n·wi <= 0) gives none.
 template <typename T> struct PhongFactors {
     T cosine, lobe;
 
-    PhongFactors(Vec3T<T> n, Vec3T<T> wo, Vec3T<T> wi) {
-        const T arriving = dot(n, wi);
+    PhongFactors(const Direction<T>& n, const Direction<T>& wo, Vec3T<T> wi) {
+        const T arriving = dot(n.v, wi) * n.scale;
         cosine = max(arriving, T(0));
         // The mirror direction's cosine with wo; three products that need not wait for each other.
-        lobe = max(fused(T(2) * arriving, dot(n, wo), -dot(wi, wo)), T(0));
+        lobe = max(fused(T(2) * arriving, dot(n.v, wo.v) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
         lobe = lobe * T(kPhongSpecular);
     }
@@ -31,7 +31,7 @@ template <typename T> struct PhongFactors {
 /// Radiance of a surface of a base colour under all lights, `ambient` being the radiance from all around; place() is its
 /// point in the world.
 template <typename T, bool kSuns, typename Place>
-RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& place, const Direction<T>& n, const Direction<T>& wo) {
     RgbT<T> sum = base * spread<T>(ambient);
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
@@ -49,7 +49,7 @@ template <typename T> struct PhongLight {
     RgbT<T> highlights; ///< radiance
 };
 template <typename T, typename Place>
-PhongLight<T> phong_light(Lights<false> lights, const Place& place, Vec3T<T> n, Vec3T<T> wo) {
+PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direction<T>& n, const Direction<T>& wo) {
     PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
         const PhongFactors<T> f(n, wo, light.wi);
@@ -70,7 +70,8 @@ struct LightAtVertices {
     template <typename T> using Varyings = PhongLight<T>;
 
     template <typename T> static Varyings<T> light(const VertexInput<T>& v, Vec3T<T> p, Vec3T<T> n) {
-        return phong_light(Lights<false>{v.object.data.scene.lights}, [&] { return p; }, n, v.object.to_viewer(p));
+        return phong_light(Lights<false>{v.object.data.scene.lights}, [&] { return p; }, Direction<T>{n, T(1)},
+                           Direction<T>{v.object.to_viewer(p), T(1)});
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         return f.with_emitted(phong(f.at, f.object.data.ambient, f.base_color()));

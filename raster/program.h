@@ -3,11 +3,13 @@
 #pragma once
 
 #include "raster/cover.h"
+#include "raster/linear_in_tile.h"
 #include "raster/one_sample.h"
 #include "raster/solve.h"
 #include "raster/strip_surface.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace duet::raster {
 
@@ -16,9 +18,10 @@ public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
         : data_(data), geometry_(geometry), view_(view), shader_(shader), surface_(data, geometry, view),
           solver_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
-          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
-          eyes_(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile),
-          only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); })) {}
+          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile), eye_(view.pinhole.origin),
+          only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); })) {
+        if (view.viewport.orthographic) eyes_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
+    }
 
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
@@ -29,8 +32,11 @@ public:
             surface_.move_to(place, samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
             if (samples.seen == 0) return;
             if (samples.on_mesh != samples.seen)
-                shade_one_by_one(place, samples, colors[s]);
-            else if (only_suns_ && strip.object_view->even())
+                return shade_one_by_one(place, samples, colors[s]);
+            const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
+            ways_.use(offset);
+            if (eyes_) eyes_->use(offset);
+            if (only_suns_ && strip.object_view->even())
                 shade_as<true>(place, strip, colors[s]);
             else
                 shade_as<false>(place, strip, colors[s]);
@@ -40,23 +46,6 @@ public:
 private:
     using Many = VaryingsOf<S, Floats>;
     using Solved = SolvedStrip<S, float>;
-
-    /// A vector that is linear in the pixel, counted from the tile's corner: rounded once a tile, to floats whose errors
-    /// are of their last place.
-    struct Linear {
-        Vec3 start, step_x, step_y;
-        int x0, y0;
-
-        Linear(Vec3d start_, Vec3d dx, Vec3d dy, const PixelRect& tile)
-            : start(start_ + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0)), step_x(dx), step_y(dy),
-              x0(tile.x0), y0(tile.y0) {}
-        Vec3T<Floats> at(const Floats& x, const Floats& y) const {
-            const auto along = [&](std::size_t axis) {
-                return fused(Floats(step_x[axis]), x, fused(Floats(step_y[axis]), y, Floats(start[axis])));
-            };
-            return {along(0), along(1), along(2)};
-        }
-    };
 
     void shade_one_by_one(const StripPlace& place, const StripSamples& strip, StripColors& colors) const {
         for (std::uint32_t left = strip.seen; left != 0; left &= left - 1) {
@@ -77,15 +66,7 @@ private:
 
     template <bool kPlain, bool kFacing>
     void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
-        const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
-        const Floats left(static_cast<float>(place.x - ways_.x0) + static_cast<float>(offset.x) / kSubPixels),
-            top(static_cast<float>(place.y - ways_.y0) + static_cast<float>(offset.y) / kSubPixels);
         for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            Floats x = left + load(kColumns<float>, i), y = top + load(kRows<float>, i);
-            if (place.offsets != nullptr) {
-                x += in_pixel(*place.offsets, i, &SampleOffset::x);
-                y += in_pixel(*place.offsets, i, &SampleOffset::y);
-            }
             const Floats near(static_cast<float>(view_.pinhole.near));
             const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
                                                               : min(near / load(strip.depth, i), Floats(1.0f));
@@ -94,8 +75,8 @@ private:
             const FragmentOf<S, Floats, kPlain, kFacing> fragment{derivatives(strip, i),
                                                  seen_side<kFacing>(strip, i),
                                                  varyings_at(strip.at, i),
-                                                 view_.viewport.orthographic ? eyes_.at(x, y) : spread<Floats>(eyes_.start),
-                                                 ways_.at(x, y),
+                                                 eyes_ ? vector(*eyes_, place, i) : spread<Floats>(eye_),
+                                                 vector(ways_, place, i),
                                                  depth,
                                                  nearness,
                                                  *strip.object_view,
@@ -108,6 +89,11 @@ private:
         }
     }
 
+    static Vec3T<Floats> vector(const LinearInTile& of, const StripPlace& place, std::size_t i) {
+        const Vec3T<Floats> here = of.at(place.x, place.y, i);
+        if (place.offsets == nullptr) return here;
+        return here + of.moved(in_pixel(*place.offsets, i, &SampleOffset::x), in_pixel(*place.offsets, i, &SampleOffset::y));
+    }
     static Floats in_pixel(const std::array<SampleOffset, kStrip>& offsets, std::size_t first, std::int32_t SampleOffset::*axis) {
         StripOf<float> own;
         for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
@@ -140,8 +126,10 @@ private:
     const S& shader_;
     StripSurface surface_; ///< of the strip at hand
     StripSolver<S, float> solver_;
-    Linear ways_, eyes_; ///< camera rays
-    bool only_suns_;     ///< are the scene's lights
+    LinearInTile ways_;                ///< of camera rays
+    Vec3 eye_;                         ///< and where they begin: all of them there,
+    std::optional<LinearInTile> eyes_; ///< or each at a place of its own
+    bool only_suns_;                   ///< are the scene's lights
 };
 
 /// A shader, kept by value.

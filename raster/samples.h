@@ -17,6 +17,7 @@ inline constexpr int kSubPixels = 1 << kSubPixelBits;
 struct SampleOffset {
     std::int32_t x = kSubPixels / 2, y = kSubPixels / 2;
 
+    bool operator==(const SampleOffset&) const = default;
     /// The sample's pixel coordinates in the pixel (column, row); exact.
     Vec2d position(int column, int row) const {
         return {column + static_cast<double>(x) / kSubPixels, row + static_cast<double>(y) / kSubPixels};

@@ -10,7 +10,7 @@
 #include <array>
 #include <bit>
 #include <map>
-#include <vector>
+#include <memory>
 
 namespace duet::raster {
 
@@ -34,7 +34,7 @@ template <VertexShader S, typename D> struct SetUp {
     std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
     /// A bit for each triangle where those may take the place of varyings: M/Σe is at most kSteepest wherever it is seen in the
     /// tile, and its corners' normals are all on the side that is seen.
-    std::uint32_t easy = 0;
+    std::uint32_t easy;
 };
 
 /// Set-ups of meshes' triangles under one view of a tile; S's vertex function is asked for what is interpolated.
@@ -44,7 +44,6 @@ public:
 
     SetUps(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
         : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {
-        kept_.reserve(kMost);
         for (Recent& part : recent_) part.ids.fill(kNoTriangle);
     }
 
@@ -100,7 +99,7 @@ private:
         StripOf<std::int32_t> ids, kept;
     };
     std::array<Recent, 4> recent_;
-    std::vector<Sixteen> kept_;
+    std::unique_ptr<Sixteen[]> kept_ = std::make_unique_for_overwrite<Sixteen[]>(kMost);
     std::array<StripOf<std::int32_t>, kMost> wanted_; ///< numbers of those kept, and of those to be
     std::size_t count_ = 0, finished_ = 0;            ///< of either, and of those that are set up
 };
@@ -333,7 +332,6 @@ template <VertexShader S, typename D> void SetUps<S, D>::finish() {
     if (finished_ == count_) return;
     const std::size_t first = finished_ / kStrip, end = (count_ + kStrip - 1) / kStrip;
     for (std::size_t i = first; i < end; ++i) prefetch_vertices(wanted_[i]);
-    kept_.resize(std::max(kept_.size(), end));
     for (std::size_t i = first; i < end; ++i) set_up(wanted_[i], kept_[i]);
     finished_ = count_;
 }

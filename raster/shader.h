@@ -34,6 +34,14 @@ struct PassView;
 template <typename T> RgbT<T> spread(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
 /// v / |v| of what is not zero.
 template <typename T> Vec3T<T> unit(Vec3T<T> v) { return v * inverse_sqrt(dot(v, v)); }
+/// A direction, of any length: who asks for a cosine with it multiplies once, where a unit vector takes three multiplications.
+template <typename T> struct Direction {
+    Vec3T<T> v;
+    T scale; ///< 1/|v|, or −1/|v| where v points the other way
+
+    static Direction of(Vec3T<T> v) { return {v, inverse_sqrt(dot(v, v))}; }
+    Vec3T<T> unit() const { return v * scale; }
+};
 /// a where the condition holds, else b.
 template <typename T, typename Mask> RgbT<T> select_each(Mask condition, RgbT<T> a, RgbT<T> b) {
     return {select(condition, a.r, b.r), select(condition, a.g, b.g), select(condition, a.b, b.b)};
@@ -75,11 +83,12 @@ struct ObjectView {
         return {column(0), column(1), column(2)};
     }
     /// From an interpolated normal n and the geometric one ng on the side that is seen, both in the object's space and
-    /// of any length: the shading normal in the world, unit, in the hemisphere of ng. ng's where the object has no other.
-    template <typename T> Vec3T<T> shading_normal(Vec3T<T> n, Vec3T<T> ng) const {
-        if (!smooth) return unit(normal(ng));
-        const Vec3T<T> g = normal(ng), s = normal(n);
-        return s * (inverse_sqrt(dot(s, s)) * select(dot(s, g) < T(0), T(-1), T(1)));
+    /// of any length: the shading normal in the world, in the hemisphere of ng. ng's where the object has no other.
+    template <typename T> Direction<T> shading_normal(Vec3T<T> n, Vec3T<T> ng) const {
+        const Vec3T<T> g = normal(ng);
+        if (!smooth) return Direction<T>::of(g);
+        const Direction<T> s = Direction<T>::of(normal(n));
+        return {s.v, s.scale * select(dot(s.v, g) < T(0), T(-1), T(1))};
     }
     /// Unit, from a point of the world.
     template <typename T> Vec3T<T> to_viewer(Vec3T<T> p) const {
@@ -101,7 +110,7 @@ template <typename T> struct VertexInput {
     Vec3T<T> world_p() const { return object.point(p); }
     Vec3T<T> world_middle() const { return object.point(middle); }
     /// The shading normal: unit, on the side that is seen.
-    Vec3T<T> world_n() const { return object.shading_normal(n, ng); }
+    Vec3T<T> world_n() const { return object.shading_normal(n, ng).unit(); }
     Vec3T<T> world_ng() const { return unit(object.normal(ng)); }
 };
 
@@ -159,14 +168,14 @@ struct FragmentInput : ScreenDerivatives<V, kDerivatives>, SeenSide<T, kFacing> 
 
     Vec3T<T> p() const { return origin + way * depth; } ///< in the world
     Lights<kPlain> lights() const { return {object.data.scene.lights}; }
-    Vec3T<T> wo() const { return way * -inverse_sqrt(dot(way, way)); } ///< to the viewer, unit
-    /// The shading normal of an interpolated n of the object's space: unit, in the world, on the side that is seen. Where a
-    /// map bends normals: as that has it.
-    Vec3T<T> normal(Vec3T<T> n) const { return !kPlain && object.bent ? bent_normal() : smooth_normal(n); }
+    Direction<T> wo() const { return {way, -inverse_sqrt(dot(way, way))}; } ///< to the viewer
+    /// The shading normal of an interpolated n of the object's space: in the world, on the side that is seen. Where a map bends
+    /// normals: as that has it.
+    Direction<T> normal(Vec3T<T> n) const { return !kPlain && object.bent ? Direction<T>{bent_normal(), T(1)} : smooth_normal(n); }
     /// The same, whatever maps say.
-    Vec3T<T> smooth_normal(Vec3T<T> n) const {
+    Direction<T> smooth_normal(Vec3T<T> n) const {
         if constexpr (kFacing)
-            return unit(object.normal(n));
+            return Direction<T>::of(object.normal(n));
         else
             return object.shading_normal(n, this->ng);
     }

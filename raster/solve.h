@@ -75,11 +75,19 @@ private:
     };
 
     /// get(i, of): of each sample from the i-th on, as many as there are lanes, its own number; of() says which, of sixteen
-    /// set-ups. OfOne: all samples see one triangle. OfPair: two times sixteen set-ups have all that they see. OfPairs: any.
+    /// set-ups. OfOne: all samples see one triangle. OfSixteen, OfPair: one or two times sixteen set-ups have all that they see.
+    /// OfPairs: any.
     struct OfOne {
         const Sixteen& sixteen;
         std::size_t lane;
         template <typename T, typename Of> xsimd::batch<T> get(std::size_t, const Of& of) const { return xsimd::batch<T>(of(sixteen)[lane]); }
+    };
+    struct OfSixteen {
+        const Sixteen& sixteen;
+        const StripOf<std::int32_t>& lanes;
+        template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
+            return look_up(of(sixteen), lanes, i);
+        }
     };
     struct OfPair {
         const Sixteen &first, &second;
@@ -99,6 +107,7 @@ private:
         }
     };
 
+    void set_grid(SampleOffset offset);
     std::size_t read(std::span<const StripPlace> places);
     void find_pairs(ReadStrip& strip) const;
     static bool all_easy(const ReadStrip& strip);
@@ -118,6 +127,8 @@ private:
     SetUps<S, D> set_ups_;
     int origin_x_, origin_y_;
     bool steps_;
+    SampleOffset grid_offset_{0, 0};
+    StripOf<D> grid_xs_ = kColumns<D>, grid_ys_ = kRows<D>; ///< of samples at that offset, from their strip's first pixel
     static constexpr std::size_t kMost = 32, ///< strips whose triangles are set up side by side
         kTogether = 8; ///< solved: enough for one's work to overlap with the next's, few enough for the first cache
     std::array<ReadStrip, kMost> read_;
@@ -145,11 +156,19 @@ template <typename Strips> Vec3T<Floats> vector(const Strips& v, std::size_t fir
     return {load(v[first], i), load(v[first + 1], i), load(v[first + 2], i)};
 }
 
+/// The numbers of a tile's pixels as D: looked up faster than converted, which all that a strip waits for would wait for.
+template <typename D> inline const std::array<D, TileGrid::kTileSize> kPixels = [] {
+    std::array<D, TileGrid::kTileSize> numbers;
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<D>(i);
+    return numbers;
+}();
+
 /// Where samples lie, from the tile's corner: on a grid, or each at its own place. Exact, in floats, too.
 template <typename D> struct OnGrid {
-    D first_x, first_y;
-    xsimd::batch<D> x(std::size_t i) const { return xsimd::batch<D>(first_x) + load(kColumns<D>, i); }
-    xsimd::batch<D> y(std::size_t i) const { return xsimd::batch<D>(first_y) + load(kRows<D>, i); }
+    std::size_t column, row; ///< the first pixel's
+    const StripOf<D>&xs, &ys; ///< the samples, from its corner
+    xsimd::batch<D> x(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[column]) + load(xs, i); }
+    xsimd::batch<D> y(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[row]) + load(ys, i); }
 };
 template <typename D> struct Scattered {
     StripOf<D> xs, ys;
@@ -262,10 +281,13 @@ void StripSolver<S, D>::solve_at(const ReadStrip& samples, const Positions& posi
         else
             solve_lanes(own, positions, strip);
     };
-    if (samples.one)
-        solve_by(OfOne{*samples.pairs[0].first, static_cast<std::size_t>(samples.lanes[0])});
+    const auto& pair = samples.pairs[0];
+    if (Floats::size < kStrip && samples.one) // where looking up takes more than one step
+        solve_by(OfOne{*pair.first, static_cast<std::size_t>(samples.lanes[0])});
+    else if (samples.pair_count == 1 && pair.first == pair.second)
+        solve_by(OfSixteen{*pair.first, samples.lanes});
     else if (samples.pair_count == 1)
-        solve_by(OfPair{*samples.pairs[0].first, *samples.pairs[0].second, samples.lanes});
+        solve_by(OfPair{*pair.first, *pair.second, samples.lanes});
     else
         solve_by(OfPairs{samples});
 }
@@ -295,8 +317,9 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
     strip.object_view = &set_ups_.object();
     strip.directions = may_solve_directions(place, samples);
     if (place.offsets == nullptr) {
-        const Vec2d first = place.offset.position(place.x - origin_x_, place.y - origin_y_);
-        solve_at(samples, strips::OnGrid<D>{static_cast<D>(first.x), static_cast<D>(first.y)}, strip);
+        if (place.offset != grid_offset_) set_grid(place.offset);
+        const auto column = static_cast<std::size_t>(place.x - origin_x_), row = static_cast<std::size_t>(place.y - origin_y_);
+        solve_at(samples, strips::OnGrid<D>{column, row, grid_xs_, grid_ys_}, strip);
     } else {
         strips::Scattered<D> positions;
         for (std::size_t i = 0; i < kStrip; ++i) {
@@ -311,6 +334,16 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
     if (mend) mend_strip(place, samples, strip);
 }
 
+/// The strips that follow have their samples there in their pixels.
+template <VertexShader S, typename D> void StripSolver<S, D>::set_grid(SampleOffset offset) {
+    grid_offset_ = offset;
+    const Vec2d first = offset.position(0, 0);
+    for (std::size_t i = 0; i < kStrip; ++i) {
+        grid_xs_[i] = kColumns<D>[i] + static_cast<D>(first.x);
+        grid_ys_[i] = kRows<D>[i] + static_cast<D>(first.y);
+    }
+}
+
 /// Once all are set up.
 template <VertexShader S, typename D> void StripSolver<S, D>::find_pairs(ReadStrip& strip) const {
     constexpr std::int32_t kEach = kStrip;
@@ -320,7 +353,7 @@ template <VertexShader S, typename D> void StripSolver<S, D>::find_pairs(ReadStr
         store(sixteens, i, kept >> std::countr_zero(kStrip));
         store(strip.lanes, i, kept & Ints(kEach - 1));
     }
-    strip.one = lanes_of_number(strip.kept, strip.kept[0]) == (1u << kStrip) - 1;
+    strip.one = Floats::size < kStrip && lanes_of_number(strip.kept, strip.kept[0]) == (1u << kStrip) - 1;
     strip.pair_count = 0;
     std::uint32_t left = (1u << kStrip) - 1, seconds = 0;
     const auto take = [&](std::uint32_t& taken) {
@@ -349,6 +382,10 @@ template <VertexShader S, typename D> bool StripSolver<S, D>::all_easy(const Rea
     for (std::size_t k = 0; k < strip.pair_count; ++k) {
         const auto& pair = strip.pairs[k];
         const std::uint32_t of_pair = pair.first->easy | pair.second->easy << kStrip;
+        if (of_pair == ~std::uint32_t{0}) { // as mostly
+            easy |= pair.samples;
+            continue;
+        }
         for (std::size_t i = 0; i < kStrip; i += Ints::size) {
             const Ints bit = Ints(1) << load(strip.lanes, i);
             easy |= pair.samples & lane_bits((Ints(static_cast<std::int32_t>(of_pair)) & bit) != Ints(0)) << i;

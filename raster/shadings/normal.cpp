@@ -9,7 +9,7 @@ struct NormalShader : NormalVaryings {
     bool maps = true;
 
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        const Vec3T<T> n = maps ? f.normal(f.at.n) : f.smooth_normal(f.at.n);
+        const Vec3T<T> n = (maps ? f.normal(f.at.n) : f.smooth_normal(f.at.n)).unit();
         const auto channel = [](T component) { return max((component + T(1)) * T(0.5f), T(0)); };
         return {channel(n.x), channel(n.y), channel(n.z)};
     }

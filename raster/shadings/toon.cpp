@@ -26,7 +26,7 @@ struct ToonShader {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         constexpr std::array kBorders{0.0f, 0.25f, 0.5f, 0.75f}; // a quarter of the light more beyond each
         constexpr float kSpot = 0.97f;                           // cosine to the mirror direction
-        const Vec3T<T> n = f.normal(f.at.n), wo = f.wo();
+        const Vec3T<T> n = f.normal(f.at.n).unit(), wo = f.wo().unit();
         // Change of the unit normal: what is across it of the change of the interpolated one, over that one's length.
         const Vec3T<T> raw = f.object.normal(f.at.n);
         const T scale = inverse_sqrt(dot(raw, raw));

@@ -31,7 +31,7 @@ struct Probe {
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         const Vec3T<T> v = asked == Asked::kPoint          ? f.p()
                            : asked == Asked::kInterpolated ? f.at.p
-                           : asked == Asked::kNormal       ? f.normal(f.at.n)
+                           : asked == Asked::kNormal       ? f.normal(f.at.n).unit()
                            : asked == Asked::kAlongX       ? f.dx.p
                            : asked == Asked::kAlongY       ? f.dy.p
                                                            : Vec3T<T>(f.at.uv.x, f.at.uv.y, T(0));
