@@ -96,7 +96,8 @@ TEST_SUITE("unit") {
                 const auto seen = raster::horizon_occlusion(screen, {all(p), all({0, 1, 0}), all(normalize(-p))},
                                                             raster::OcclusionPattern::of_point(first), 10, 4, 400);
                 mean.visible += xsimd::hadd(seen.visible) / kPatterns;
-                mean.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z)) / static_cast<float>(kPatterns);
+                const Vec3 hidden(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
+                mean.hidden += hidden / static_cast<float>(kPatterns);
             }
             CAPTURE(z);
             CHECK(std::abs(static_cast<double>(mean.visible) - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);

@@ -363,7 +363,8 @@ TEST_SUITE("unit") {
             const auto count = static_cast<int>(raster::Surroundings::kMostLamps) + 1;
             for (int i = 0; i < count; ++i) {
                 const float size = i == 0 ? 0.04f : 0.05f;
-                lamps.quads.push_back({Vec3(-1.6f + 0.2f * static_cast<float>(i % 17), 0.2f + 0.1f * static_cast<float>(i / 17), -1.8f), Vec3(size, 0, 0), Vec3(0, size, 0)});
+                const Vec3 corner(-1.6f + 0.2f * static_cast<float>(i % 17), 0.2f + 0.1f * static_cast<float>(i / 17), -1.8f);
+                lamps.quads.push_back({corner, Vec3(size, 0, 0), Vec3(0, size, 0)});
             }
             add(scene, lamps, Mat4(), Emissive{Rgb(3.0f)});
             finish_scene(scene);

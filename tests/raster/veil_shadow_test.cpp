@@ -59,7 +59,8 @@ TEST_SUITE("unit") {
                 Scene scene = floor_scene();
                 for (int i = 0; i < veils.count; ++i) {
                     const float y = 1 + 0.1f * static_cast<float>(i);
-                    add(scene, veils.ball ? Shape(Sphere{Vec3(0, 1, 0), 0.8f}) : Shape(QuadList{{{Vec3(-1, y, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}}));
+                    const QuadList sheet{{{Vec3(-1, y, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}};
+                    add(scene, veils.ball ? Shape(Sphere{Vec3(0, 1, 0), 0.8f}) : Shape(sheet));
                     scene.maps.resize(scene.materials.size());
                     scene.maps.back().opacity = veils.opacity;
                 }

@@ -388,7 +388,8 @@ TEST_SUITE("unit") {
                 std::vector<std::uint32_t> children{tree.nodes[index].left, tree.nodes[index].right};
                 const auto size = [&](std::uint32_t i) { return tree.nodes[i].leaf() ? -1.0f : tree.nodes[i].box.half_area(); };
                 while (children.size() < BvhNode::kWidth) {
-                    const auto largest = std::max_element(children.begin(), children.end(), [&](auto a, auto b) { return size(a) < size(b); });
+                    const auto smaller = [&](auto a, auto b) { return size(a) < size(b); };
+                    const auto largest = std::max_element(children.begin(), children.end(), smaller);
                     if (size(*largest) < 0) break;
                     const BinaryNode& opened = tree.nodes[*largest];
                     *largest = opened.left;
