@@ -22,12 +22,6 @@ const View kView{look({0, 0, 5}, {0, 0, 0}, 40), 160, 120};
 constexpr double kWallZ = -4;
 constexpr float kIor = 1.5f;
 
-raster::Settings plain() {
-    raster::Settings settings;
-    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
-    return settings;
-}
-
 /// A wall that reflects all of a grey sky, red to the left and green to the right.
 Scene wall() {
     Scene scene;
