@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}
 [ $# -gt 0 ] && shift
 
-packages="g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev libopenexr-dev libtinyobjloader-dev libstb-dev doctest-dev nlohmann-json3-dev libcli11-dev $*"
+packages="g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev libopenexr-dev libtinyobjloader-dev libstb-dev \
+    doctest-dev nlohmann-json3-dev libcli11-dev $*"
 
 missing=''
 for package in $packages; do

@@ -96,7 +96,8 @@ void write_test_ball(const std::filesystem::path& folder) {
   },
   "objects": [
     {"name": "ball", "type": "mesh", "file": "../meshes/test-ball.obj", "material": "ball"},
-)" + ball.objects + (ball.objects.empty() ? "" : "\n") + R"(    {"name": "floor", "type": "quad", "corner": [-6, -0.001, 6], "u": [12, 0, 0], "v": [0, 0, -9], "material": "floor"},
+)" + ball.objects + (ball.objects.empty() ? "" : "\n") +
+               R"(    {"name": "floor", "type": "quad", "corner": [-6, -0.001, 6], "u": [12, 0, 0], "v": [0, 0, -9], "material": "floor"},
     {"name": "wall", "type": "quad", "corner": [-6, 0, -3], "u": [12, 0, 0], "v": [0, 6, 0], "material": "wall"},
     {"name": "lamp", "type": "quad", "corner": [-3.2, 2.0, 0.3], "u": [1.2, 1.6, 0], "v": [0, 0, 2], "material": "lamp"}
   ],

@@ -100,10 +100,11 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     list_shadow_approximations(data, settings, result);
     name(parts.environment && environment && settings.ambient_occlusion == AmbientOcclusion::kNone,
          "Light from the environment is unoccluded.");
-    if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone)
+    if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone) {
+        const bool even = settings.ambient_occlusion == AmbientOcclusion::kSsao;
         result.push_back(message("What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
-                                 occlusion_radius(data, settings),
-                                 settings.ambient_occlusion == AmbientOcclusion::kSsao ? " m away, as if all of it were equally bright." : " m away."));
+                                 occlusion_radius(data, settings), even ? " m away, as if all of it were equally bright." : " m away."));
+    }
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
     const bool refracts = needs_screen_behind(data, settings);
@@ -115,7 +116,8 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
         result.push_back(message(plain_glass, " mirrors the environment alone, no surfaces and no lights that have one."));
     if ((mirrors || refracts) && data.unmirrored_lamps > 0)
         result.push_back(message("The ", data.unmirrored_lamps, " weakest lamps are mirrored only where the picture shows them."));
-    name(any && (mirrors || refracts) && needs.glossy, "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
+    name(any && (mirrors || refracts) && needs.glossy,
+         "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
     name(mirrors,
          "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
          "things what is seen there is taken to go on.");
@@ -133,7 +135,8 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
                                  " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
     name(refracts && needs.insides, "Glass overlaps as if it did not.");
     if (parts.reflection && plain)
-        result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts no caustics."));
+        result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts "
+                                              "no caustics."));
     if (parts.reflection && needs.insides && plain)
         result.push_back(message(plain_glass, " absorbs as over the mean way through a ball of its size, and overlaps as if it did not."));
     name(needs.layers, "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
@@ -182,7 +185,8 @@ void fill_statistics(RenderStatistics& statistics, const PreparedData& data, con
         statistics.samples_per_pixel += static_cast<int>(passes[i].samples.size());
     statistics.seconds = account.seconds();
     statistics.triangles = data.primitives;
-    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.look_bytes + account.picture_bytes);
+    statistics.memory_bytes =
+        data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.look_bytes + account.picture_bytes);
     statistics.skipped = list_skipped(data, settings, account.culled);
     statistics.approximations = list_approximations(data, settings);
 }

@@ -145,7 +145,10 @@ const HemispherePoints& hemisphere_points() {
 
 OcclusionPattern OcclusionPattern::of_row(int x, int y) {
     alignas(64) std::array<std::int32_t, Ints::size> which;
-    for (int i = 0; i < static_cast<int>(Ints::size); ++i) which[static_cast<std::size_t>(i)] = kPatternOf[static_cast<std::size_t>((x + i) % kSide + y % kSide * kSide)];
+    for (std::size_t i = 0; i < Ints::size; ++i) {
+        const int column = (x + static_cast<int>(i)) % kSide, row = y % kSide;
+        which[i] = kPatternOf[static_cast<std::size_t>(column + row * kSide)];
+    }
     return {Ints::load_aligned(which.data())};
 }
 OcclusionPattern OcclusionPattern::of_point(int first) {

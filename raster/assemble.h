@@ -21,9 +21,9 @@ struct AssemblyPlan {
 };
 
 /// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 8 × 8 samples, where there
-/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become a patch, or fragments where they
-/// are few. The others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no sample falls through or counts
-/// twice), a clipped one a fan.
+/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become a patch, or fragments
+/// where they are few. The others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no
+/// sample falls through or counts twice), a clipped one a fan.
 class Assembler {
 public:
     /// `culls_back_faces`: of this run's object. `batch` is empty.

@@ -97,7 +97,8 @@ struct SoftLight::Found {
 
 SoftLight::Blockers SoftLight::search(const Faces& faces) const {
     Blockers blockers;
-    for (std::size_t i = 0; i < faces.count; ++i) add_blockers(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    for (std::size_t i = 0; i < faces.count; ++i)
+        add_blockers(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
     return blockers;
 }
 

@@ -31,7 +31,8 @@ constexpr float kStraight = 0.0031308f;
 /// The moved code of x, to within 1.6e-4 of a code, for x in (kStraight, 1]: x = m·2^e, m in [1, 2), and x^(5/12) is a polynomial in m
 /// (Chebyshev interpolation) times a power of two that a table has.
 Floats curved_code(const Floats& x) {
-    constexpr std::array<float, 7> kPolynomial{0.3518701494f, 1.057500362f, -0.6761592627f, 0.3797715604f, -0.1397501379f, 0.029459171f, -0.002691525733f};
+    constexpr std::array<float, 7> kPolynomial{0.3518701494f,  1.057500362f, -0.6761592627f,  0.3797715604f,
+                                               -0.1397501379f, 0.029459171f, -0.002691525733f};
     const Ints bits = xsimd::bitwise_cast<Ints>(x);
     const Floats m = xsimd::bitwise_cast<Floats>((bits & Ints(0x007fffff)) | Ints(0x3f800000));
     Floats power(kPolynomial.back());

@@ -35,7 +35,7 @@ struct Lobe {
 
     double value(Vec3d wi) const {
         if (!(wi.z > 0)) return 0;
-        return ggx_d(normalize(wo + wi), alpha) * ggx_visibility(wo, wi, alpha) * wi.z;
+        return ggx_reflection(wo, wi, normalize(wo + wi), alpha) * wi.z;
     }
     double pdf(Vec3d wi) const { return wi.z > 0 ? ggx_reflection_pdf(wo, normalize(wo + wi), alpha) : 0; }
     Vec3d sample(Vec2d u) const { return reflect(wo, ggx_sample_visible_normal(wo, alpha, u)); }

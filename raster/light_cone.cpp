@@ -37,7 +37,8 @@ void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes
 std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach, bool& whole) const {
     const float clip = 1e-4f * (length(cone.p) + radius_); // before the light's plane all of the map is covered
     const Quads t(reach), one(1.0f);
-    const Quads qx = Quads(cone.p.x) + (cone.corners_x - Quads(cone.p.x)) * t, qy = Quads(cone.p.y) + (cone.corners_y - Quads(cone.p.y)) * t,
+    const Quads qx = Quads(cone.p.x) + (cone.corners_x - Quads(cone.p.x)) * t,
+                qy = Quads(cone.p.y) + (cone.corners_y - Quads(cone.p.y)) * t,
                 qz = Quads(cone.p.z) + (cone.corners_z - Quads(cone.p.z)) * t;
     float left, right, bottom, top;
     const bool before = lowest(qz) >= clip && cone.p.z >= clip;

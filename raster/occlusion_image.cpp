@@ -99,12 +99,15 @@ void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to
             const Floats at = column + Floats(static_cast<float>(dx));
             const bool within = x + dx >= 0 && x + dx + kLanesWide <= width;
             const Ints places = truncated(min(max(at, none), last));
-            const auto of = [&](const ImageFloat& image) { return within ? load_from(image, x + dx, row) : gather(&image(0, row), places); };
+            const auto of = [&](const ImageFloat& image) {
+                return within ? load_from(image, x + dx, row) : gather(&image(0, row), places);
+            };
             const Floats other = of(screen_.nearness());
             const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
             const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
             const auto counts = (other > none) & (at >= none) & (at <= last);
-            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * Floats(kernel_[static_cast<std::size_t>(std::abs(step))]), none);
+            const Floats near(kernel_[static_cast<std::size_t>(std::abs(step))]);
+            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * near, none);
             weights += weight;
             for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(from[k]), none);
         }

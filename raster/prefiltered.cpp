@@ -101,8 +101,10 @@ float roughness_of(int map) { return static_cast<float>(map + 1) / Prefiltered::
 
 Prefiltered::Prefiltered(const Environment& environment, int threads) {
     if (std::holds_alternative<SkyEnvironment>(environment))
-        for (std::size_t i = 0; i < mean_cosine_.size(); ++i)
-            mean_cosine_[i] = i == 0 ? 1 : mean_cosine(lobe_samples(sqr(static_cast<float>(i) / static_cast<float>(mean_cosine_.size() - 1))));
+        for (std::size_t i = 0; i < mean_cosine_.size(); ++i) {
+            const float roughness = static_cast<float>(i) / static_cast<float>(mean_cosine_.size() - 1);
+            mean_cosine_[i] = i == 0 ? 1 : mean_cosine(lobe_samples(sqr(roughness)));
+        }
     const auto* picture = std::get_if<ImageEnvironment>(&environment);
     if (picture == nullptr || picture->image.empty()) return;
     int width = 8;

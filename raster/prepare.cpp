@@ -156,8 +156,9 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     choose_lamps(data);
     std::size_t vertices = 0;
     for (const auto& shape : data.vertices) vertices += shape.size();
-    data.memory_bytes = static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
-                                                  scene.objects.size() * sizeof(std::uint32_t));
+    data.memory_bytes =
+        static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) +
+                                  data.objects.size() * sizeof(PreparedObject) + scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));

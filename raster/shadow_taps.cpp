@@ -67,10 +67,12 @@ float SoftLight::dark_taps(float blocker, const Cone& cone, std::size_t face, in
         const Floats x = Floats(cube_.middle - 0.5f) + q.x * per_depth, y = Floats(cube_.middle - 0.5f) - q.y * per_depth;
         const Floats x0 = xsimd::floor(x), y0 = xsimd::floor(y), fx = x - x0, fy = y - y0, gx = one - fx, gy = one - fy;
         const Ints place = truncated(y0 * Floats(static_cast<float>(map.side())) + x0);
-        const Floats right = (x0 + Floats(0.5f - cube_.middle)) * Floats(per_texel), up = (Floats(cube_.middle - 0.5f) - y0) * Floats(per_texel);
+        const Floats right = (x0 + Floats(0.5f - cube_.middle)) * Floats(per_texel);
+        const Floats up = (Floats(cube_.middle - 0.5f) - y0) * Floats(per_texel);
         const auto add = [&](int step_x, int step_y, const Floats& weight) {
             const Floats seen = gather(nearness + step_y * map.side() + step_x, place);
-            const Vec3T<Floats> d{right + Floats(per_texel * static_cast<float>(step_x)), up - Floats(per_texel * static_cast<float>(step_y)), near};
+            const Vec3T<Floats> d{right + Floats(per_texel * static_cast<float>(step_x)),
+                                  up - Floats(per_texel * static_cast<float>(step_y)), near};
             const Floats part = dot(spread<Floats>(axis), d) - before * seen;
             const auto between = seen_here & (dot(spread<Floats>(n), d) - over * seen > none) & (part > none) & (part < seen);
             if (!xsimd::any(between)) return;

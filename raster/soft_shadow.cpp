@@ -43,9 +43,10 @@ ImageFloat SoftLight::before_light(std::size_t face) const {
     ImageFloat image = cube_.faces[face]->nearness();
     if (kind_ == Emitter::Kind::kBall || cube_.faces[5] != nullptr) return image;
     for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x)
-            if (from_face(face, {static_cast<float>(x) + 0.5f - cube_.middle, cube_.middle - static_cast<float>(y) - 0.5f, cube_.scale}).z < 0)
-                image(x, y) = 0;
+        for (int x = 0; x < image.width(); ++x) {
+            const float right = static_cast<float>(x) + 0.5f - cube_.middle, up = cube_.middle - static_cast<float>(y) - 0.5f;
+            if (from_face(face, {right, up, cube_.scale}).z < 0) image(x, y) = 0;
+        }
     return image;
 }
 

@@ -80,7 +80,9 @@ private:
     struct OfOne {
         const Sixteen& sixteen;
         std::size_t lane;
-        template <typename T, typename Of> xsimd::batch<T> get(std::size_t, const Of& of) const { return xsimd::batch<T>(of(sixteen)[lane]); }
+        template <typename T, typename Of> xsimd::batch<T> get(std::size_t, const Of& of) const {
+            return xsimd::batch<T>(of(sixteen)[lane]);
+        }
     };
     struct OfSixteen {
         const Sixteen& sixteen;

@@ -1,6 +1,7 @@
 #include "common/material/dielectric.h"
 
 #include "common/material/fresnel.h"
+#include "common/material/microfacet.h"
 #include "common/material/reflectance.h"
 
 namespace duet {
@@ -15,13 +16,11 @@ std::optional<BsdfSample> DielectricBsdf::sample(Vec3 wo, float lobe, Vec2, Tran
     const float reflected = fresnel_dielectric(cos_o, relative);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1.0f), reflected, true};
 
-    // Snell's law: the tangential part shrinks by η. Not at total reflection, where `reflected` is 1.
-    const float cos_t = safe_sqrt(cos2_refracted(cos_o, relative));
+    const float cos_t = safe_sqrt(cos2_refracted(cos_o, relative)); // not at total reflection, where `reflected` is 1
     if (cos_t == 0) return std::nullopt;
-    const Vec3 wi = normalize(Vec3(-wo.x / relative, -wo.y / relative, wo.z > 0 ? -cos_t : cos_t));
     // Radiance that crosses into the thinner medium spreads over more solid angle: L / n² is what stays constant.
     const float spread = mode == TransportMode::kRadiance ? 1 / (relative * relative) : 1.0f;
-    return BsdfSample{wi, tint * spread, 1 - reflected, true, true};
+    return BsdfSample{refract(wo, cos_t, relative), tint * spread, 1 - reflected, true, true};
 }
 
 DielectricBsdf Dielectric::at(const TextureSet& textures, const SurfacePoint& point) const {

@@ -43,6 +43,12 @@ template <typename T> T ggx_visibility(Vec3T<T> wo, Vec3T<T> wi, T alpha) {
     return T(0.5f) / (wi.z * ggx_projected(wo, alpha) + wo.z * ggx_projected(wi, alpha));
 }
 
+/// What microfacets that reflect all send from wi to wo, h the normal of those between: D G₂ / (4 cos θₒ cos θᵢ) (Walter et
+/// al., eq. 20, but for Fresnel's term).
+template <typename T> T ggx_reflection(Vec3T<T> wo, Vec3T<T> wi, Vec3T<T> h, T alpha) {
+    return ggx_d(h, alpha) * ggx_visibility(wo, wi, alpha);
+}
+
 /// G₂(wo, wi) / G₁(wo): what is left of the weight of a sample of visible normals, in [0, 1].
 template <typename T> T ggx_g2_over_g1(Vec3T<T> wo, Vec3T<T> wi, T alpha) {
     const T so = ggx_projected(wo, alpha), si = ggx_projected(wi, alpha);
@@ -52,6 +58,12 @@ template <typename T> T ggx_g2_over_g1(Vec3T<T> wo, Vec3T<T> wi, T alpha) {
 /// Density, by solid angle of wi, of wi = reflect(wo, h) with h a visible normal: G₁ D / (4 cos θₒ) (Heitz 2018, §5).
 template <typename T> T ggx_reflection_pdf(Vec3T<T> wo, Vec3T<T> h, T alpha) {
     return ggx_d(h, alpha) / (T(2) * (wo.z + ggx_projected(wo, alpha)));
+}
+
+/// The density of wi where the part `several` of the light leaves after several reflections, by the cosine (ggx_multiple in
+/// ggx_albedo.h), and the rest after one at h.
+template <typename T> T ggx_reflections_pdf(Vec3T<T> wo, Vec3T<T> wi, Vec3T<T> h, T alpha, T several) {
+    return lerp(ggx_reflection_pdf(wo, h, alpha), cosine_hemisphere_pdf(wi.z), several);
 }
 
 /// A microfacet normal with density G₁(wo) max(0, wo·h) D(h) / cos θₒ: stretched to the hemisphere, visible normals are

@@ -84,10 +84,10 @@ Rgb LayeredBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     const Microfacet h = microfacet(wo, wi);
     const float mean = mean_layer_albedo(means, dielectric, dielectric_multiple);
     Rgb f = diffuse * (o.under * i.under * kInvPi / max(1 - mean, 1e-4f)) + glossy.multiple * (o.lost * i.lost) +
-            fresnel_schlick(glossy.normal, h.cosine) * (ggx_d(h.normal, glossy.alpha) * ggx_visibility(wo, wi, glossy.alpha));
+            fresnel_schlick(glossy.normal, h.cosine) * ggx_reflection(wo, wi, h.normal, glossy.alpha);
     if (coat > 0)
         f = f * min(o.under_coat, i.under_coat) +
-            (fresnel_schlick(Rgb(kCoat), h.cosine) * (ggx_d(h.normal, coat_alpha) * ggx_visibility(wo, wi, coat_alpha)) +
+            (fresnel_schlick(Rgb(kCoat), h.cosine) * ggx_reflection(wo, wi, h.normal, coat_alpha) +
              Rgb(coat_multiple * (o.coat_lost * i.coat_lost))) * coat;
     return f;
 }

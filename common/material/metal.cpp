@@ -34,9 +34,7 @@ Rgb MetalBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     wo = upwards(wo);
     wi = upwards(wi);
     const Microfacet h = microfacet(wo, wi);
-    // F D G₂ / (4 cos θₒ cos θᵢ) (Walter et al. 2007, eq. 20)
-    return fresnel(h.cosine) * (ggx_d(h.normal, alpha) * ggx_visibility(wo, wi, alpha)) +
-           multiple * (ggx_lost(alpha, wo.z) * ggx_lost(alpha, wi.z));
+    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) + multiple * (ggx_lost(alpha, wo.z) * ggx_lost(alpha, wi.z));
 }
 
 std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const {
@@ -58,7 +56,7 @@ float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     wo = upwards(wo);
     wi = upwards(wi);
     const float several = is_black(multiple) ? 0 : ggx_lost(alpha, wo.z);
-    return lerp(ggx_reflection_pdf(wo, microfacet(wo, wi).normal, alpha), cosine_hemisphere_pdf(wi.z), several);
+    return ggx_reflections_pdf(wo, wi, microfacet(wo, wi).normal, alpha, several);
 }
 
 MetalBsdf Metal::at(const TextureSet& textures, const SurfacePoint& point) const {

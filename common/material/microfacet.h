@@ -22,6 +22,11 @@ template <typename T> MicrofacetT<T> microfacet(Vec3T<T> wo, Vec3T<T> wi) {
     return {sum / size, T(0.5f) * size};
 }
 
+/// Where a smooth boundary sends what comes from wo, refracted, cos_t > 0 the cosine there: by Snell's law the tangential part
+/// shrinks by `relative`, the index beyond the boundary over that on wo's side.
+template <typename T> Vec3T<T> refract(Vec3T<T> wo, T cos_t, T relative) {
+    return normalize(Vec3T<T>(-wo.x / relative, -wo.y / relative, select(wo.z > T(0), -cos_t, cos_t)));
+}
 /// Where a microfacet h sends what comes from wo, refracted; cos_o = wo·h > 0, `relative` the index beyond over that on wo's
 /// side. Not where it reflects all.
 inline Vec3 refract(Vec3 wo, Vec3 h, float cos_o, float relative) {

@@ -16,7 +16,8 @@ float RoughGlassEnergy::gain(float cosine) const { return look_up(kRoughGlassTab
 
 RoughGlassEnergy::Lobe RoughGlassEnergy::lobe(bool dense) const {
     constexpr float kLeast = 0.0003f;
-    const float mean = RoughGlassTables::look_up(dense ? kRoughGlassTables.mean_lost_dense : kRoughGlassTables.mean_lost_thin, index_, row_);
+    const auto& mean_lost = dense ? kRoughGlassTables.mean_lost_dense : kRoughGlassTables.mean_lost_thin;
+    const float mean = RoughGlassTables::look_up(mean_lost, index_, row_);
     if (mean < kLeast) return {};
     return {dense ? &kRoughGlassTables.lost_dense : &kRoughGlassTables.lost_thin, mean};
 }

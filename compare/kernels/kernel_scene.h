@@ -41,8 +41,8 @@ struct KernelScene {
 bool is_bare_mesh(const std::filesystem::path& file);
 
 /// A bare mesh as the loader frames it (without its ground), or a scene file with its own camera and lights: instances
-/// in their places as the shutter opens, quads cut in two; a light that is a triangle there names it. Throws Error as load_scene does, where nothing is left, and
-/// where a scene file is to be arranged.
+/// in their places as the shutter opens, quads cut in two; a light that is a triangle there names it.
+/// Throws Error as load_scene does, where nothing is left, and where a scene file is to be arranged.
 KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arrangement);
 
 /// A triangle mesh within the closed box of half-side `half` around `center`: twelve triangles that face inwards.

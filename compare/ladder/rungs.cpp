@@ -109,7 +109,8 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
     const RungPlan reflections{{light("reflections", pair, kReflection, Integrator::kReflection, true)},
-                               "Looks up the mirrored and the refracted ray in what the picture shows, past that the environment, blurred where metal is rough.",
+                               "Looks up the mirrored and the refracted ray in what the picture shows, past that the environment, blurred "
+                               "where metal is rough.",
                                "Follows the path on from metal and glass to whatever it meets.",
                                ""};
     const RungPlan everything{{light("everything", pair, {}, Integrator::kPath, true)},

@@ -31,8 +31,8 @@ enum class EmbreeForm { kSingle, kPackets8, kPackets16, kStreamM, kStreamNp };
 std::vector<EmbreeForm> embree_bulk_forms();
 
 /// Embree's threads, its instruction set, its account of memory; and the scene's meshes in the form it asks for
-/// (the last vertex must be followed by readable memory). Refers to the scene, which has nothing but meshes. Throws Error (exit code 1) where Embree fails, and
-/// where this program was built without it.
+/// (the last vertex must be followed by readable memory). Refers to the scene, which has nothing but meshes.
+/// Throws Error (exit code 1) where Embree fails, and where this program was built without it.
 class EmbreeDevice {
 public:
     /// threads: for building, at least 1. avx2: with AVX2 rather than the widest instructions.

@@ -78,8 +78,10 @@ private:
         const auto& image = std::get<ImageTexture>(t);
         const std::string name = message("texture-", image.image, ".exr");
         write_image(folder_ / name, scene_.textures.images[image.image]);
-        return {
-            {"type", "image"}, {"file", name}, {"scale", {image.scale.x, image.scale.y}}, {"bilinear", image.filter != TextureFilter::kNearest}};
+        return {{"type", "image"},
+                {"file", name},
+                {"scale", {image.scale.x, image.scale.y}},
+                {"bilinear", image.filter != TextureFilter::kNearest}};
     }
 
     float constant(const ScalarSlot& slot, const char* what) {

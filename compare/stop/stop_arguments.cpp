@@ -35,8 +35,8 @@ Subcommand add_stop(CLI::App& app) {
         std::string("Example:\n  compare stop models/cornell.json models/demo.json --error 0.002\n\n"
                     "A row a scene: the median error of all seeds over the one asked for, which is to be within 20 %; "
                     "adaptive over even sampling, by squared error × time, below 1 where adaptive sampling pays; and the "
-                    "time farthest from the one asked for, which is to be within 5 % or one pass of two samples a pixel. A scene with mirrors or "
-                    "glass and lamps has caustics, and its error is reported only.") +
+                    "time farthest from the one asked for, which is to be within 5 % or one pass of two samples a pixel. A scene "
+                    "with mirrors or glass and lamps has caustics, and its error is reported only.") +
         kExitCodes);
     return {stop, [all, size] {
                 if (!size->empty()) all->size = parse_picture_size(*size);

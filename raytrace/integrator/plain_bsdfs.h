@@ -144,12 +144,12 @@ public:
 
 private:
     Color eval(const Vec& wo, const Vec& wi, const MicrofacetT<Floats>& h, Floats lost_at_wo) const {
-        const Color one = fresnel_(h.cosine) * (ggx_d(h.normal, alpha_) * ggx_visibility(wo, wi, alpha_));
+        const Color one = fresnel_(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha_);
         return any_multiple_ ? one + multiple_ * (lost_at_wo * lost(wi.z)) : one;
     }
     Floats pdf(const Vec& wo, const Vec& wi, const MicrofacetT<Floats>& h, Floats lost_at_wo) const {
         const Floats several = select(single_, Floats(0.0f), lost_at_wo);
-        return lerp(ggx_reflection_pdf(wo, h.normal, alpha_), cosine_hemisphere_pdf(wi.z), several);
+        return ggx_reflections_pdf(wo, wi, h.normal, alpha_, several);
     }
     // As ggx_lost, where any lane needs it.
     Floats lost(Floats cosine) const {
@@ -181,7 +181,7 @@ public:
         const Floats relative = select(outside, eta_, one / eta_), reflected = fresnel_dielectric(cos_o, relative);
         const Mask reflects = u.lobe < reflected;
         const Floats cos_t = safe_sqrt(cos2_refracted(cos_o, relative));
-        const Vec refracted = normalize(Vec(-wo.x / relative, -wo.y / relative, negated_where(outside, cos_t)));
+        const Vec refracted = refract(wo, cos_t, relative);
         const Color through = tint_ * (one / (relative * relative));
         return {select(reflects, Vec(-wo.x, -wo.y, wo.z), refracted),
                 {select(reflects, one, through.r), select(reflects, one, through.g), select(reflects, one, through.b)},

@@ -3,26 +3,30 @@
 # The contrast of a text with what lies behind it: WCAG 2.1, «relative luminance» and «contrast ratio». Over a picture
 # (.stage) the worst of black and white is taken.
 _CONTRAST = """(() => {
-  const parse = text => { const n = text.match(/[\\d.]+/g).map(Number); return text.startsWith("color(") ? [...n.slice(-4, -1).map(v => v * 255), n[3] ?? 1] : [n[0], n[1], n[2], n[3] ?? 1]; };
+  const parse = text => {
+    const n = text.match(/[\\d.]+/g).map(Number);
+    return text.startsWith("color(") ? [...n.slice(-4, -1).map(v => v * 255), n[3] ?? 1] : [n[0], n[1], n[2], n[3] ?? 1];
+  };
   const over = (top, below) => below.map((v, c) => top[c] * top[3] + v * (1 - top[3]));
   const curve = v => v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4;
   const light = rgb => 0.2126 * curve(rgb[0]) + 0.7152 * curve(rgb[1]) + 0.0722 * curve(rgb[2]);
   const ratio = (a, b) => { const [x, y] = [light(a), light(b)]; return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); };
   const grounds = e => {
-    const layers = [];
+    const layers = [], on = ground => layers.reduceRight((below, top) => over(top, below), ground);
     for (let at = e; at; at = at.parentElement) {
-      if (at.classList.contains("stage")) return [[0, 0, 0], [255, 255, 255]].map(g => layers.reduceRight((below, top) => over(top, below), g));
+      if (at.classList.contains("stage")) return [on([0, 0, 0]), on([255, 255, 255])];
       const color = parse(getComputedStyle(at).backgroundColor);
       if (color[3] > 0) layers.push(color);
       if (color[3] === 1) break;
     }
-    return [layers.reduceRight((below, top) => over(top, below), [255, 255, 255])];
+    return [on([255, 255, 255])];
   };
   const faults = [], seen = { texts: 0 };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (walker.nextNode()) {
     const text = walker.currentNode.textContent.trim(), e = walker.currentNode.parentElement;
-    if (!text || !e.checkVisibility({ visibilityProperty: true, opacityProperty: true }) || e.closest(".offscreen, script, style, option, noscript")) continue;
+    if (!text || !e.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;
+    if (e.closest(".offscreen, script, style, option, noscript")) continue;
     ++seen.texts;
     for (const ground of grounds(e)) {
       const r = ratio(over(parse(getComputedStyle(e).color), ground), ground);
@@ -50,7 +54,8 @@ def sideways(page):
     if width <= room:
         return []
     return [f"the page is {width} pixels wide, the window {room}: " + page.js(f"""[...document.querySelectorAll("body *")]
-        .filter(e => e.checkVisibility() && e.getBoundingClientRect().right > {room} + 1).map(e => e.id || e.className || e.tagName).join(", ")""")]
+        .filter(e => e.checkVisibility() && e.getBoundingClientRect().right > {room} + 1)
+        .map(e => e.id || e.className || e.tagName).join(", ")""")]
 
 
 def names(page):
@@ -72,16 +77,19 @@ def keyboard(page):
     """Tab alone reaches every control, in the order of the page, and one sees where the focus is: an outline, or
     within a plot a stroked .ring."""
     count = page.js("""(() => {
-      window.controls = [...document.querySelectorAll("a[href], button, input, select, summary, [tabindex='0'], [role=slider], [role=button], [role=application]")].filter(e => e.checkVisibility());
+      window.controls = [...document.querySelectorAll("a[href], button, input, select, summary, [tabindex='0'], " +
+        "[role=slider], [role=button], [role=application]")].filter(e => e.checkVisibility());
       window.controls[0].focus();
       return window.controls.length; })()""")
     faults, order = [], []
     for k in range(count + 1):
         if k > 0:
             page.key("Tab")
-        at, ring, name = page.js("""(e => [window.controls.indexOf(e), (s => s.outlineStyle !== "none" && parseFloat(s.outlineWidth) >= 2)(getComputedStyle(e))
-            || [...e.querySelectorAll(".ring")].some(r => getComputedStyle(r).stroke !== "none" && parseFloat(getComputedStyle(r).strokeWidth) >= 2),
-          e.id || e.textContent.trim().slice(0, 30)])(document.activeElement)""")
+        at, ring, name = page.js("""(e => {
+          const drawn = (style, width) => style !== "none" && parseFloat(width) >= 2;
+          const outlined = s => drawn(s.outlineStyle, s.outlineWidth), stroked = s => drawn(s.stroke, s.strokeWidth);
+          const ring = outlined(getComputedStyle(e)) || [...e.querySelectorAll(".ring")].some(r => stroked(getComputedStyle(r)));
+          return [window.controls.indexOf(e), ring, e.id || e.textContent.trim().slice(0, 30)]; })(document.activeElement)""")
         if at < 0 or at in order:
             break
         order.append(at)

@@ -36,8 +36,9 @@ class ReportPage(support.PageTest):
         skipped = page.js("[...document.querySelectorAll('#skipped th')].map(e => e.textContent)")
         self.assertEqual(sorted(skipped), sorted([*report["raster"]["skipped"], *report["raytrace"]["skipped"]]))
         self.assertEqual(page.js("approximations.querySelectorAll('li').length"), len(report["raster"]["approximations"]))
-        self.assertEqual(page.js("[...document.querySelectorAll('#metrics-table tr')].filter(r => !r.querySelector('small')?.textContent).map(r => r.textContent)"), [],
-                         "each metric is explained: page/metrics.js")
+        unexplained = page.js("[...document.querySelectorAll('#metrics-table tr')]"
+                              ".filter(r => !r.querySelector('small')?.textContent).map(r => r.textContent)")
+        self.assertEqual(unexplained, [], "each metric is explained: page/metrics.js")
         for symbol in "▲●":  # never colour alone
             self.assertIn(symbol, page.text("#clock"))
 
@@ -45,7 +46,8 @@ class ReportPage(support.PageTest):
         self.make("cornell", *RUN)
         folder = self.scratch / "cornell"
         page = self.open(self.make("files", "images", str(folder / "raster.png"), str(folder / "raytrace.png")))
-        for section, there in (("hits", False), ("time", False), ("approximations", False), ("skipped", False), ("facts", False), ("metrics", True), ("histogram", True)):
+        for section in ("hits", "time", "approximations", "skipped", "facts", "metrics", "histogram"):
+            there = section in ("metrics", "histogram")
             self.assertEqual(page.visible(f"[aria-labelledby={section}-title]"), there, section)
         self.assertEqual(page.js("modes.children.length"), 5)
         self.assertEqual(page.text("#title"), "raster.png against raytrace.png")
@@ -56,7 +58,8 @@ class ReportPage(support.PageTest):
         for quantity in ("absolute", "flip", "signed"):
             page.js(f"quantity.value = '{quantity}'; quantity.dispatchEvent(new Event('change'))")
             self.assertEqual(page.js(count), WIDTH * HEIGHT)
-            self.assertEqual(page.js("[...document.querySelectorAll('#bin-rows td')].reduce((n, t) => n + Number(t.textContent.replaceAll('\\u2009', '')), 0)"), WIDTH * HEIGHT)
+            cells = page.js("[...document.querySelectorAll('#bin-rows td')].map(t => Number(t.textContent.replaceAll('\\u2009', '')))")
+            self.assertEqual(sum(cells), WIDTH * HEIGHT)
         page.js("quantity.value = 'flip'; quantity.dispatchEvent(new Event('change'))")
         chosen = page.js("[...bins.children].findIndex(b => b.dataset.count > 0 && b.dataset.count < 300)")
         n = page.js(f"Number(bins.children[{chosen}].dataset.count)")
@@ -108,7 +111,8 @@ class ReportPage(support.PageTest):
         for part in ("mode=difference", "zoom=", "px=", "py=", "range="):
             self.assertIn(part, parts)
         again = self.report(parts)
-        view = "[canvas.toDataURL(), inspector.textContent, document.getElementById('range-value').textContent, getComputedStyle(document.body).backgroundColor, document.getElementById('bin-text').textContent]"
+        view = ("[canvas.toDataURL(), inspector.textContent, getComputedStyle(document.body).backgroundColor, "
+                "...['range-value', 'bin-text'].map(id => document.getElementById(id).textContent)]")
         for one in (again, page):
             one.front()
             one.js("document.activeElement.blur(); scrollTo(0, 0)")
@@ -119,7 +123,8 @@ class ReportPage(support.PageTest):
         again.wait("document.querySelector('[data-mode=split]').getAttribute('aria-pressed') === 'true'")
 
     def test_hostile_addresses_do_no_harm(self):
-        page = self.report("mode=x&zoom=1e99&x=-5&y=NaN&px=7.5&py=1e9&range=-1&palette=constructor&channel=toString&histogram=__proto__&bin=1e6&theme=pink&ev=99&split=-3&show=7")
+        page = self.report("mode=x&zoom=1e99&x=-5&y=NaN&px=7.5&py=1e9&range=-1&palette=constructor&channel=toString&"
+                           "histogram=__proto__&bin=1e6&theme=pink&ev=99&split=-3&show=7")
         self.assertEqual(page.js("document.querySelector('#modes [aria-pressed=true]').dataset.mode"), "split")
         self.assertEqual(page.text("#theme"), "Theme: auto")
 
@@ -150,8 +155,8 @@ class ReportPage(support.PageTest):
             self.assertEqual(checks.sideways(page), [], mode)
             self.assertEqual(checks.contrast(page), [], mode)
             self.assertEqual(checks.targets(page), [], mode)
-        self.assertLess(page.js("(([a, b]) => Math.abs(a.left - b.left))([...document.querySelectorAll('#figures > section')].map(s => s.getBoundingClientRect()))"), 1,
-                        "sections stand one above the other")
+        left = page.js("[...document.querySelectorAll('#figures > section')].map(s => s.getBoundingClientRect().left)")
+        self.assertLess(abs(left[0] - left[1]), 1, "sections stand one above the other")
 
     def test_fingers(self):
         page = self.report("mode=side", **PHONE)

@@ -130,7 +130,8 @@ class Views(support.PageTest):
         scale = "[...Array(512).keys()].map(x => [...scale.getContext('2d').getImageData(x, 5, 1, 1).data.slice(0, 3)])"
         for mode, palette, top in (("flip", "hue", 512), ("flip", "grey", 512), ("difference", "hue", 256), ("difference", "grey", 512)):
             page.js(f"location.hash = 'mode={mode}&palette={palette}'")
-            page.wait(f"document.querySelector('[data-mode={mode}]').getAttribute('aria-pressed') === 'true' && palette.value === '{palette}'")
+            page.wait(f"document.querySelector('[data-mode={mode}]').getAttribute('aria-pressed') === 'true' && "
+                      f"palette.value === '{palette}'")
             steps = [lightness(color) for color in page.js(scale)]
             up, down = steps[:top], steps[top:]
             self.assertTrue(all(a <= b + 0.5 for a, b in zip(up, up[1:])) and up[-1] - up[0] > 60, (mode, palette, "rises"))
@@ -168,7 +169,8 @@ class Views(support.PageTest):
         for x, y in (BRIGHTER, (BRIGHTER[0] - 1, BRIGHTER[1]), (BRIGHTER[0] - 1, BRIGHTER[1] + 1)):
             head, (a, b, difference) = self.readout(page)
             self.assertEqual(head, f"Pixel {x}, {y}")
-            for shown, pixel in ((a, changed(x, y)), (b, reference(x, y)), (difference, [s - t for s, t in zip(changed(x, y), reference(x, y))])):
+            apart = [s - t for s, t in zip(changed(x, y), reference(x, y))]
+            for shown, pixel in ((a, changed(x, y)), (b, reference(x, y)), (difference, apart)):
                 expected = [half(v) for v in pixel]
                 for s, e in zip(shown, [*expected, luminance(expected)]):
                     self.assertAlmostEqual(s, e, delta=5.1e-5)
@@ -222,7 +224,8 @@ class Views(support.PageTest):
         def eight_bit(folder):
             write_png(folder / "a.png", stored)
             write_png(folder / "b.png", rows(lambda x, y: (10, 20, 30)))
-        page = self.open(self.make("eight-bit", "images", "@a.png", "@b.png", before=eight_bit), hash_state="mode=flicker&play=false&px=5&py=7")
+        page = self.open(self.make("eight-bit", "images", "@a.png", "@b.png", before=eight_bit),
+                         hash_state="mode=flicker&play=false&px=5&py=7")
         values = page.js("[...document.querySelectorAll('#inspector td.number small')].map(s => Number(s.textContent))")
         self.assertEqual(values[:6], [*stored[7][5], 10, 20, 30])
         for x, y in ((0, 0), (5, 6), (15, 11)):

@@ -38,7 +38,8 @@ scene unknown.json '{"type": "diffuse", "albdeo": 1}' "$quad"; refuse unknown.js
 scene kind.json '{"type": "velvet"}' "$quad"; refuse kind.json velvet
 scene nomaterial.json "$plain" '{"type": "sphere", "center": [0,0,0], "radius": 1, "material": "missing"}'; refuse nomaterial.json missing
 scene radius.json "$plain" '{"type": "sphere", "center": [0,0,0], "radius": -1, "material": "m"}'; refuse radius.json objects[0].radius
-scene cycle.json "$plain" '{"type": "group", "name": "a", "objects": [{"type": "instance", "of": "a"}]}'; refuse cycle.json 'is part of itself'
+scene cycle.json "$plain" '{"type": "group", "name": "a", "objects": [{"type": "instance", "of": "a"}]}'
+refuse cycle.json 'is part of itself'
 scene size.json "$plain" "$quad" ', "image": {"width": 1000000, "height": 10}'; refuse size.json image.width
 scene nomesh.json "$plain" "$(mesh missing.obj)"; refuse nomesh.json missing.obj
 
@@ -60,7 +61,8 @@ bad_obj 'hello\n' 'no faces'
 
 # Pictures as textures.
 scene texture.json '{"type": "diffuse", "albedo": {"texture": "t"}}' "$quad" ', "textures": {"t": {"type": "image", "file": "bad.png"}}'
-printf '\211PNG\r\n\032\n\000\000\000\015IHDR\000\001\206\240\000\001\206\240\010\002\000\000\000' >"$in/bad.png"; refuse texture.json 'truncated' # claims 100,000 x 100,000
+printf '\211PNG\r\n\032\n\000\000\000\015IHDR\000\001\206\240\000\001\206\240\010\002\000\000\000' >"$in/bad.png"
+refuse texture.json 'truncated' # claims 100,000 x 100,000
 printf '\211PNG\r\n\032\n' >"$in/bad.png"; refuse texture.json 'truncated'
 printf 'P6 100000 100000 255\n' >"$in/bad.png"; refuse texture.json '100000 x 100000 pixels'
 printf 'PF\n30000 30000\n-1.0\n' >"$in/bad.png"; refuse texture.json '30000 x 30000 pixels'

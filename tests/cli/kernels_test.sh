@@ -30,11 +30,13 @@ for text in "pear, alone" "pear, room" "pear, clutter" "pear, instances" "cornel
     "camera \*" "too few" "repeats"; do
     grep -q "$text" "$scratch/stdout" || fail "the table lacks «$text»"
 done
-for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged wrong edge_faults leaks as_rendered; do
+for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged wrong edge_faults \
+    leaks as_rendered; do
     grep -q "\"$key\":" "$scratch/all.json" || fail "--stats lacks $key"
 done
 if grep -q '"peer": "embree' "$scratch/all.json"; then
-    for text in '"peer_name": "embree.* medium"' '"peer_name": "embree.* high-robust packets 16"' '"unexplained": 0' '"ours_edge_faults": 0'; do
+    for text in '"peer_name": "embree.* medium"' '"peer_name": "embree.* high-robust packets 16"' '"unexplained": 0' \
+        '"ours_edge_faults": 0'; do
         grep -q "$text" "$scratch/all.json" || fail "--stats lacks $text"
     done
     expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --scene alone --work bounce --peers high --stats -

@@ -2,16 +2,18 @@
 # The same bits for 1, 2 and 7 threads, in both programs, on a scene that uses everything.
 . "$(dirname "$0")/support.sh"
 
+small="--size 96x72 --quiet --aov hit,depth,normal,albedo"
 for scene in models/cornell.json models/everything.json; do
     for threads in 1 2 7; do
-        expect 0 "$bin/raster" $scene -o "$scratch/raster-$threads.exr" --size 96x72 --spp 4 --threads $threads --quiet --aov hit,depth,normal,albedo
-        expect 0 "$bin/raytrace" $scene -o "$scratch/raytrace-$threads.exr" --size 96x72 --spp 6 --threads $threads --quiet --aov hit,depth,normal,albedo,variance
+        expect 0 "$bin/raster" $scene -o "$scratch/raster-$threads.exr" --spp 4 --threads $threads $small
+        expect 0 "$bin/raytrace" $scene -o "$scratch/raytrace-$threads.exr" --spp 6 --threads $threads $small,variance
         for program in raster raytrace; do
-            cmp "$scratch/$program-1.exr" "$scratch/$program-$threads.exr" || fail "$program $scene: $threads threads give other bits than one"
+            cmp "$scratch/$program-1.exr" "$scratch/$program-$threads.exr" ||
+                fail "$program $scene: $threads threads give other bits than one"
         done
     done
     # A seed that is read changes the picture.
-    expect 0 "$bin/raytrace" $scene -o "$scratch/seed.exr" --size 96x72 --spp 6 --seed 1 --quiet --aov hit,depth,normal,albedo,variance
+    expect 0 "$bin/raytrace" $scene -o "$scratch/seed.exr" --spp 6 --seed 1 $small,variance
     ! cmp -s "$scratch/raytrace-1.exr" "$scratch/seed.exr" || fail "$scene: --seed changes nothing"
 done
 finish

@@ -96,7 +96,8 @@ TEST_SUITE("unit") {
                 const auto seen = raster::horizon_occlusion(screen, {all(p), all({0, 1, 0}), all(normalize(-p))},
                                                             raster::OcclusionPattern::of_point(first), 10, 4, 400);
                 mean.visible += xsimd::hadd(seen.visible) / kPatterns;
-                mean.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z)) / static_cast<float>(kPatterns);
+                const Vec3 hidden(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
+                mean.hidden += hidden / static_cast<float>(kPatterns);
             }
             CAPTURE(z);
             CHECK(std::abs(static_cast<double>(mean.visible) - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);
@@ -158,6 +159,35 @@ TEST_SUITE("unit") {
             if (height == 399) CHECK(std::abs(sum - before) < 0.1 * before);
             before = sum;
         }
+    }
+
+    // Pictures of up to 160 pixels take the mean of 4 × 4 pixels, of which fewer would leave grain by the pole, and of 8 × 8
+    // of which the shade about the slab is lost: rms 0.022 and 0.041 against 0.012 and 0.022.
+    TEST_CASE("small pictures show what large ones do: about a thin pole and a low slab, to what four times four of their pixels see") {
+        const auto rms = [](QuadList box) {
+            Scene scene = white_scene();
+            add(scene, std::move(box), Mat4(), Diffuse{{Rgb(0.0f)}});
+            finish_scene(scene);
+            const View small{look({0, 3, 4}, {0, 0.3, 0.7}, 50), 160, 120}, large{small.camera, 640, 480};
+            const ImageRgb found = visible(scene, small, raster::AmbientOcclusion::kGtao, 1);
+            const ImageRgb full = visible(scene, large, raster::AmbientOcclusion::kGtao, 1);
+            double squares = 0;
+            int shaded = 0;
+            for (int y = 0; y < small.height; ++y)
+                for (int x = 0; x < small.width; ++x) {
+                    double mean = 0, least = static_cast<double>(found(x, y).g); // black: not the floor
+                    for (int k = 0; k < 16; ++k) {
+                        const auto fine = static_cast<double>(full(4 * x + k % 4, 4 * y + k / 4).g);
+                        mean += fine / 16, least = std::min(least, fine);
+                    }
+                    if (least == 0 || mean > 0.99) continue;
+                    squares += sqr(static_cast<double>(found(x, y).g) - mean), ++shaded;
+                }
+            CHECK(shaded > 500);
+            return std::sqrt(squares / shaded);
+        };
+        CHECK(rms(box_quads(Vec3(-0.1f, 0, -0.1f), Vec3(0.1f, 1.5f, 0.1f))) < 0.016);
+        CHECK(rms(box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 0.1f, 0.5f))) < 0.03);
     }
 
     // A white wall over a black floor under a sky that is black below: what the floor hides was black.

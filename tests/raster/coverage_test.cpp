@@ -255,7 +255,8 @@ TEST_SUITE("unit") {
         Random random(11);
         int beyond = 0, outside = 0, outside_half = 0;
         for (int trial = 0; trial < 30'000; ++trial) {
-            const int reach = std::array{40, 300, 3000, 16000}[static_cast<std::size_t>(trial) % 4], low = trial % 3 == 0 ? reach / 50 : reach;
+            const int reach = std::array{40, 300, 3000, 16000}[static_cast<std::size_t>(trial) % 4];
+            const int low = trial % 3 == 0 ? reach / 50 : reach;
             std::array<FixedPoint, 3> p{random.point(0, reach), random.point(0, reach), {random.integer(0, reach), random.integer(0, low)}};
             if (doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
             if (doubled_area(p[0], p[1], p[2]) == 0) continue;

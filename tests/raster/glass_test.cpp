@@ -22,12 +22,6 @@ const View kView{look({0, 0, 5}, {0, 0, 0}, 40), 160, 120};
 constexpr double kWallZ = -4;
 constexpr float kIor = 1.5f;
 
-raster::Settings plain() {
-    raster::Settings settings;
-    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
-    return settings;
-}
-
 /// A wall that reflects all of a grey sky, red to the left and green to the right.
 Scene wall() {
     Scene scene;
@@ -137,7 +131,8 @@ TEST_SUITE("unit") {
             for (const bool front : {false, true}) {
                 Scene scene = wall();
                 if (behind == 0) add(scene, pane(0), Mat4(), thin);
-                if (behind > 0) add(scene, behind == 1 ? Shape(Sphere{Vec3(0, 0, 0), 1}) : Shape(round_mesh(96, 48)), Mat4(), Dielectric{kIor});
+                const Shape ball = behind == 1 ? Shape(Sphere{Vec3(0, 0, 0), 1}) : Shape(round_mesh(96, 48));
+                if (behind > 0) add(scene, ball, Mat4(), Dielectric{kIor});
                 if (front) add(scene, pane(2), Mat4(), thin);
                 finish_scene(scene);
                 pictures[front] = render(scene, kView, plain()).radiance;
@@ -164,7 +159,8 @@ TEST_SUITE("unit") {
         for (const bool whole : {false, true}) {
             Scene scene = wall();
             add(scene, block(0.8f), rotation(Vec3(1, 0, 0), 0.26f) * rotation(Vec3(0, 1, 0), 0.52f), Dielectric{kIor});
-            add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 2), Vec3(whole ? 3.0f : 1.5f, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+            const Quad front{Vec3(-1.5f, -1.5f, 2), Vec3(whole ? 3.0f : 1.5f, 0, 0), Vec3(0, 3, 0)};
+            add(scene, QuadList{{front}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
             finish_scene(scene);
             pictures[whole] = render(scene, kView, plain()).radiance;
         }
@@ -185,8 +181,10 @@ TEST_SUITE("unit") {
             Scene scene;
             add(scene, QuadList{{{Vec3(-9, -6, static_cast<float>(kWallZ)), Vec3(18, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(1.0f)});
             const Dielectric tinted{.ior = kIor, .tint = {Rgb(0.5f)}, .thin = true};
-            for (int i = 0; i < panes; ++i)
-                add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 2 - 0.5f * static_cast<float>(i)), Vec3(3, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), tinted);
+            for (int i = 0; i < panes; ++i) {
+                const Vec3 corner(-1.5f, -1.5f, 2 - 0.5f * static_cast<float>(i));
+                add(scene, QuadList{{{corner, Vec3(3, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), tinted);
+            }
             finish_scene(scene);
             const float once = ThinDielectricBsdf{kIor, Rgb(0.5f)}.parts(1).transmitted.r;
             const float expected = std::pow(once, static_cast<float>(std::min(panes, raster::kGlassDeep)));
@@ -194,7 +192,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("glass that moves before a lens, beside glass: as the path tracer on the mean of blocks, the same bits for any number of threads") {
+    TEST_CASE("glass that moves before a lens, beside glass: as the path tracer on the mean of blocks, the same bits for any number "
+              "of threads") {
         Scene scene;
         const auto z = static_cast<float>(kWallZ);
         add(scene, QuadList{{{Vec3(-9, -6, z), Vec3(9, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(1, 0.2f, 0.2f)});

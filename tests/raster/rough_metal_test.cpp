@@ -28,15 +28,19 @@ Vec2 number(int i) {
 double reflected(const MetalBsdf& bsdf, Vec3 wo) {
     constexpr int kSamples = 20000;
     double sum = 0;
-    for (int i = 0; i < kSamples; ++i)
-        if (const auto s = bsdf.sample(wo, unit_float(high_bits(mix_bits(static_cast<std::uint64_t>(i) + 77777))), number(i), TransportMode::kRadiance)) sum += static_cast<double>(s->weight.g);
+    for (int i = 0; i < kSamples; ++i) {
+        const float lobe = unit_float(high_bits(mix_bits(static_cast<std::uint64_t>(i) + 77777)));
+        if (const auto s = bsdf.sample(wo, lobe, number(i), TransportMode::kRadiance)) sum += static_cast<double>(s->weight.g);
+    }
     return sum / kSamples;
 }
 
 ImageEnvironment picture_of(const SkyEnvironment& sky) {
     ImageRgb image(128, 64);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 128; ++x) image(x, y) = lerp(sky.up, sky.down, 0.5f - 0.5f * std::cos(kPi * (static_cast<float>(y) + 0.5f) / 64));
+    for (int y = 0; y < 64; ++y) {
+        const float down = 0.5f - 0.5f * std::cos(kPi * (static_cast<float>(y) + 0.5f) / 64);
+        for (int x = 0; x < 128; ++x) image(x, y) = lerp(sky.up, sky.down, down);
+    }
     return make_image_environment(std::move(image), 1, 0);
 }
 
@@ -104,8 +108,9 @@ TEST_SUITE("unit") {
                             const auto s = sample_light(lamp, surface.p, number(i));
                             if (!s) continue;
                             const Vec3 wi = point.frame.to_local(s->wi);
-                            if (wi.z > 0)
-                                exact += static_cast<double>(bsdf.eval(point.wo, wi, TransportMode::kRadiance).g * wi.z / s->pdf) / kSamples;
+                            if (!(wi.z > 0)) continue;
+                            const float f = bsdf.eval(point.wo, wi, TransportMode::kRadiance).g;
+                            exact += static_cast<double>(f * wi.z / s->pdf) / kSamples;
                         }
                         const double found = static_cast<double>(raster::area_reflection(lamp, bsdf, point).g);
                         largest = std::max(largest, exact);
@@ -171,7 +176,9 @@ TEST_SUITE("unit") {
                 CHECK(b == again.at(picture, w, alpha));
                 for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs(a[c] - b[c]) < 0.02f);
             }
-        const auto contrast = [&](float alpha) { return exact.at(described, {0, 1, 0}, alpha).b - exact.at(described, {0, -1, 0}, alpha).b; };
+        const auto contrast = [&](float alpha) {
+            return exact.at(described, {0, 1, 0}, alpha).b - exact.at(described, {0, -1, 0}, alpha).b;
+        };
         CHECK(contrast(0.01f) > contrast(0.25f));
         CHECK(contrast(0.25f) > contrast(1.0f));
         CHECK(contrast(0.01f) > 0.97f);

@@ -75,6 +75,13 @@ inline Rendering render(const Scene& scene, const View& view, const raster::Sett
     return raster::render(raster::prepare(scene, settings), view, settings, control);
 }
 
+/// The environment unoccluded.
+inline raster::Settings plain() {
+    raster::Settings settings;
+    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    return settings;
+}
+
 inline raster::Settings hits_only() {
     raster::Settings settings;
     settings.shading = raster::Shading::kDepth;

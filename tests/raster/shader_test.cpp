@@ -260,7 +260,8 @@ TEST_SUITE("unit") {
             for (std::size_t i = 0; i < lit.hit.size(); ++i) {
                 if (!lit.hit[i].valid()) continue;
                 ++seen;
-                apart += max_component(shown.radiance[i] - lit.radiance[i]) > 1e-6f || max_component(lit.radiance[i] - shown.radiance[i]) > 1e-6f;
+                const Rgb a = shown.radiance[i], b = lit.radiance[i];
+                apart += max_component(a - b) > 1e-6f || max_component(b - a) > 1e-6f;
             }
             CAPTURE(static_cast<int>(shading));
             CHECK(seen > 6000);

@@ -71,7 +71,8 @@ Shimmer shimmer(const Scene& scene, const raster::Settings& settings) {
         const ImageRgb due = reduced(raster::render(prepared_fine, frame(i, kFiner), fine, control).radiance);
         for (std::size_t k = 0; k < found.size() && i > 0; ++k) {
             if (counts[k] == 0) continue;
-            const double change = std::abs(static_cast<double>(found[k].g - last[k].g)), owed = std::abs(static_cast<double>(due[k].g - last_due[k].g));
+            const double change = std::abs(static_cast<double>(found[k].g - last[k].g));
+            const double owed = std::abs(static_cast<double>(due[k].g - last_due[k].g));
             result.change += change, result.due += owed, result.worst = std::max(result.worst, change - owed);
             ++pixels;
         }

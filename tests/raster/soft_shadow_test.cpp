@@ -138,7 +138,8 @@ TEST_SUITE("unit") {
                 const Vec3d p = floor_point(x, y);
                 bool dark = true; // however many points of the lamp
                 for (int i = 0; i < 81 && dark; ++i) {
-                    const Vec3d way = normalize(Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0) - p);
+                    const Vec3d lamp = Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0);
+                    const Vec3d way = normalize(lamp - p);
                     const Vec3d to = Vec3d(0, kMiddle, 0) - p;
                     dark = dot(to, way) > 0 && length(to - way * dot(to, way)) < 0.95 * kRadius;
                 }

@@ -55,7 +55,9 @@ SurfacePoint random_point(std::mt19937& random) {
 }
 
 bool same_bits(Rgb a, Rgb b) { // any NaN is the same as any other
-    const auto same = [](float x, float y) { return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) || (x != x && y != y); };
+    const auto same = [](float x, float y) {
+        return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) || (x != x && y != y);
+    };
     return same(a.r, b.r) && same(a.g, b.g) && same(a.b, b.b);
 }
 

@@ -59,7 +59,8 @@ TEST_SUITE("unit") {
                 Scene scene = floor_scene();
                 for (int i = 0; i < veils.count; ++i) {
                     const float y = 1 + 0.1f * static_cast<float>(i);
-                    add(scene, veils.ball ? Shape(Sphere{Vec3(0, 1, 0), 0.8f}) : Shape(QuadList{{{Vec3(-1, y, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}}));
+                    const QuadList sheet{{{Vec3(-1, y, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}};
+                    add(scene, veils.ball ? Shape(Sphere{Vec3(0, 1, 0), 0.8f}) : Shape(sheet));
                     scene.maps.resize(scene.materials.size());
                     scene.maps.back().opacity = veils.opacity;
                 }
@@ -104,5 +105,28 @@ TEST_SUITE("unit") {
         add(shaded, QuadList{{{Vec3(-3, 1, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}});
         finish_scene(shaded);
         CHECK(visible(shaded, over_floor())(kSize / 2, kSize / 2) == 0);
+    }
+
+    // Where a roof that lies on a wall is whole, the wall is dark as soon as the four texels about a place see the roof.
+    TEST_CASE("a veil that lies on a steep wall covers no place of it whole, though all texels about the place be stopped by it") {
+        for (const float opacity : {0.2f, 0.5f})
+            for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-0.3f, -1, 0), Vec3(-0.1f, -1, 0)}) {
+                Scene scene = floor_scene();
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
+                scene.maps.resize(3);
+                scene.maps.back().opacity = opacity;
+                scene.lights.push_back(SunLight{normalize(way), Rgb(2)});
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = 512;
+                Camera camera = look({0.5, 0.95, 0}, {0, 0.95, 0}); // at the wall's top
+                camera.projection = Camera::Projection::kOrthographic;
+                camera.height = 0.1;
+                const ImageFloat found = visible(scene, {camera, 100, 100}, settings);
+                CAPTURE(opacity);
+                CAPTURE(way.x);
+                CHECK(*std::ranges::min_element(found) > 0.25f * (1 - opacity));
+            }
     }
 }

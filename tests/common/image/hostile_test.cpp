@@ -2,73 +2,16 @@
 // there.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
-#include "tests/common/image/exr_bytes.h"
-#include "tests/support/errors.h"
-#include "tests/support/scratch.h"
+#include "tests/common/image/picture_bytes.h"
 
 #include <doctest/doctest.h>
 
 #include <random>
 
 using namespace duet;
-using duet::test::Containing;
-using duet::test::error_of;
-using duet::test::ExrBytes;
+using namespace duet::test;
 
 namespace {
-
-std::string error_of_bytes(const std::filesystem::path& path, const std::string& bytes) {
-    write_file(path, bytes);
-    const std::string error = error_of([&] { read_pixel_file(path); });
-    if (error != "no error") {
-        CHECK(error.starts_with(path.string() + ": "));
-        CHECK(error.find('\n') == std::string::npos); // one line
-    }
-    return error;
-}
-
-std::string big_endian(std::uint32_t value) {
-    std::string text;
-    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 255u);
-    return text;
-}
-
-std::string png_chunk(const std::string& type_and_data) {
-    std::uint32_t crc = 0xffffffffu;
-    for (const char c : type_and_data) {
-        crc ^= static_cast<unsigned char>(c);
-        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
-    }
-    return big_endian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + big_endian(~crc);
-}
-
-const std::string kPngSignature = "\x89PNG\r\n\x1a\n";
-
-// Pixels as zlib's stored blocks (RFC 1950, 1951); its own checksum is left wrong, no reader of ours looks at it.
-std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour_type, const std::string& pixels) {
-    const auto size = static_cast<unsigned>(pixels.size());
-    std::string data = "IDAT\x78\x01\x01";
-    for (const unsigned part : {size & 255u, size >> 8, ~size & 255u, ~size >> 8 & 255u})
-        data += static_cast<char>(part);
-    const std::string header = "IHDR" + big_endian(width) + big_endian(height) + static_cast<char>(depth) +
-                               static_cast<char>(colour_type) + std::string(3, '\0');
-    return kPngSignature + png_chunk(header) + png_chunk(data + pixels + big_endian(0)) + png_chunk("IEND");
-}
-
-std::string hdr(const std::string& size, const std::string& pixels) {
-    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n" + pixels;
-}
-
-std::string tga(int type, int width, int height, int bits, const std::string& pixels) {
-    std::string file(18, '\0');
-    file[2] = static_cast<char>(type);
-    file[12] = static_cast<char>(width & 255);
-    file[13] = static_cast<char>(width >> 8);
-    file[14] = static_cast<char>(height & 255);
-    file[15] = static_cast<char>(height >> 8);
-    file[16] = static_cast<char>(bits);
-    return file + pixels;
-}
 
 ImageRgb some_picture() {
     std::mt19937 random(5);
@@ -315,77 +258,5 @@ TEST_SUITE("unit") {
         CHECK(error("PF 1 1 0 abcdabcdabcd") == Containing("a scale of 0"));
         CHECK(error("PF 1 1 nan abcdabcdabcd") == Containing("a scale of nan"));
         CHECK(error("PF 1 1 -1 abcdabcdabc") == Containing("cannot be in its"));
-    }
-
-    TEST_CASE("EXR: half floats, any data window, tiles") {
-        const test::ScratchFolder folder;
-        // Halves: 0x3c00 is 1, its exponent in bits 10 to 14.
-        const auto value = [](std::size_t c, int x, int y) {
-            return (static_cast<unsigned>(x + 3 * y) + 10) << 10 | static_cast<unsigned>(c) << 8;
-        };
-        const auto expected = [](std::size_t c, int x, int y) {
-            return std::ldexp(1.0f + static_cast<float>(c) / 4, x + 3 * y + 10 - 15);
-        };
-        ExrBytes flat, tiled;
-        tiled.version |= 0x200;
-        tiled.tile_width = 2;
-        tiled.tile_height = 1;
-        for (const ExrBytes& kind : {flat, tiled}) {
-            write_file(folder / "a.exr", kind.build(value));
-            const ImageRgb image = read_image(folder / "a.exr");
-            const ExrFile file = read_exr(folder / "a.exr");
-            REQUIRE(image.width() == 3);
-            REQUIRE(image.height() == 2);
-            REQUIRE(file.channels.size() == 3);
-            for (int y = 0; y < 2; ++y)
-                for (int x = 0; x < 3; ++x) {
-                    CHECK(image(x, y) == Rgb(expected(2, x, y), expected(1, x, y), expected(0, x, y)));
-                    CHECK(file.channels[0].floats[static_cast<std::size_t>(x + 3 * y)] == expected(0, x, y));
-                }
-        }
-    }
-
-    TEST_CASE("EXR: what is absurd or not read") {
-        const test::ScratchFolder folder;
-        const auto error = [&](auto change) {
-            ExrBytes file;
-            change(file);
-            const std::string text = error_of_bytes(folder / "a.exr", file.header() + std::string(200000, '\0'));
-            CHECK(error_of([&] { read_exr(folder / "a.exr"); }) != "no error");
-            return text;
-        };
-        CHECK(error([](ExrBytes&) {}) == Containing("not a readable EXR"));
-        CHECK(error([](ExrBytes& f) { f.max_x = f.max_y = 99999; }) ==
-              Containing("pixels, expected 1 to 32768 a side"));
-        CHECK(error([](ExrBytes& f) {
-                  f.min_x = f.min_y = -2147483647;
-                  f.max_x = f.max_y = 2147483647;
-              }) == Containing("expected 1 to 32768"));
-        CHECK(error([](ExrBytes& f) { f.max_x = -100; }) == Containing("expected 1 to 32768"));
-        CHECK(error([](ExrBytes& f) {
-                  f.max_x = 29999;
-                  f.max_y = 2900;
-                  f.compression = 3;
-              }) == Containing("cannot be in its"));
-        CHECK(error([](ExrBytes& f) {
-                  f.max_x = 29999;
-                  f.extra_channels = 3000;
-                  f.compression = 3;
-              }) == Containing("bytes a pixel"));
-        CHECK(error([](ExrBytes& f) { f.sampling = 2; }) == Containing("subsampled"));
-        CHECK(error([](ExrBytes& f) { f.type = 7; }) == Containing("EXR"));
-        CHECK(error([](ExrBytes& f) { f.compression = 99; }) == Containing("EXR"));
-        CHECK(error([](ExrBytes& f) { f.version |= 0x800; }) == Containing("deep"));
-        CHECK(error([](ExrBytes& f) { f.version |= 0x1000; }) == Containing("several parts"));
-        CHECK(error([](ExrBytes& f) {
-                  f.version |= 0x200;
-                  f.tile_width = f.tile_height = 0x7fffffff;
-              }) == Containing("tiles of"));
-        CHECK(error([](ExrBytes& f) { f.version |= 0x200; }) == Containing("EXR"));
-        CHECK(error([](ExrBytes& f) {
-                  f.channels = {"R", "Z"};
-              }) == Containing("channels R Z, expected R, G and B, or Y"));
-        CHECK(error([](ExrBytes& f) { f.channels = {}; }) == Containing("EXR"));
-        CHECK(error_of_bytes(folder / "a.exr", "\x76\x2f\x31\x01") == Containing("ends early"));
     }
 }

@@ -60,7 +60,7 @@ TEST_SUITE("unit") {
             R"([{"type": "group", "name": "tree", "hidden": true, "transform": [{"translate": [0, 1, 0]}], "objects": [)" +
             kBall +
             R"(]}, {"type": "instance", "of": "tree", "transform": [{"scale": 10}]},
-                                {"type": "instance", "of": "tree", "name": "other", "transform": [{"rotate_degrees": -90, "axis": [0, 0, 5]}]}])");
+                {"type": "instance", "of": "tree", "name": "other", "transform": [{"rotate_degrees": -90, "axis": [0, 0, 5]}]}])");
         REQUIRE(names(scene) == std::vector<std::string>{"tree/ball", "other/ball"});
         CHECK(scene.shapes.size() == 1);
         check_near(center(scene, 0), Vec3(10, 10, 0));
@@ -98,7 +98,8 @@ TEST_SUITE("unit") {
             {R"([{"type": "group", "name": "a", "hidden": true, "objects": [{"type": "instance", "of": "b"}]},
              {"type": "group", "name": "b", "hidden": true, "objects": [{"type": "instance", "of": "a"}]}])",
              "is part of itself"},
-            {R"([{"type": "group", "name": "a", "objects": [{"type": "group", "name": "b", "objects": [{"type": "instance", "of": "a"}]}]}])",
+            {R"([{"type": "group", "name": "a", "objects": [
+                    {"type": "group", "name": "b", "objects": [{"type": "instance", "of": "a"}]}]}])",
              "is part of itself"},
             {R"([{"type": "group", "name": "tree", "objects": []}, {"type": "instance", "of": "tere"}])",
              "$.objects[1]: an instance of the unknown group \"tere\"; did you mean \"tree\"?"},
@@ -149,7 +150,8 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Transforms that only together are singular or too large are refused") {
         const std::string error = refusal(
-            R"([{"type": "group", "transform": [{"scale": 1e12}], "objects": [{"type": "group", "transform": [{"scale": 1e12}], "objects": [)" +
+            R"([{"type": "group", "transform": [{"scale": 1e12}], "objects": [
+                    {"type": "group", "transform": [{"scale": 1e12}], "objects": [)" +
             kBall + "]}]}]");
         CHECK_MESSAGE(says(error, "$.objects[0].objects[0].objects[0]: together with the transforms around it, the "
                                   "transform or its inverse has entries beyond 1e18"),
@@ -162,8 +164,10 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(folder.write(
             "scene.json",
             R"({"camera": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "diffuse"}},
-        "objects": [{"type": "mesh", "file": "meshes/t.obj"}, {"type": "mesh", "file": "meshes/../meshes/t.obj", "transform": [{"translate": [1, 0, 0]}]},
-                    {"type": "mesh", "file": "meshes/t.obj", "material": "m"}, {"type": "mesh", "file": "meshes/t.obj", "normals": "smooth"}]})"));
+        "objects": [{"type": "mesh", "file": "meshes/t.obj"},
+                    {"type": "mesh", "file": "meshes/../meshes/t.obj", "transform": [{"translate": [1, 0, 0]}]},
+                    {"type": "mesh", "file": "meshes/t.obj", "material": "m"},
+                    {"type": "mesh", "file": "meshes/t.obj", "normals": "smooth"}]})"));
         CHECK(scene.objects[0].shape == scene.objects[1].shape);
         CHECK(scene.objects[2].materials == std::vector<std::uint32_t>{0});
         CHECK(scene.material_names[scene.objects[0].materials[0]] == "t:default");

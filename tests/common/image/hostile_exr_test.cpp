@@ -1,0 +1,84 @@
+// EXR files of other writers, and such as lie about themselves.
+#include "common/image/image_file.h"
+#include "tests/common/image/exr_bytes.h"
+#include "tests/common/image/picture_bytes.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("EXR: half floats, any data window, tiles") {
+        const test::ScratchFolder folder;
+        // Halves: 0x3c00 is 1, its exponent in bits 10 to 14.
+        const auto value = [](std::size_t c, int x, int y) {
+            return (static_cast<unsigned>(x + 3 * y) + 10) << 10 | static_cast<unsigned>(c) << 8;
+        };
+        const auto expected = [](std::size_t c, int x, int y) {
+            return std::ldexp(1.0f + static_cast<float>(c) / 4, x + 3 * y + 10 - 15);
+        };
+        ExrBytes flat, tiled;
+        tiled.version |= 0x200;
+        tiled.tile_width = 2;
+        tiled.tile_height = 1;
+        for (const ExrBytes& kind : {flat, tiled}) {
+            write_file(folder / "a.exr", kind.build(value));
+            const ImageRgb image = read_image(folder / "a.exr");
+            const ExrFile file = read_exr(folder / "a.exr");
+            REQUIRE(image.width() == 3);
+            REQUIRE(image.height() == 2);
+            REQUIRE(file.channels.size() == 3);
+            for (int y = 0; y < 2; ++y)
+                for (int x = 0; x < 3; ++x) {
+                    CHECK(image(x, y) == Rgb(expected(2, x, y), expected(1, x, y), expected(0, x, y)));
+                    CHECK(file.channels[0].floats[static_cast<std::size_t>(x + 3 * y)] == expected(0, x, y));
+                }
+        }
+    }
+
+    TEST_CASE("EXR: what is absurd or not read") {
+        const test::ScratchFolder folder;
+        const auto error = [&](auto change) {
+            ExrBytes file;
+            change(file);
+            const std::string text = error_of_bytes(folder / "a.exr", file.header() + std::string(200000, '\0'));
+            CHECK(error_of([&] { read_exr(folder / "a.exr"); }) != "no error");
+            return text;
+        };
+        CHECK(error([](ExrBytes&) {}) == Containing("not a readable EXR"));
+        CHECK(error([](ExrBytes& f) { f.max_x = f.max_y = 99999; }) ==
+              Containing("pixels, expected 1 to 32768 a side"));
+        CHECK(error([](ExrBytes& f) {
+                  f.min_x = f.min_y = -2147483647;
+                  f.max_x = f.max_y = 2147483647;
+              }) == Containing("expected 1 to 32768"));
+        CHECK(error([](ExrBytes& f) { f.max_x = -100; }) == Containing("expected 1 to 32768"));
+        CHECK(error([](ExrBytes& f) {
+                  f.max_x = 29999;
+                  f.max_y = 2900;
+                  f.compression = 3;
+              }) == Containing("cannot be in its"));
+        CHECK(error([](ExrBytes& f) {
+                  f.max_x = 29999;
+                  f.extra_channels = 3000;
+                  f.compression = 3;
+              }) == Containing("bytes a pixel"));
+        CHECK(error([](ExrBytes& f) { f.sampling = 2; }) == Containing("subsampled"));
+        CHECK(error([](ExrBytes& f) { f.type = 7; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) { f.compression = 99; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x800; }) == Containing("deep"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x1000; }) == Containing("several parts"));
+        CHECK(error([](ExrBytes& f) {
+                  f.version |= 0x200;
+                  f.tile_width = f.tile_height = 0x7fffffff;
+              }) == Containing("tiles of"));
+        CHECK(error([](ExrBytes& f) { f.version |= 0x200; }) == Containing("EXR"));
+        CHECK(error([](ExrBytes& f) {
+                  f.channels = {"R", "Z"};
+              }) == Containing("channels R Z, expected R, G and B, or Y"));
+        CHECK(error([](ExrBytes& f) { f.channels = {}; }) == Containing("EXR"));
+        CHECK(error_of_bytes(folder / "a.exr", "\x76\x2f\x31\x01") == Containing("ends early"));
+    }
+}

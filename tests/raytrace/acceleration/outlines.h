@@ -1,0 +1,42 @@
+// Primitives by their outlines, as the builders of hierarchies take them.
+#pragma once
+
+#include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_hierarchy.h"
+#include "tests/raytrace/acceleration/soup.h"
+
+#include <cstring>
+#include <vector>
+
+namespace duet::raytrace {
+
+struct Outlines {
+    std::vector<Outline> outlines;
+    BuildItems items;
+
+    void add(const Outline& outline, PrimitiveKind kind = PrimitiveKind::kTriangle) {
+        Box3 box;
+        for (std::size_t i = 0; i < outline.count; ++i) box.extend(outline.corners[i]);
+        items.push_back({box, static_cast<std::uint32_t>(outlines.size()), kind});
+        outlines.push_back(outline);
+    }
+    explicit Outlines(const Mesh& mesh) {
+        for (const auto& [a, b, c] : mesh.triangles)
+            add({{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3});
+    }
+    Outlines() = default;
+    OutlineOf of() const {
+        return [this](const BuildItem& item) { return outlines[item.index]; };
+    }
+};
+
+inline bool same_trees(const BinaryTree& a, const BinaryTree& b) {
+    if (a.nodes.size() != b.nodes.size() || a.items.size() != b.items.size()) return false;
+    for (std::size_t i = 0; i < a.nodes.size(); ++i)
+        if (std::memcmp(&a.nodes[i], &b.nodes[i], sizeof(BinaryNode)) != 0) return false;
+    for (std::size_t i = 0; i < a.items.size(); ++i)
+        if (a.items[i].index != b.items[i].index) return false;
+    return true;
+}
+
+} // namespace duet::raytrace
