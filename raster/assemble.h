@@ -31,6 +31,9 @@ public:
                   Batch& batch);
 
 private:
+    /// Boxes of at most so many samples along a side are small.
+    static constexpr std::int32_t kSmallSide = 8;
+
     struct Outlines;
     struct Small {            ///< a triangle whose samples are known
         std::uint32_t index;  ///< of the run's object's triangles

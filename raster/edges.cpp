@@ -39,17 +39,12 @@ void SeenPicture::add(const DepthTile& tile, const Geometry& geometry, StripShad
 void SeenPicture::add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset,
                              std::size_t tile_index, const HitTile& tile, const Program& normals) {
     HitLists lists(layers, view, offset, tile_index, tile);
-    const PixelRect& r = tile.rect();
-    ImageFloat through(r.width(), r.height(), 1.0f);
-    lists.for_each([&](int x, int y, const Hit& hit) {
-        float& left = through(x - r.x0, y - r.y0);
-        left *= 1 - opacity(data.scene, tile.ray(x, y), hit);
-        if (left >= 0.5f) return false;
+    const auto mostly = [](int, int, float left) { return left < 0.5f; };
+    lists.for_each_stop(data.scene, mostly, [&](int x, int y, const Hit& hit) {
         const Rgb n = normals.shade_hit(data, view, hit, offset.position(x, y));
         nearness(x, y) = static_cast<float>(view.pinhole.near * tile.distance_per_depth(x, y) / static_cast<double>(hit.t));
         normal(x, y) = Vec3(n.r, n.g, n.b);
         object(x, y) = hit.object;
-        return true;
     });
 }
 

@@ -3,6 +3,9 @@
 
 #include "raster/cover.h"
 
+#include "common/image/image.h"
+#include "common/scene/scene.h"
+
 #include <array>
 #include <vector>
 
@@ -38,6 +41,21 @@ public:
                     again = again || !p.done;
                 }
         }
+    }
+
+    /// Calls take(x, y, hit) for the first of each pixel's hits that stops its light: stops(x, y, left) says so of the part that it
+    /// and those before it let through.
+    template <typename Stops, typename Take> void for_each_stop(const Scene& scene, const Stops& stops, const Take& take) {
+        if (empty()) return;
+        const PixelRect& r = tile_.rect();
+        ImageFloat through(r.width(), r.height(), 1.0f);
+        for_each([&](int x, int y, const Hit& hit) {
+            float& left = through(x - r.x0, y - r.y0);
+            left *= 1 - opacity(scene, tile_.ray(x, y), hit);
+            if (!stops(x, y, left)) return false;
+            take(x, y, hit);
+            return true;
+        });
     }
 
 private:

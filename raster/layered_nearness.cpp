@@ -4,7 +4,6 @@
 #include "raster/hit_lists.h"
 
 #include "common/sampling/hash.h"
-#include "common/scene/scene.h"
 
 namespace duet::raster {
 
@@ -39,16 +38,11 @@ void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, c
     if (!touches(layers, index)) return;
     const SampleOffset offset = view.samples.front();
     HitTile tile = rays_to(picture, geometry, view, offset, rect);
-    const auto width = static_cast<std::size_t>(rect.width());
-    std::vector<float> through(width * static_cast<std::size_t>(rect.height()), 1.0f); // the part of the light, so far
     HitLists lists(layers, view, offset, index, tile);
-    lists.for_each([&](int x, int y, const Hit& hit) {
-        float& passed = through[static_cast<std::size_t>(y - rect.y0) * width + static_cast<std::size_t>(x - rect.x0)];
-        passed *= 1 - opacity(data.scene, tile.ray(x, y), hit);
-        if (1 - passed <= dither(x, y)) return false;
+    const auto by_rank = [](int x, int y, float left) { return 1 - left > dither(x, y); };
+    lists.for_each_stop(data.scene, by_rank, [&](int x, int y, const Hit& hit) {
         tile.exchange(x, y, hit);
         picture(x, y) = tile.nearness(x, y);
-        return true;
     });
 }
 

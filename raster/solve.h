@@ -1,8 +1,7 @@
 // Where on its triangle each of sixteen samples lies, side by side: barycentrics, depth, and a shader's varyings.
 #pragma once
 
-#include "raster/set_ups.h"
-#include "raster/strip_samples.h"
+#include "raster/read_strip.h"
 
 #include <bit>
 #include <limits>
@@ -50,6 +49,7 @@ private:
     static constexpr std::size_t kCount = Solved::kCount;
     static constexpr bool kDerivatives = Solved::kDerivatives;
     using Sixteen = SetUp<S, D>;
+    using ReadStrip = raster::ReadStrip<S, D>;
     using Ds = xsimd::batch<D>;
     static constexpr std::size_t kParts = Floats::size / Ds::size;
 
@@ -60,59 +60,8 @@ private:
     /// Barycentrics are e/Σe: to within 6ε·M/Σe, and two roundings. So much may M/Σe be.
     static constexpr D kSteepest = Sixteen::kSteepest;
 
-    /// What a strip sees, and where that is kept.
-    struct ReadStrip : StripSamples {
-        StripOf<std::int32_t> kept;  ///< SetUps::keep
-        StripOf<std::int32_t> lanes; ///< of each sample: among its pair's thirty-two
-        /// Two times sixteen set-ups, and a bit for each sample whose own is among them.
-        struct Pair {
-            const Sixteen *first, *second;
-            std::uint32_t samples;
-        };
-        std::array<Pair, kStrip / 2> pairs;
-        std::size_t pair_count = 0;
-        bool one = false; ///< triangle is all that they see
-    };
-
-    /// get(i, of): of each sample from the i-th on, as many as there are lanes, its own number; of() says which, of sixteen
-    /// set-ups. OfOne: all samples see one triangle. OfSixteen, OfPair: one or two times sixteen set-ups have all that they see.
-    /// OfPairs: any.
-    struct OfOne {
-        const Sixteen& sixteen;
-        std::size_t lane;
-        template <typename T, typename Of> xsimd::batch<T> get(std::size_t, const Of& of) const {
-            return xsimd::batch<T>(of(sixteen)[lane]);
-        }
-    };
-    struct OfSixteen {
-        const Sixteen& sixteen;
-        const StripOf<std::int32_t>& lanes;
-        template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
-            return look_up(of(sixteen), lanes, i);
-        }
-    };
-    struct OfPair {
-        const Sixteen &first, &second;
-        const StripOf<std::int32_t>& lanes;
-        template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
-            return look_up(of(first), of(second), lanes, i);
-        }
-    };
-    struct OfPairs {
-        const ReadStrip& strip;
-        template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
-            const auto of_pair = [&](const auto& pair) { return look_up(of(*pair.first), of(*pair.second), strip.lanes, i); };
-            xsimd::batch<T> value = of_pair(strip.pairs[0]);
-            for (std::size_t k = 1; k < strip.pair_count; ++k)
-                value = xsimd::select(lanes_from<T>(strip.pairs[k].samples >> i), of_pair(strip.pairs[k]), value);
-            return value;
-        }
-    };
-
     void set_grid(SampleOffset offset);
     std::size_t read(std::span<const StripPlace> places);
-    void find_pairs(ReadStrip& strip) const;
-    static bool all_easy(const ReadStrip& strip);
     void solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend);
     template <typename Positions> void solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const;
     template <typename Own, typename Positions>
@@ -271,27 +220,18 @@ void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positi
 template <VertexShader S, typename D>
 bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
     return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && set_ups_.object().even() &&
-           all_easy(samples) && !sabotaged(Guard::kPerspective);
+           samples.all_easy() && !sabotaged(Guard::kPerspective);
 }
 
 template <VertexShader S, typename D>
 template <typename Positions>
 void StripSolver<S, D>::solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const {
-    const auto solve_by = [&](const auto& own) {
+    samples.with_own([&](const auto& own) {
         if (strip.directions)
             solve_directions(own, positions, strip);
         else
             solve_lanes(own, positions, strip);
-    };
-    const auto& pair = samples.pairs[0];
-    if (Floats::size < kStrip && samples.one) // where looking up takes more than one step
-        solve_by(OfOne{*pair.first, static_cast<std::size_t>(samples.lanes[0])});
-    else if (samples.pair_count == 1 && pair.first == pair.second)
-        solve_by(OfSixteen{*pair.first, samples.lanes});
-    else if (samples.pair_count == 1)
-        solve_by(OfPair{*pair.first, *pair.second, samples.lanes});
-    else
-        solve_by(OfPairs{samples});
+    });
 }
 
 template <VertexShader S, typename D>
@@ -346,56 +286,6 @@ template <VertexShader S, typename D> void StripSolver<S, D>::set_grid(SampleOff
     }
 }
 
-/// Once all are set up.
-template <VertexShader S, typename D> void StripSolver<S, D>::find_pairs(ReadStrip& strip) const {
-    constexpr std::int32_t kEach = kStrip;
-    StripOf<std::int32_t> sixteens;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const Ints kept = load(strip.kept, i);
-        store(sixteens, i, kept >> std::countr_zero(kStrip));
-        store(strip.lanes, i, kept & Ints(kEach - 1));
-    }
-    strip.one = Floats::size < kStrip && lanes_of_number(strip.kept, strip.kept[0]) == (1u << kStrip) - 1;
-    strip.pair_count = 0;
-    std::uint32_t left = (1u << kStrip) - 1, seconds = 0;
-    const auto take = [&](std::uint32_t& taken) {
-        const std::int32_t number = sixteens[static_cast<std::size_t>(std::countr_zero(left))];
-        taken = lanes_of_number(sixteens, number);
-        left &= ~taken;
-        return &set_ups_.sixteen(static_cast<std::size_t>(number));
-    };
-    while (left != 0) {
-        std::uint32_t firsts = 0, here = 0;
-        const Sixteen* first = take(firsts);
-        const Sixteen* second = left != 0 ? take(here) : first;
-        seconds |= here;
-        strip.pairs[strip.pair_count++] = {first, second, firsts | here};
-    }
-    if (seconds == 0) return;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
-        store(strip.lanes, i, load(strip.lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
-    }
-}
-
-/// SetUp::easy of all that they see.
-template <VertexShader S, typename D> bool StripSolver<S, D>::all_easy(const ReadStrip& strip) {
-    std::uint32_t easy = 0;
-    for (std::size_t k = 0; k < strip.pair_count; ++k) {
-        const auto& pair = strip.pairs[k];
-        const std::uint32_t of_pair = pair.first->easy | pair.second->easy << kStrip;
-        if (of_pair == ~std::uint32_t{0}) { // as mostly
-            easy |= pair.samples;
-            continue;
-        }
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-            const Ints bit = Ints(1) << load(strip.lanes, i);
-            easy |= pair.samples & lane_bits((Ints(static_cast<std::int32_t>(of_pair)) & bit) != Ints(0)) << i;
-        }
-    }
-    return easy == (1u << kStrip) - 1;
-}
-
 /// Reads as many as there is room for, and sets up what they see, side by side across strips. Returns how many.
 template <VertexShader S, typename D> std::size_t StripSolver<S, D>::read(std::span<const StripPlace> places) {
     if (!set_ups_.has_room()) set_ups_.forget();
@@ -409,7 +299,7 @@ template <VertexShader S, typename D> std::size_t StripSolver<S, D>::read(std::s
     }
     set_ups_.finish();
     for (std::size_t s = 0; s < count; ++s)
-        if (read_[s].on_mesh != 0) find_pairs(read_[s]);
+        if (read_[s].on_mesh != 0) read_[s].find_pairs(set_ups_);
     return count;
 }
 

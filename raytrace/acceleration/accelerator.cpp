@@ -5,6 +5,7 @@
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_stream.h"
 #include "raytrace/acceleration/gatherer.h"
+#include "raytrace/acceleration/sort_by_class.h"
 
 #include <algorithm>
 #include <bit>
@@ -155,9 +156,10 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
 
 namespace {
 
-// Rays that are sheared along the same axes: the main one, and which way they run along it. Of others 6.
+// Rays that are sheared along the same axes: the main one, and which way they run along it. Of others the last.
+constexpr std::size_t kShearClasses = 7;
 std::size_t shear_class(const Ray& ray) {
-    if (!traceable(ray) || ray.t_min != ray.t_min || ray.t_max != ray.t_max) return 6;
+    if (!traceable(ray) || ray.t_min != ray.t_min || ray.t_max != ray.t_max) return kShearClasses - 1;
     const Vec3 size = abs(ray.direction); // as longest_axis, without a branch
     const bool x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
     const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
@@ -167,22 +169,6 @@ std::size_t shear_class(const Ray& ray) {
 
 // So many rays are sorted at a time.
 constexpr std::size_t kMostSorted = 512;
-
-// The indices of some rays, class after class.
-struct ByClass {
-    ByClass(std::span<const Ray> rays, std::span<const std::uint32_t> which) {
-        std::array<std::uint8_t, kMostSorted> classes;
-        std::array<std::size_t, 7> next{};
-        for (std::size_t i = 0; i < which.size(); ++i)
-            ++next[classes[i] = static_cast<std::uint8_t>(shear_class(rays[which[i]]))];
-        std::size_t begin = 0;
-        for (std::size_t& count : next) begin += std::exchange(count, begin);
-        for (std::size_t i = 0; i < which.size(); ++i) order[next[classes[i]]++] = which[i];
-        ends = next;
-    }
-    std::array<std::uint32_t, kMostSorted> order;
-    std::array<std::size_t, 7> ends; ///< of each class in it
-};
 
 } // namespace
 
@@ -219,15 +205,17 @@ void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<cons
 }
 
 void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const {
-    const ByClass sorted(rays, which);
+    std::array<std::uint8_t, kMostSorted> classes;
+    std::array<std::uint32_t, kMostSorted> order;
+    const auto ends = sort_by_class<kShearClasses>(which, [&](std::uint32_t i) { return shear_class(rays[i]); }, classes, order);
     std::size_t done = 0;
-    for (std::size_t c = 0; c < 6; ++c)
-        while (done < sorted.ends[c]) {
-            const std::size_t taken = std::min(RayPacket::kSize, sorted.ends[c] - done);
-            closest_in_list(rays, std::span(sorted.order).subspan(done, taken), hits);
+    for (std::size_t c = 0; c < kShearClasses - 1; ++c)
+        while (done < ends[c]) {
+            const std::size_t taken = std::min(RayPacket::kSize, ends[c] - done);
+            closest_in_list(rays, std::span(order).subspan(done, taken), hits);
             done += taken;
         }
-    for (; done < which.size(); ++done) hits[sorted.order[done]] = first(rays[sorted.order[done]]);
+    for (; done < which.size(); ++done) hits[order[done]] = first(rays[order[done]]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {

@@ -1,4 +1,5 @@
 // Paths side by side: those that stand at plain surfaces of one kind advance several at once.
+#include "raytrace/acceleration/sort_by_class.h"
 #include "raytrace/integrator/path.h"
 #include "raytrace/integrator/plain_vertices.h"
 
@@ -63,24 +64,9 @@ class ByClass {
 public:
     explicit ByClass(std::size_t most) : classes_(most), sorted_(most) {}
 
-    // class_of(path): below kClasses. Order is kept within a class. (Two halves at once: a count that was just written is
-    // waited for.)
+    /// class_of(path): below kClasses.
     template <typename ClassOf> void sort(std::span<const std::uint32_t> paths, const ClassOf& class_of) {
-        const std::size_t size = paths.size(), half = size / 2;
-        std::array<std::uint32_t, kClasses> low{}, high{};
-        const auto count = [&](std::size_t k, auto& counts) { ++counts[classes_[k] = static_cast<std::uint8_t>(class_of(paths[k]))]; };
-        for (std::size_t k = 0; k < half; ++k) count(k, low), count(half + k, high);
-        if (size % 2 != 0) count(size - 1, high);
-        std::uint32_t begin = 0;
-        for (std::size_t c = 0; c < kClasses; ++c) {
-            const std::uint32_t in_low = low[c], in_high = high[c];
-            low[c] = begin;
-            high[c] = begin + in_low;
-            ends_[c] = begin += in_low + in_high;
-        }
-        const auto put = [&](std::size_t k, auto& next) { sorted_[next[classes_[k]]++] = paths[k]; };
-        for (std::size_t k = 0; k < half; ++k) put(k, low), put(half + k, high);
-        if (size % 2 != 0) put(size - 1, high);
+        ends_ = sort_by_class<kClasses>(paths, class_of, classes_, sorted_);
     }
     std::span<const std::uint32_t> of(std::size_t c) const {
         const std::uint32_t begin = c == 0 ? 0 : ends_[c - 1];

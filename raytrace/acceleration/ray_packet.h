@@ -1,0 +1,230 @@
+// Coherent rays, made ready to be tested together against boxes, triangles and spheres, and what they hit.
+#pragma once
+
+#include "raytrace/acceleration/bvh_traverse.h"
+
+#include <span>
+
+namespace duet::raytrace {
+
+/// As many rays as the widest batch has lanes, made ready for tests: those of neighbouring pixels, say.
+class RayPacket {
+public:
+    static constexpr std::size_t kSize = kMaxSimdLanes;
+    using Batch = FloatBatch<kSize>;
+    using Values = std::array<float, kSize>;
+
+    /// Of rays for a tree over those bounds.
+    RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) : RayPacket(rays, &bounds) {}
+    /// For a list of primitives: nothing that only boxes are asked for.
+    explicit RayPacket(std::span<const Ray, kSize> rays) : RayPacket(rays, nullptr) {}
+
+    /// Whether all rays run into the same octant (for a list: the same way) along the same main axis, and can be traced.
+    /// Nothing else may be asked of others.
+    bool coherent() const { return coherent_; }
+    Batch t_min() const { return t_min_; }
+    Batch t_max() const { return t_max_; }
+    const Shear<Batch>& shear() const { return shear_; }
+    const LineLanes<kSize>& lines() const { return lines_; }
+
+    /// A bit for each child of the node whose box some of the rays may enter before `end`, the last of their ends; and
+    /// for each a distance before which none does.
+    SlabRay::Entered enter_any(const BvhNode& node, float end) const {
+        using Boxes = SlabRay::Batch;
+        const auto bound = [&](const Interval& interval, std::size_t plane, bool far) {
+            const Boxes offset = Boxes::load_aligned(plane_of(node, plane)) - Boxes(interval.origin);
+            const Boxes a = offset * Boxes(interval.low), b = offset * Boxes(interval.high);
+            return far ? xsimd::max(a, b) : xsimd::min(a, b);
+        };
+        const auto near_bound = [&](std::size_t axis) { return bound(near_interval_[axis], near_plane_[axis], false); };
+        const auto far_bound = [&](std::size_t axis) { return bound(far_interval_[axis], far_plane_[axis], true); };
+        const Boxes near =
+            xsimd::max(xsimd::max(near_bound(0), near_bound(1)), xsimd::max(near_bound(2), Boxes(first_)));
+        const Boxes far = xsimd::min(xsimd::min(far_bound(0), far_bound(1)), xsimd::min(far_bound(2), Boxes(end)));
+        return {near, lane_bits(near <= far)};
+    }
+
+    /// Where each ray enters the child's box, and a bit for each ray that does so by its end.
+    struct Entering {
+        Batch distance;
+        Batch::batch_bool_type enters;
+    };
+    Entering enter(const BvhNode& node, std::size_t child, Batch ends) const {
+        const auto slab = [&](std::size_t plane, std::size_t axis, Batch offset) {
+            return fused(Batch(plane_of(node, plane)[child]), scale_[axis], offset);
+        };
+        const auto near_slab = [&](std::size_t axis) { return slab(near_plane_[axis], axis, near_offset_[axis]); };
+        const auto far_slab = [&](std::size_t axis) { return slab(far_plane_[axis], axis, far_offset_[axis]); };
+        const Batch near = xsimd::max(xsimd::max(near_slab(0), near_slab(1)), xsimd::max(near_slab(2), t_min_));
+        const Batch far = xsimd::min(xsimd::min(far_slab(0), far_slab(1)), xsimd::min(far_slab(2), ends));
+        return {near, near <= far};
+    }
+
+    /// The origin that all rays have in common, if they do.
+    const std::optional<Vec3>& origin() const { return origin_; }
+    /// What some of the rays' shears are, each for its share of the lanes.
+    template <std::size_t N> Shear<Batch> shears(const std::array<std::size_t, N>& rays) const {
+        const auto pick = [&](std::size_t k) { return share(lanes_[k], rays); };
+        return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5), pick(6)};
+    }
+    static Batch share(const Values& values, const std::array<std::size_t, 1>& rays) { return Batch(values[rays[0]]); }
+    static Batch share(const Values& values, const std::array<std::size_t, 2>& rays) {
+        return halves<kSize>(values[rays[0]], values[rays[1]]);
+    }
+
+private:
+    RayPacket(std::span<const Ray, kSize> rays, const Box3* bounds) {
+        const auto columns = [&](std::size_t first) {
+            return load_columns<kSize>([&](std::size_t i) { return reinterpret_cast<const float*>(&rays[i]) + first; });
+        };
+        const auto [ox, oy, oz, dx] = columns(0);
+        const auto [dy, dz, t_min, t_max] = columns(4);
+        const Vec3T<Batch> origin(ox, oy, oz), direction(dx, dy, dz);
+        t_min_ = t_min;
+        t_max_ = t_max;
+        coherent_ = set_axes(rays, origin, direction, bounds != nullptr);
+        if (!coherent_) return;
+        shear_ = sheared(origin, direction);
+        const std::array<Batch, 6> columns_of_lines{ox, oy, oz, dx, dy, dz};
+        for (std::size_t k = 0; k < columns_of_lines.size(); ++k) columns_of_lines[k].store_aligned(lines_[k].data());
+        const Vec3 first = rays[0].origin;
+        const auto same = (ox == Batch(first.x)) & (oy == Batch(first.y)) & (oz == Batch(first.z));
+        if (lane_bits(same) == kAllRays) origin_ = first;
+        if (bounds != nullptr) set_slabs(origin, direction, *bounds);
+    }
+
+    static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
+                  offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
+    // A range of reciprocals of directions, and the end of the range of origins that makes the bound hold.
+    struct Interval {
+        float low, high, origin;
+    };
+
+    bool set_axes(std::span<const Ray, kSize> rays, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction,
+                  bool one_octant) {
+        const std::size_t z_axis = longest_axis(abs(rays[0].direction));
+        const Batch largest(kLargestNumber), zero(0.0f);
+        constexpr unsigned kAll = kAllRays;
+        if (lane_bits((t_min_ == t_min_) & (t_max_ == t_max_)) != kAll) return false; // some are NaN
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto in_range = (xsimd::abs(origin[axis]) <= largest) & (xsimd::abs(direction[axis]) <= largest);
+            const unsigned negative = lane_bits(direction[axis] < zero);
+            const bool mixed = negative != 0 && negative != kAll;
+            if (lane_bits(in_range) != kAll || (mixed && (one_octant || axis == z_axis))) return false;
+            backwards_[axis] = negative != 0;
+            near_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * backwards_[axis]);
+            far_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * !backwards_[axis]);
+        }
+        const Vec3T<Batch> size(xsimd::abs(direction.x), xsimd::abs(direction.y), xsimd::abs(direction.z));
+        const unsigned x = lane_bits((size.x >= size.y) & (size.x >= size.z)), y = lane_bits(size.y >= size.z) & ~x;
+        if ((z_axis == 0 ? x : z_axis == 1 ? y : kAll & ~x & ~y) != kAll) return false;
+        shear_.kz = z_axis;
+        return lane_bits(size[z_axis] >= Batch(1 / kLargestNumber)) == kAll;
+    }
+
+    // What ShearedRay computes for one.
+    Shear<Batch> sheared(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
+        const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
+        const std::size_t kx = backwards_[kz] ? after : next, ky = backwards_[kz] ? next : after;
+        const Shear<Batch> shear{kx,
+                                 ky,
+                                 kz,
+                                 {origin[kx], origin[ky], origin[kz]},
+                                 direction[kx] / direction[kz],
+                                 direction[ky] / direction[kz],
+                                 Batch(1.0f) / direction[kz],
+                                 xsimd::abs(direction[kz])};
+        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx,
+                                shear.sy,       shear.sz,       shear.speed};
+        for (std::size_t k = 0; k < std::size(values); ++k) values[k].store_aligned(lanes_[k].data());
+        return shear;
+    }
+
+    // As SlabRay does for one, with the widest error of all origins.
+    void set_slabs(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
+        const Box3 origins = origin_ ? Box3{*origin_, *origin_} : extent_of(origin);
+        const Vec3 extents = max(abs(bounds.low - origins.high), abs(bounds.high - origins.low)),
+                   sizes = max(abs(origins.low), abs(origins.high));
+        const float largest = max_component(extents);
+        Vec3 ahead, behind;
+        const Batch smallest = Batch(SlabError::kSmallest) * xsimd::abs(direction[shear_.kz]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float error = (2 * extents[axis] + largest + sizes[axis]) * SlabError::relative() +
+                                std::numeric_limits<float>::min();
+            const float sign = backwards_[axis] ? -1.0f : 1.0f, away = error * sign;
+            const Batch least(SlabError::least_divisor(extents[axis] + sizes[axis]));
+            scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
+            near_offset_[axis] = -(origin[axis] + Batch(away)) * scale_[axis];
+            far_offset_[axis] = -(origin[axis] - Batch(away)) * scale_[axis];
+            ahead[axis] = (backwards_[axis] ? origins.low[axis] : origins.high[axis]) + away;
+            behind[axis] = (backwards_[axis] ? origins.high[axis] : origins.low[axis]) - away;
+        }
+        const Lanes low(lowest_of_each(std::array{scale_[0], scale_[1], scale_[2], t_min_})),
+            minus_high(lowest_of_each(std::array{-scale_[0], -scale_[1], -scale_[2], t_min_}));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            near_interval_[axis] = {low[axis], -minus_high[axis], ahead[axis]};
+            far_interval_[axis] = {low[axis], -minus_high[axis], behind[axis]};
+        }
+        first_ = low[3];
+    }
+    static Box3 extent_of(const Vec3T<Batch>& points) {
+        return {{lowest(points.x), lowest(points.y), lowest(points.z)},
+                {highest(points.x), highest(points.y), highest(points.z)}};
+    }
+    static const float* plane_of(const BvhNode& node, std::size_t plane) {
+        return reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
+    }
+
+    static constexpr unsigned kAllRays = (1u << kSize) - 1;
+
+    bool coherent_;
+    std::array<bool, 3> backwards_;
+    std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
+    std::optional<Vec3> origin_;
+    Shear<Batch> shear_;
+    alignas(64) std::array<Values, 7> lanes_; // the shear's, to be picked from
+    alignas(64) LineLanes<kSize> lines_;
+    Batch t_min_, t_max_;
+    float first_;
+    std::array<Batch, 3> scale_, near_offset_, far_offset_;
+    std::array<Interval, 3> near_interval_, far_interval_;
+};
+
+/// The nearest hits of a packet's rays so far; t is the ray's end where there is none.
+struct PacketHits {
+    static constexpr std::size_t kSize = RayPacket::kSize;
+    template <typename T> using PerRay = std::array<T, kSize>;
+
+    alignas(64) PerRay<float> t, u, v;
+    alignas(64) PerRay<std::uint32_t> object, primitive;
+
+    /// None yet.
+    explicit PacketHits(RayPacket::Batch ends) {
+        ends.store_aligned(t.data());
+        u.fill(0);
+        v.fill(0);
+        object.fill(kNoObject);
+        primitive.fill(0);
+    }
+
+    Hit get(std::size_t ray) const { return {object[ray], primitive[ray], u[ray], v[ray], t[ray]}; }
+    void set(std::size_t ray, const Hit& hit) {
+        object[ray] = hit.object;
+        primitive[ray] = hit.primitive;
+        u[ray] = hit.u;
+        v[ray] = hit.v;
+        t[ray] = hit.t;
+    }
+    void store(std::span<Hit, kSize> hits) const {
+        static_assert(offsetof(Hit, object) == 0 && offsetof(Hit, primitive) == 4 && offsetof(Hit, u) == 8 &&
+                      offsetof(Hit, v) == 12);
+        const auto bits = [](const auto& values) {
+            return RayPacket::Batch::load_aligned(reinterpret_cast<const float*>(values.data()));
+        };
+        store_columns<kSize>(std::array{bits(object), bits(primitive), bits(u), bits(v)},
+                             [&](std::size_t ray) { return reinterpret_cast<float*>(&hits[ray]); });
+        for (std::size_t ray = 0; ray < kSize; ++ray) hits[ray].t = object[ray] == kNoObject ? kInfinity : t[ray];
+    }
+};
+
+} // namespace duet::raytrace
