@@ -409,6 +409,16 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("moderately rough metal mirrors the wall before it, not the environment behind that") {
+        const Vec3d place = CameraModel(kView).through().project({-1, 0, -1.6});
+        for (const float roughness : {0.35f, 0.5f}) {
+            const Rgb seen = render(before_wall(roughness), kView, plain()).radiance(static_cast<int>(place.x), static_cast<int>(place.y));
+            INFO("roughness ", roughness, ": ", seen.r, " ", seen.g, " ", seen.b);
+            CHECK(seen.r > 0.9f);
+            CHECK(seen.b < 0.7f); // of the environment alone it is 1
+        }
+    }
+
     TEST_CASE("slightly rough metal mirrors an environment of stripes blurred, each ray by its share of the lobe") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.25f});
