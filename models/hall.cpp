@@ -102,7 +102,7 @@ private:
 void add_column(MeshBuilder& mesh, double x, double z) {
     constexpr std::array kProfile = {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
                                      Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
-                                     Vec2d(0.62, 4.0), Vec2d(0.62, kSpring)};
+                                     Vec2d(0.66, 4.0), Vec2d(0.66, kSpring)}; // under all of the arches' feet, whose corners are 0.65 off
     constexpr int kRows = 32, kFlutes = 16;
     const std::vector<Vec2d> profile = sample_profile(kProfile, kRows);
     const std::size_t first = mesh.positions.size();

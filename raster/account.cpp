@@ -119,7 +119,7 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
     name(any && (mirrors || refracts) && needs.glossy,
          "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
     name(mirrors,
-         "Smooth and slightly rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
+         "Smooth and moderately rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
          "things what is seen there is taken to go on.");
     const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
     name(parts.reflection && needs.glossy && environment && !prefiltered,

@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
         app.add_flag("--transformed-cosines,!--no-transformed-cosines", transformed_cosines,
                      "Light surfaces shine on rough metal with their shape, not as from their centres (default: on)");
         app.add_flag("--screen-reflections,!--no-screen-reflections", screen_reflections,
-                     "Smooth and slightly rough metal mirrors what the picture shows (default: on)");
+                     "Smooth and moderately rough metal mirrors what the picture shows (default: on)");
         app.add_flag("--screen-refractions,!--no-screen-refractions", screen_refractions,
                      "Glass shows what the picture shows without it (default: on)");
         app.add_flag("--no-culling", no_culling,

@@ -69,7 +69,7 @@ struct Settings : RenderSettings {
     /// diagonal and the way from its camera's eye to what that looks at.
     double occlusion_radius = 0;
     bool prefiltered_environment = true;  ///< Shading::kLit: rough metal mirrors it blurred, not as if it were smooth
-    bool screen_reflections = true;  ///< Shading::kLit: smooth and slightly rough metal mirrors what the picture shows
+    bool screen_reflections = true;  ///< Shading::kLit: smooth and moderately rough metal mirrors what the picture shows
     bool screen_refractions = true;  ///< Shading::kLit: glass shows what the picture shows without it
     bool transformed_cosines = true; ///< Shading::kLit: of surface lights on rough metal; off: as from their centres
     bool environment =

@@ -20,8 +20,9 @@
 namespace duet::raster {
 namespace {
 
-/// GGX alpha up to which metal mirrors what the picture shows (roughness 0.32): rougher metal would need too many rays.
-constexpr float kRoughestMirror = 0.1f;
+/// GGX alpha up to which metal mirrors what the picture shows (roughness 0.55): of rougher metal the few rays are so far apart
+/// that each shows on a smooth surface where it goes from one thing to the next.
+constexpr float kRoughestMirror = 0.3f;
 constexpr int kMirrorRays = 8; ///< of a pixel of rough metal
 
 bool shows_environment(const PreparedData& data, const Settings& settings) {
@@ -133,7 +134,7 @@ struct DirectLight {
 /// Ray number i of kMirrorRays from a rough metal: a (0,2)-net, of which each aligned part is one.
 Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), kMirrorRays); }
 
-/// What a smooth or slightly rough metal mirrors, in directions of its lobe: the same few for every point, each as wide
+/// What a smooth or not too rough metal mirrors, in directions of its lobe: the same few for every point, each as wide
 /// as the part of the lobe that it stands for.
 class Mirrored {
 public:
@@ -148,16 +149,30 @@ public:
         width_ = screen.pixel_size(max(place.z, screen.near()));
     }
 
+    /// Of rough metal the lobe's mean, as the few rays find it, times all that the metal reflects: so that what they miss of
+    /// the lobe, and what rays lose that come out beneath its horizon, is not lost.
     Rgb operator()(TapRange taps) const {
-        if (bsdf_.smooth()) return along({0.5f, 0.5f}, 1);
+        if (bsdf_.smooth()) {
+            const Sample ray = along({0.5f, 0.5f}, 1);
+            return ray.seen * ray.weight;
+        }
         const int share = TapRange().count / taps.count, count = kMirrorRays / share, first = taps.first * count / taps.count;
-        Rgb sum;
-        for (int i = first; i < first + count; ++i) sum += along(mirror_ray(i), kMirrorRays);
-        return sum / static_cast<float>(count);
+        Rgb sum, weights;
+        for (int i = first; i < first + count; ++i) {
+            const Sample ray = along(mirror_ray(i), kMirrorRays);
+            sum += ray.seen * ray.weight, weights += ray.weight;
+        }
+        const Rgb albedo = bsdf_.albedo(std::abs(point_.wo.z));
+        for (std::size_t c = 0; c < 3; ++c) sum[c] = weights[c] > 0 ? sum[c] / weights[c] * albedo[c] : 0.0f;
+        return sum;
     }
 
 private:
-    Rgb along(Vec2 u, int rays) const {
+    struct Sample {
+        Rgb seen, weight;
+    };
+
+    Sample along(Vec2 u, int rays) const {
         const auto sample = bsdf_.sample(point_.wo, 0, u, TransportMode::kRadiance);
         if (!sample) return {};
         const Vec3 way = normalize(point_.frame.to_world(sample->wi));
@@ -165,8 +180,8 @@ private:
         const bool smooth = bsdf_.smooth();
         // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
         const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(sample->pdf, 1e-6f)));
-        return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide,
-                             .alpha = min(alpha_as_wide(wide), 1.0f), .lamps = smooth, .point = &point_}) * sample->weight;
+        return {around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = spread_, .spread = wide,
+                              .alpha = min(alpha_as_wide(wide), 1.0f), .lamps = smooth, .point = &point_}), sample->weight};
     }
 
     Surroundings around_;

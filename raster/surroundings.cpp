@@ -2,6 +2,7 @@
 
 #include "common/scene/lamp_texture.h"
 #include "raster/prefiltered.h"
+#include "raster/shade.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,12 +96,33 @@ Rgb Surroundings::seen(const Look& look) const {
 Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
     if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
         distance = hit->distance;
+        if (const auto mirrored = behind_metal(look, *hit)) return *mirrored;
         return picture(look, *hit, distance);
     }
     if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
     const Environment& environment = data_.scene.environment;
     const bool blurred = look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered;
     return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
+}
+
+/// What a sheet of metal mirrors that is met from behind: the lamps and the sky that its front shows the viewer are none of
+/// that. Of what is mirrored again the picture stands for itself. Empty where something else is met.
+std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit& hit) const {
+    if (look.mirrored_again || hit.hidden) return std::nullopt;
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const Screen& screen = scenery_.at(x, y);
+    const std::uint32_t object = screen.first_look().objects(x, y);
+    if (object == kNoObject || data_.objects[object].closed) return std::nullopt;
+    const Material& material = data_.scene.materials[data_.scene.objects[object].materials.front()];
+    const Vec3 n = screen.normal(x, y);
+    const float away = dot(n, look.way);
+    if (!(away > 0) || !is_mirror(material)) return std::nullopt;
+    Look again = look;
+    again.p = look.p + look.way * hit.distance, again.n = -n, again.way = normalize(look.way - n * (2 * away));
+    again.width = look.width + hit.distance * look.turn, again.point = nullptr;
+    again.from_picture = false, again.mirrored_again = true;
+    float distance = kInfinity;
+    return picture_or_environment(again, distance) * texture_slot(material).value;
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {

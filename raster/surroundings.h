@@ -21,6 +21,7 @@ struct Look {
     bool lamps = true;        ///< whether it sees what shines: to rough surfaces lamps are direct light
     const ShadingPoint* point = nullptr; ///< that it leaves, where shadow maps tell which lamps that sees
     bool from_picture = true; ///< whether it begins at what the screen shows
+    bool mirrored_again = false; ///< by a sheet of metal that it has met from behind
 
     /// Of the look, metres.
     float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
@@ -44,6 +45,7 @@ public:
 private:
     Rgb picture_or_environment(const Look& look, float& distance) const;
     Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const; ///< What it shows where it is met.
+    std::optional<Rgb> behind_metal(const Look& look, const ScreenHit& hit) const;
 
     const PreparedData& data_;
     const Settings& settings_;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 using namespace duet;
@@ -223,6 +224,14 @@ TEST_SUITE("unit") {
         for (const Vec3 p : mesh.positions)
             if (p.z == -18 && p.y >= 8 && std::abs(std::hypot(p.x, p.y - 8) - 5) < 1e-4f) on_vaults_edge.insert(p.x);
         CHECK(on_vaults_edge.size() == 2 * 40 + 1);
+        // The arches' feet, open below, stand on the capitals with their corners, too.
+        std::set<std::pair<float, float>> rim;
+        const double corner = std::hypot(0.25, 0.6);
+        for (const Vec3 p : mesh.positions) {
+            const double beside = std::hypot(p.x - 5, static_cast<double>(p.z));
+            if (std::abs(p.y - 4.2f) < 1e-5f && beside < 1 && beside * std::cos(kPiDouble / 64) > corner) rim.insert({p.x, p.z});
+        }
+        CHECK(rim.size() == 64);
     }
 
     TEST_CASE("furnace.json is white, closed and lit evenly") {

@@ -276,6 +276,33 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("of a sheet of metal a mirror below shows what its back mirrors, not the sky that its front shows the viewer") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-1, 0, 2), Vec3(2, 0, 0), Vec3(0, 0, -1)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(), Metal{{Rgb(0.8f)}, 0});
+        add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 2, 6}, {0, 0.3, 0}, 40), 160, 120};
+        const ImageRgb found = render(scene, view, plain()).radiance;
+        const auto at = [&](Vec3d p) {
+            const Vec3d place = CameraModel(view).through().project(p);
+            return found(static_cast<int>(place.x), static_cast<int>(place.y)).g;
+        };
+        CHECK(at({0, 0.6, 0.15}) > 0.7f); // the sheet itself
+        for (const double x : {-0.5, 0.0, 0.5}) CHECK(at({x, 0, 1.5}) < 0.05f);
+    }
+
+    TEST_CASE("moderately rough metal mirrors the wall before it, not the environment behind that") {
+        const Vec3d place = CameraModel(kView).through().project({-1, 0, -1.6});
+        for (const float roughness : {0.35f, 0.5f}) {
+            const Rgb seen = render(before_wall(roughness), kView, plain()).radiance(static_cast<int>(place.x), static_cast<int>(place.y));
+            INFO("roughness ", roughness, ": ", seen.r, " ", seen.g, " ", seen.b);
+            CHECK(seen.r > 0.9f);
+            CHECK(seen.b < 0.7f); // of the environment alone it is 1
+        }
+    }
+
     TEST_CASE("slightly rough metal mirrors an environment of stripes blurred, each ray by its share of the lobe") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.25f});
