@@ -3,9 +3,7 @@
 #include "raster/prepare.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace duet::raster {
 
@@ -123,13 +121,9 @@ template <std::size_t N>
 float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
-    constexpr int kSide = static_cast<int>(N), kRow = kSide + 2; // of bits, with a border
-    const auto bit = [](int row, int column) { return std::uint64_t{1} << ((row + 1) * kRow + column + 1); };
-    const auto weight_of = [&](int row, int column) {
-        return across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
-    };
-    double dark = 0, known = 0, under = 0;
-    std::uint64_t blocking = 0, contacts = 0;
+    constexpr int kSide = static_cast<int>(N);
+    double dark = 0, contact = 0, known = 0, under = 0;
+    bool touched = false; // also by a texel of no weight
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column) {
             const int x = x0 + column, y = y0 + row;
@@ -142,26 +136,17 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const bool near = over <= slack(plane.rising);
             const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
             if (blocks && seen <= plane.at) continue;
-            const double weight = weight_of(row, column);
+            const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
             (over < -plane.rounding ? under : known) += weight;
-            if (!blocks) continue;
-            blocking |= bit(row, column);
-            if (near)
-                contacts |= bit(row, column);
-            else
-                dark += weight;
+            if (blocks) (near ? contact : dark) += weight;
+            touched |= blocks && near;
         }
-    // What lies on the receiver's surface is wider than a texel. One by itself sees a facet finer than the map's texels rise over
-    // the plane of another.
-    for (std::uint64_t left = contacts; left != 0; left &= left - 1) {
-        const int at = std::countr_zero(left);
-        const std::uint64_t here = std::uint64_t{1} << at, three = here << 1 | here | here >> 1;
-        const std::uint64_t beside = (three << kRow | three | three >> kRow) & ~here;
-        if (std::popcount(blocking & beside) >= kBeside) dark += weight_of(at / kRow - 1, at % kRow - 1);
-    }
+    // Where facets are about as fine as the map's texels, its differences mix the slopes of several, and some seem to rise over
+    // the receiver's plane. Of what lies on the receiver's surface most texels tell.
+    if (dark + contact > kMost * (known + under)) dark += contact;
     if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
     // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
-    if (contacts == 0) known += under;
+    if (!touched) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }
 

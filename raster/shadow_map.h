@@ -40,7 +40,8 @@ public:
     /// - dark, if it sees something over that, under whose own plane the receiver is: of two points of which each is on the
     ///   lit side of the other's plane neither shades the other, as on the facets of a valley, however light grazes them and
     ///   however steeply they meet. The plane is what the map has around the texel. What is on the receiver's own ray has no
-    ///   slack at all, and shades at any contact, as a roof the wall that it lies on.
+    ///   slack at all, and shades at any contact, as a roof the wall that it lies on. What rises no more than facets of one
+    ///   surface do shades where most texels are dark.
     /// - nothing, if it sees something behind that, steeper than the facets of a ridge: the receiver's surface ends before,
     ///   and what light there is beyond its edge does not leak back around it. Nor if what stands over the plane is farther
     ///   from the light than the receiver.
@@ -58,7 +59,7 @@ public:
     static constexpr double kDepths = 64; ///< times the receiver's rounding: that of planes through depths solved in float
     static constexpr double kFourDepths = 5; ///< the same of texels up to one beside the place: of a depth, and of two differences of two
     static constexpr double kUnsure = 0.75; ///< of the filter: where texels of less weight say anything, what covers the receiver counts
-    static constexpr int kBeside = 2; ///< texels that block, too, about one by which a contact shades
+    static constexpr double kMost = 0.75; ///< of the texels that say anything: where less block, contacts do not shade
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
 
     int side() const { return nearness_.width(); }
