@@ -3,9 +3,9 @@
 #include "common/system/control.h"
 #include "common/system/error.h"
 #include "raster/glass.h"
+#include "raster/needs.h"
 #include "raster/prefiltered.h"
 #include "raster/screen.h"
-#include "raster/shade.h"
 #include "raster/shadows.h"
 
 #include <algorithm>
