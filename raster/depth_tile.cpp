@@ -61,15 +61,14 @@ struct DepthTile::BlockRow {
     std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle may cover some samples; all for certain, well inside
 
     BlockRow(const Edges& edges, int row) {
-        using Columns = FloatBatch<kSimdLanes>;
-        for (std::size_t i = 0; i < kBlocks; i += Columns::size) {
-            const Columns column = Columns::load_aligned(kLanesAsFloats.at(i));
-            auto some_inside = column >= Columns(0.0f), all_inside = some_inside;
+        for (std::size_t i = 0; i < kBlocks; i += Floats::size) {
+            const Floats column = Floats::load_aligned(kLanesAsFloats.at(i));
+            auto some_inside = column >= Floats(0.0f), all_inside = some_inside;
             for (std::size_t k = 0; k < 3; ++k) {
-                const Columns here = fused(Columns(static_cast<float>(edges.right[k])), column,
-                                           Columns(static_cast<float>(edges.at[k] + edges.down[k] * row)));
-                some_inside = some_inside && here >= Columns(edges.none[k]);
-                all_inside = all_inside && here >= Columns(edges.all[k]);
+                const Floats here = fused(Floats(static_cast<float>(edges.right[k])), column,
+                                          Floats(static_cast<float>(edges.at[k] + edges.down[k] * row)));
+                some_inside = some_inside && here >= Floats(edges.none[k]);
+                all_inside = all_inside && here >= Floats(edges.all[k]);
             }
             some |= lane_bits(some_inside) << i;
             all |= lane_bits(all_inside) << i;
@@ -121,8 +120,8 @@ void DepthTile::empty_undrawn() {
 /// A bit for each block of a row whose farthest sample is farther than `nearest`, or as far.
 std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
     std::uint32_t hidden = 0;
-    for (std::size_t i = 0; i < kBlocks; i += Quads::size)
-        hidden |= lane_bits(Quads(nearest) < Quads::load_unaligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+    for (std::size_t i = 0; i < kBlocks; i += Floats::size)
+        hidden |= lane_bits(Floats(nearest) < Floats::load_aligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
     return ~hidden;
 }
 

@@ -58,7 +58,8 @@ public:
     bool drawn(std::size_t block) const { return drawn_[block]; }
 
     static constexpr int kBlock = 8;
-    static constexpr int kBlocks = TileGrid::kTileSize / kBlock;       ///< along a side
+    static constexpr int kBlocks = TileGrid::kTileSize / kBlock; ///< along a side
+    static_assert(kBlocks <= static_cast<int>(kStrip) && kBlocks % Floats::size == 0);
     static constexpr int kStripRows = kStrip / kStripWidth;
 
 private:
@@ -86,7 +87,7 @@ private:
     alignas(64) std::array<std::int32_t, kTileSamples> ids_;
     static_assert(kStrip == 16);
     std::array<std::uint16_t, kTileSamples / kStrip> inside_; ///< a strip each
-    std::array<float, kBlocks * kBlocks> farthest_;        ///< of a block: no sample is farther
+    alignas(64) std::array<float, kBlocks * kBlocks> farthest_;        ///< of a block: no sample is farther
     std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< times drawn to since that was found
     std::array<bool, kBlocks * kBlocks> drawn_;
 };

@@ -21,7 +21,9 @@ inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
 
 /// Squares over a region of the picture, row by row; those at the right and lower edges may be smaller.
 struct TileGrid {
-    static constexpr int kTileSize = 64; ///< depths and triangle numbers of a tile fit into the first cache
+    /// Depths and triangle numbers of a tile fit into the second cache. Those that fit into the first are slower: more triangles
+    /// lie in several, and what is prepared for a tile serves fewer.
+    static constexpr int kTileSize = 128;
     PixelRect region;
 
     int columns() const { return (region.width() + kTileSize - 1) / kTileSize; }
