@@ -3,9 +3,9 @@
 #include "common/system/control.h"
 #include "common/system/error.h"
 #include "raster/glass.h"
+#include "raster/needs.h"
 #include "raster/prefiltered.h"
 #include "raster/screen.h"
-#include "raster/shade.h"
 #include "raster/shadows.h"
 
 #include <algorithm>
@@ -72,6 +72,8 @@ void list_shadow_approximations(const PreparedData& data, const Settings& settin
         result.emplace_back("Shadows of what stops a part of the light are dithered: it stops all of that part of a map's texels.");
     if (data.shadows->moments() > 1)
         result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
+    if (data.shadows->coarser())
+        result.emplace_back("Shadow maps are coarser than asked for: there are too many of them.");
     if (data.shadows->unshadowed() > 0)
         result.push_back(message("The ", data.shadows->unshadowed(), " weakest lights are unshadowed."));
 }

@@ -1,6 +1,7 @@
 #include "raster/display.h"
 
 #include "raster/encode_strip.h"
+#include "raster/environment_light.h"
 #include "raster/shade.h"
 #include "raster/strip_samples.h"
 

@@ -3,8 +3,11 @@
 #include "raster/display.h"
 #include "raster/glass.h"
 #include "raster/hit_lists.h"
+#include "raster/mirrored.h"
+#include "raster/needs.h"
 #include "raster/one_sample.h"
 #include "raster/screen_reflection.h"
+#include "raster/shade.h"
 #include "raster/shadings/shadings.h"
 #include "raster/strip_shader.h"
 

@@ -1,9 +1,9 @@
 // Stage 6: a look at the whole picture, a sample at each pixel's centre, for effects that look around in it.
 #pragma once
 
+#include "raster/cover.h"
 #include "raster/geometry.h"
 #include "raster/screen.h"
-#include "raster/shade.h"
 #include "raster/tiles.h"
 
 #include <memory>

@@ -12,6 +12,8 @@ namespace {
 constexpr int kSeenWidth = 256;                      ///< pixels
 constexpr double kGuard = 4;                         ///< texels
 constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
+constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< and over all other maps
+constexpr int kLeastSide = 64;
 constexpr double kFloor = 1e-4;                      ///< of the scene's size: how far things may dip into a floor
 
 /// A scene's prepared data, with some of its objects: what a shadow map needs of it.
@@ -130,10 +132,7 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
     std::vector<SeenPoint> seen;
     if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
         seen = seen_points(data, settings.threads);
-    std::int64_t cubes = 0;
-    for (const Source& source : sources_)
-        cubes += static_cast<std::int64_t>(std::max<std::size_t>(source.cells.size(), 1) * moments_.size());
-    while (cube_side_ > 64 && cubes * 6 * cube_side_ * cube_side_ > kCubeTexels) cube_side_ /= 2;
+    fit_sides(data, seen);
     source_of_.assign(scene_.lights.size(), sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
@@ -141,6 +140,37 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
         for (std::size_t k = 0; k < moments_.size(); ++k)
             draw(data, settings, seen, sources_[i], moments_[k], sources_[i].moments[k]);
     }
+}
+
+/// Of suns, and of spots that are narrow enough: the cameras of their maps, the same at all moments. Other lights have cubes; a
+/// sun over which nothing stands has no maps.
+std::vector<Camera> Shadows::views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const {
+    const Light& light = scene_.lights[source.lights.front()];
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuard);
+    const auto* sun = std::get_if<SunLight>(&light);
+    if (sun == nullptr) return {};
+    std::vector<bool> casts(scene_.objects.size());
+    for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
+    const Box3 bounds = bounds_of(data, casts);
+    if (bounds.empty()) return {};
+    return sun_views(*sun, bounds, scene_.camera, seen, side_, kGuard);
+}
+
+/// Coarser maps where there are so many that they would take more than kViewTexels or kCubeTexels.
+void Shadows::fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen) {
+    std::size_t views = 0, cubes = 0;
+    for (const Source& source : sources_) {
+        const std::size_t its_views = views_of(data, seen, source).size();
+        views += its_views;
+        const bool sun = std::holds_alternative<SunLight>(scene_.lights[source.lights.front()]);
+        if (its_views == 0 && !sun) cubes += std::max<std::size_t>(source.cells.size(), 1);
+    }
+    const auto fit = [&](int& side, std::size_t maps, std::int64_t most) {
+        const auto all = static_cast<std::int64_t>(maps * moments_.size());
+        while (side > kLeastSide && all * side * side > most) side = std::max(side / 2, kLeastSide), coarser_ = true;
+    };
+    fit(side_, views, kViewTexels);
+    fit(cube_side_, 6 * cubes, kCubeTexels);
 }
 
 std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells) {
@@ -176,34 +206,25 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, const std
                    double moment, Maps& maps) {
     std::vector<bool> kept(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
-    const auto add_views = [&](const Prepared& casters, std::vector<Camera> views) {
+    if (std::vector<Camera> views = views_of(data, seen, source); !views.empty()) {
+        const Prepared casters = caster_scene(data, kept);
         for (Camera& camera : views) {
             camera.shutter_open = camera.shutter_close = moment;
             maps.views.emplace_back(casters, camera, side_, settings.threads);
             memory_bytes_ += std::int64_t{4} * side_ * side_;
         }
-    };
-    if (const auto* sun = std::get_if<SunLight>(&light)) {
-        std::vector<bool> casts(scene_.objects.size());
-        for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
-        const Box3 bounds = bounds_of(data, casts);
-        if (!bounds.empty()) add_views(caster_scene(data, kept), sun_views(*sun, bounds, scene_.camera, seen, side_, kGuard));
         return;
     }
-    if (const auto* spot = std::get_if<SpotLight>(&light)) {
-        const std::vector<Camera> views = spot_views(*spot, scene_size_, side_, kGuard);
-        if (!views.empty()) return add_views(caster_scene(data, kept), views);
-        maps.cubes.push_back(
-            draw_cube(caster_scene(data, kept), Vec3d(spot->position), nullptr, true, moment, cube_side_, settings.threads));
-        return;
-    }
-    if (const auto* point = std::get_if<PointLight>(&light)) {
-        maps.cubes.push_back(
-            draw_cube(caster_scene(data, kept), Vec3d(point->position), nullptr, true, moment, cube_side_, settings.threads));
+    if (std::holds_alternative<SunLight>(light)) return;
+    const auto* surface_light = std::get_if<SurfaceLight>(&light);
+    if (surface_light == nullptr) {
+        const auto* spot = std::get_if<SpotLight>(&light);
+        const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
+        maps.cubes.push_back(draw_cube(caster_scene(data, kept), center, nullptr, true, moment, cube_side_, settings.threads));
         return;
     }
 
-    const auto& surface = std::get<SurfaceLight>(light);
+    const SurfaceLight& surface = *surface_light;
     if (source.lamp) kept[surface.object] = false;
     const Prepared casters = caster_scene(data, kept);
     for (const Emitter& cell : source.cells) {

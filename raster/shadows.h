@@ -26,6 +26,7 @@ public:
 
     std::size_t unshadowed() const { return unshadowed_; } ///< lights left without, weakest first
     std::size_t moments() const { return moments_.size(); }
+    bool coarser() const { return coarser_; } ///< than Settings::shadow_map_side asks for, as so many would not fit in memory
     std::int64_t memory_bytes() const { return memory_bytes_; }
 
     static constexpr int kMoments = 8;
@@ -49,6 +50,8 @@ private:
     };
     std::vector<Source> find_sources(const Scene& scene, int cells);
     /// `seen`: what the scene's camera sees, where there is a sun.
+    std::vector<Camera> views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const;
+    void fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen);
     void draw(const PreparedData& data, const Settings& settings, const std::vector<SeenPoint>& seen, Source& source, double moment,
               Maps& maps);
     /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
@@ -63,6 +66,7 @@ private:
     std::vector<std::size_t> source_of_; ///< of each light; sources_.size(): none
     std::vector<double> moments_;
     std::size_t unshadowed_ = 0;
+    bool coarser_ = false;
     std::int64_t memory_bytes_ = 0;
 };
 

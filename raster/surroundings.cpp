@@ -1,8 +1,8 @@
 #include "raster/surroundings.h"
 
 #include "common/scene/lamp_texture.h"
+#include "raster/mirrored.h"
 #include "raster/prefiltered.h"
-#include "raster/shade.h"
 
 #include <algorithm>
 #include <cmath>

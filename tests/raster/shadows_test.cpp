@@ -1,7 +1,9 @@
 // Shadow maps against shadows whose outline is known.
 #include "tests/raster/shadow_floor.h"
 
+#include "raster/prepare.h"
 #include "raster/shadow_map.h"
+#include "raster/shadows.h"
 
 #include <doctest/doctest.h>
 
@@ -115,6 +117,28 @@ TEST_SUITE("unit") {
                 ++dark;
             }
         CHECK(dark > 1000);
+    }
+
+    TEST_CASE("forty spots over what moves: their maps are coarser than asked for, fit in memory, and that is told") {
+        Scene scene = floor_scene();
+        Object& box = add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
+        box.moving = true;
+        box.to_world_end = translation(Vec3(0.1f, 0, 0));
+        for (int i = 0; i < 40; ++i)
+            scene.lights.push_back(SpotLight{Vec3(0, 3 + 0.1f * static_cast<float>(i), 0), Vec3(0, -1, 0), Rgb(1), 0.8f, 0.7f});
+        finish_scene(scene);
+        raster::Settings settings;
+        for (const bool moving : {false, true}) {
+            settings.samples_per_pixel = moving ? 2 : 1;
+            const raster::Prepared prepared = raster::prepare(scene, settings);
+            const raster::Shadows& shadows = *prepared.data().shadows;
+            CHECK(shadows.moments() == (moving ? raster::Shadows::kMoments : 1));
+            CHECK(shadows.memory_bytes() > 100 << 20);
+            CHECK(shadows.memory_bytes() <= 512 << 20); // of 2048 texels a side: 0.7 and 5.4 GB
+            Control control;
+            const auto told = raster::render(prepared, {scene.camera, 8, 8}, settings, control).statistics.approximations;
+            CHECK(std::ranges::any_of(told, [](const std::string& s) { return s.find("coarser") != std::string::npos; }));
+        }
     }
 
     TEST_CASE("what moves does not shade itself by its own motion, and leaves a blurred shadow") {

@@ -1,0 +1,45 @@
+// What metal mirrors of what the picture shows.
+#pragma once
+
+#include "raster/direct.h"
+#include "raster/surroundings.h"
+
+#include "common/material/material.h"
+
+namespace duet::raster {
+
+/// Whether a material, somewhere, mirrors what the picture shows.
+bool may_mirror(const Material& material);
+/// Whether that is all that one of it shows: a first look at the picture knows of it but the environment.
+bool is_mirror(const Material& material);
+
+/// What a smooth or not too rough metal mirrors, in directions of its lobe: the same few for every point, each as wide
+/// as the part of the lobe that it stands for.
+class Mirrored {
+public:
+    /// GGX alpha up to which it does (roughness 0.55): of rougher metal the few rays are so far apart that each shows on a
+    /// smooth surface where it goes from one thing to the next.
+    static constexpr float kRoughest = 0.3f;
+    static constexpr int kRays = 8; ///< of a pixel of rough metal
+
+    /// `screen` has radiance. Refers to all.
+    Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf);
+
+    /// Of rough metal the lobe's mean, as the few rays find it, times all that the metal reflects: so that what they miss of
+    /// the lobe, and what rays lose that come out beneath its horizon, is not lost.
+    Rgb operator()(TapRange taps) const;
+
+private:
+    struct Sample {
+        Rgb seen, weight;
+    };
+    Sample along(Vec2 u, int rays) const;
+
+    Surroundings around_;
+    const ShadingPoint& point_;
+    const MetalBsdf& bsdf_;
+    Vec3 p_;
+    float width_ = 0, spread_ = 0; ///< of a pixel; radians between its mirrored ray and the next one's
+};
+
+} // namespace duet::raster
