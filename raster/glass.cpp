@@ -35,7 +35,8 @@ bool is_glass(const PreparedData& data, std::uint32_t object) {
 }
 
 SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point)
-    : data_(data), settings_(settings), screen_(screen), point_(point), scenery_{screen, screen.behind(), point.surface.object}, around_(data, settings, scenery_),
+    : data_(data), screen_(screen), point_(point), scenery_{screen, screen.behind(), point.surface.object},
+      around_(data, settings, scenery_),
       p_(screen.relative(point.surface.p)), size_(length(data.objects[point.surface.object].bounds.diagonal())) {
     const Vec3 place = screen.project(p_);
     if (!(place.z > 0)) return;

@@ -50,7 +50,6 @@ private:
     Rgb mirror(Vec3 way, float alpha, bool lamps) const;
 
     const PreparedData& data_;
-    const Settings& settings_;
     const Screen& screen_;
     const ShadingPoint& point_;
     Scenery scenery_;

@@ -25,8 +25,8 @@ NearestPyramid::NearestPyramid(ImageFloat image) {
 float NearestPyramid::greatest(int x0, int y0, int x1, int y1) const {
     const int extent = std::max(x1 - x0, y1 - y0);
     // Blocks as large as the region or larger: it touches two at most along each side.
-    const int bits = std::bit_width(static_cast<unsigned>(extent));
-    const auto level = std::min(static_cast<std::size_t>(bits), levels_.size() - 1);
+    const auto bits = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(extent)));
+    const auto level = std::min(bits, levels_.size() - 1);
     const ImageFloat& blocks = levels_[level];
     const int shift = static_cast<int>(level);
     x0 >>= shift, x1 >>= shift, y0 >>= shift, y1 >>= shift;

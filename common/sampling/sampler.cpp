@@ -184,7 +184,7 @@ void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::
 // §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
 // sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    const int digits = std::bit_width(samples_per_replicate_ - 1); // of the index within a pixel
+    const int digits = static_cast<int>(std::bit_width(samples_per_replicate_ - 1)); // of the index within a pixel
     const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
     const std::uint32_t mask = (1u << side) - 1;
     const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;

@@ -38,7 +38,7 @@ private:
     };
     template <std::size_t... i, typename Make> auto each(std::index_sequence<i...>, const Make& make) const {
         if constexpr (kRelative)
-            return std::array{Relative{make(corners_[i])}...};
+            return std::array{Relative<decltype(make(corners_[i]))>{make(corners_[i])}...};
         else
             return std::array{make(corners_[i])...};
     }

@@ -90,7 +90,7 @@ Bvh Gatherer::build() {
                                 [this](std::span<BuildItem> items) { return first_of_twins(items); }};
     auto [items, collapsed] = build_hierarchy(std::move(items_), primitives, quality_, threads_);
     Bvh& bvh = collapsed.bvh;
-    const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
+    const auto elements = [&collapsed = collapsed](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
     bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
     bvh.quads.resize(elements(PrimitiveKind::kQuad));
     bvh.spheres.resize(elements(PrimitiveKind::kSphere));

@@ -2,6 +2,7 @@
 
 #include "common/system/error.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -30,10 +31,9 @@ Integrator integrator(std::string_view name) {
 }
 
 std::string_view integrator_name(Integrator integrator) {
-    for (const auto& [name, value] : kNames)
-        if (value == integrator) return name;
-    DUET_CHECK(!"an integrator without a name");
-    return {};
+    const auto known = std::ranges::find(kNames, integrator, &std::pair<std::string_view, Integrator>::second);
+    DUET_CHECK(known != kNames.end());
+    return known->first;
 }
 
 RadianceFunction radiance_function(Integrator integrator) {

@@ -35,7 +35,7 @@ TEST_SUITE("unit") {
             Film film(3, 3);
             for (int y = 0; y < 3; ++y)
                 for (int x = 0; x < 3; ++x)
-                    for (const std::size_t replicate : {0, 1})
+                    for (const std::size_t replicate : {0u, 1u})
                         film.add(x, y, replicate, Rgb(x == 1 && y == 1 ? (replicate == 0 ? first : second) : 1.0f));
             return film.estimated_relmse();
         };
