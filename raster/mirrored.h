@@ -6,6 +6,8 @@
 
 #include "common/material/material.h"
 
+#include <optional>
+
 namespace duet::raster {
 
 /// Whether a material, somewhere, mirrors what the picture shows.
@@ -17,7 +19,7 @@ bool is_mirror(const Material& material);
 /// as the part of the lobe that it stands for.
 class Mirrored {
 public:
-    /// GGX alpha up to which it does (roughness 0.55): of rougher metal the few rays are so far apart that each shows on a
+    /// GGX alpha up to which it does (roughness 0.54): of rougher metal the few rays are so far apart that each shows on a
     /// smooth surface where it goes from one thing to the next.
     static constexpr float kRoughest = 0.3f;
     static constexpr int kRays = 8; ///< of a pixel of rough metal
@@ -26,14 +28,18 @@ public:
     Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf);
 
     /// Of rough metal the lobe's mean, as the few rays find it, times all that the metal reflects: so that what they miss of
-    /// the lobe, and what rays lose that come out beneath its horizon, is not lost.
-    Rgb operator()(TapRange taps) const;
+    /// the lobe, and what rays lose that come out beneath its horizon, is not lost. A part of the taps asks for a part of the
+    /// rays: the mean of all parts is the whole. Empty where no ray comes out above the horizon.
+    std::optional<Rgb> operator()(TapRange taps) const;
 
 private:
     struct Sample {
-        Rgb seen, weight;
+        Vec3 way;
+        float pdf = 0;
+        Rgb weight;
     };
-    Sample along(Vec2 u, int rays) const;
+    Sample sample(Vec2 u) const;
+    Rgb seen(const Sample& ray, int rays) const;
 
     Surroundings around_;
     const ShadingPoint& point_;

@@ -41,6 +41,13 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
+std::optional<MetalBsdf> one_metal(const Scene& scene, const Object& object) {
+    const std::optional<Rgb> color = one_color(scene, object);
+    const auto* metal = std::get_if<Metal>(&scene.materials[object.materials.front()]);
+    if (!color || metal == nullptr || !metal->roughness.constant()) return std::nullopt;
+    return metal->at(scene.textures, SurfacePoint{});
+}
+
 /// The slot of the image texture that colours all of an object, if it is filtered.
 std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
@@ -82,6 +89,7 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
     result.one_color = one_color(scene, object);
     result.one_texture = one_texture(scene, object);
+    result.metal = one_metal(scene, object);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     const auto* quads = std::get_if<QuadList>(&shape);
     result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);

@@ -17,6 +17,7 @@ struct PreparedObject {
     Box3 bounds;        ///< in the world, over all of the object's motion
     std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
     std::optional<RgbSlot> one_texture; ///< where that, filtered, is all of it
+    std::optional<MetalBsdf> metal; ///< where that, of one colour and roughness, is all of it
     bool closed = false; ///< a sphere, a box or a mesh that is closed and oriented outwards
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };

@@ -9,6 +9,7 @@
 #include "raster/strip_surface.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace duet::raster {
@@ -70,6 +71,7 @@ private:
             const Floats near(static_cast<float>(view_.pinhole.near));
             const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
                                                               : min(near / load(strip.depth, i), Floats(1.0f));
+            assert(!kFacing || place.nearness != nullptr);
             // A strip of directions has no depths. (Where nothing is seen nearness is 0.)
             const Floats depth = kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
             const FragmentOf<S, Floats, kPlain, kFacing> fragment{derivatives(strip, i),

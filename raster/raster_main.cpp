@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
                      "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
         app.add_option("--shadow-map", shadow_map_side,
                        "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter "
-                       "(default 2048); fewer where all maps would take more than 768 MiB");
+                       "(default 2048); fewer where there would be too many for memory");
         app.add_option("--shadow-cells", shadow_cells,
                        "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
         app.add_option("--ambient-occlusion", occlusion_name,

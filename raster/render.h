@@ -62,7 +62,7 @@ struct Settings : RenderSettings {
     PartSet parts; ///< all, but for a look at one, and for its price
     bool shadows = true; ///< Shading::kLit: shadow maps, made by prepare(), which must be asked for them, too
     int shadow_map_side = 2048; ///< texels along a side, in [64, 8192]; of each face of a cube of maps half as many,
-                                ///< of a surface light's a quarter; fewer where all of them would take more than 768 MiB
+                                ///< of a surface light's a quarter; fewer where there would be too many for memory
     int shadow_cells = 2; ///< rectangular lights are cut into as many pieces along each side, in [1, 8], a map each
     AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: of diffuse surfaces
     /// How far what occludes the environment may be, metres; 0: half (of ssao: an eighth) of the lesser of the scene's

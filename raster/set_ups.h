@@ -237,10 +237,11 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::
 template <VertexShader S, typename D>
 std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const Sixteen& of) const {
     const Vec3T<Floats> ng = view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
+    const Floats of_ng = inverse_sqrt(dot(ng, ng));
     std::uint32_t all = (1u << Floats::size) - 1;
     for (const auto& corner : corners) {
         const Vec3T<Floats> n = view_of_object_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
-        const Floats cosine = dot(n, ng) * inverse_sqrt(Floats(dot(n, n) * dot(ng, ng)));
+        const Floats cosine = dot(n, ng) * inverse_sqrt(dot(n, n)) * of_ng;
         all &= lane_bits(cosine > Floats(kLeastCosine));
     }
     return all << i;

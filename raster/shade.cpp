@@ -76,7 +76,7 @@ LightParts lit(const PreparedData& data, const Settings& settings, const PartSet
     const auto* metal = std::get_if<MetalBsdf>(&bsdf);
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
         !screen->first_look().radiance.empty() && metal->alpha <= Mirrored::kRoughest)
-        parts.reflection = Mirrored(data, settings, *screen, point, *metal)(taps);
+        if (const std::optional<Rgb> mirrored = Mirrored(data, settings, *screen, point, *metal)(taps)) parts.reflection = *mirrored;
     if (is_glass(data, point.surface.object) && asked.reflection && settings.screen_refractions && screen != nullptr &&
         screen->behind() != nullptr)
         parts.reflection = std::visit(SeenThrough(data, settings, *screen, point), bsdf);

@@ -142,8 +142,8 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             touched |= blocks && near;
         }
     // Where facets are about as fine as the map's texels, its differences mix the slopes of several, and some seem to rise over
-    // the receiver's plane. Of what lies on the receiver's surface most texels tell.
-    if (dark + contact > kMost * (known + under)) dark += contact;
+    // the receiver's plane. Of what lies on the receiver's surface most texels tell; of a veil on it those that it stops.
+    if (layered_ || dark + contact > kContactsShade * (known + under)) dark += contact;
     if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
     // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
     if (!touched) known += under;

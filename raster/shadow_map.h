@@ -59,7 +59,7 @@ public:
     static constexpr double kDepths = 64; ///< times the receiver's rounding: that of planes through depths solved in float
     static constexpr double kFourDepths = 5; ///< the same of texels up to one beside the place: of a depth, and of two differences of two
     static constexpr double kUnsure = 0.75; ///< of the filter: where texels of less weight say anything, what covers the receiver counts
-    static constexpr double kMost = 0.75; ///< of the texels that say anything: where less block, contacts do not shade
+    static constexpr double kContactsShade = 0.75; ///< of the texels that say anything: where less block, contacts do not shade
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
 
     int side() const { return nearness_.width(); }

@@ -1,6 +1,7 @@
 #include "raster/surroundings.h"
 
 #include "common/scene/lamp_texture.h"
+#include "raster/environment_light.h"
 #include "raster/mirrored.h"
 #include "raster/prefiltered.h"
 
@@ -99,7 +100,7 @@ Rgb Surroundings::picture_or_environment(const Look& look, float& distance) cons
         if (const auto mirrored = behind_metal(look, *hit)) return *mirrored;
         return picture(look, *hit, distance);
     }
-    if (!settings_.environment || !(data_.scene.needs.environment || !settings_.skips.environment)) return {};
+    if (!shows_environment(data_, settings_)) return {};
     const Environment& environment = data_.scene.environment;
     const bool blurred = look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered;
     return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
@@ -113,16 +114,17 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
     const Screen& screen = scenery_.at(x, y);
     const std::uint32_t object = screen.first_look().objects(x, y);
     if (object == kNoObject || data_.objects[object].closed) return std::nullopt;
-    const Material& material = data_.scene.materials[data_.scene.objects[object].materials.front()];
+    const std::optional<MetalBsdf>& metal = data_.objects[object].metal;
     const Vec3 n = screen.normal(x, y);
     const float away = dot(n, look.way);
-    if (!(away > 0) || !is_mirror(material)) return std::nullopt;
+    if (!(away > 0) || !metal || metal->alpha > Mirrored::kRoughest) return std::nullopt;
     Look again = look;
     again.p = look.p + look.way * hit.distance, again.n = -n, again.way = normalize(look.way - n * (2 * away));
     again.width = look.width + hit.distance * look.turn, again.point = nullptr;
+    again.spread += blur_mirrored(metal->alpha), again.alpha = min(look.alpha + metal->alpha, 1.0f);
     again.from_picture = false, again.mirrored_again = true;
     float distance = kInfinity;
-    return picture_or_environment(again, distance) * texture_slot(material).value;
+    return picture_or_environment(again, distance) * metal->albedo(away);
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {

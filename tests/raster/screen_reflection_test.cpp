@@ -277,20 +277,48 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("of a sheet of metal a mirror below shows what its back mirrors, not the sky that its front shows the viewer") {
+        for (const float roughness : {0.0f, 0.2f}) {
+            Scene scene;
+            add(scene, QuadList{{{Vec3(-1, 0, 2), Vec3(2, 0, 0), Vec3(0, 0, -1)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+            add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(), Metal{{Rgb(0.8f, 0.8f, 0.4f)}, roughness});
+            add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb(0.2f)}});
+            scene.environment = ConstantEnvironment{Rgb(1.0f)};
+            finish_scene(scene);
+            const View view{look({0, 2, 6}, {0, 0.3, 0}, 40), 160, 120};
+            const ImageRgb found = render(scene, view, plain()).radiance;
+            const auto at = [&](Vec3d p) {
+                const Vec3d place = CameraModel(view).through().project(p);
+                return found(static_cast<int>(place.x), static_cast<int>(place.y));
+            };
+            CHECK(at({0, 0.6, 0.15}).g > 0.7f); // the sheet itself
+            // Up from z = 1.5, back at the sheet's height, the floor as far behind that: of the sheet's colour by Schlick's term.
+            const double cosine = 2 / std::hypot(2.0, 4.5), term = std::pow(1 - cosine, 5);
+            const Rgb floor = at({0, -0.01, -1.22});
+            CHECK(floor.g < 0.25f);
+            for (const double x : {-0.5, 0.0, 0.5}) {
+                const Rgb seen = at({x, 0, 1.5});
+                CHECK(seen.g == doctest::Approx((0.8 + 0.2 * term) * static_cast<double>(floor.g)).epsilon(0.15));
+                CHECK(seen.b == doctest::Approx((0.4 + 0.6 * term) * static_cast<double>(floor.b)).epsilon(0.15));
+            }
+        }
+    }
+
+    // Rays of a quadrant may all come out beneath the horizon.
+    TEST_CASE("rough metal in a white room seen at a grazing angle is as bright in each quadrant's samples, and never black") {
         Scene scene;
-        add(scene, QuadList{{{Vec3(-1, 0, 2), Vec3(2, 0, 0), Vec3(0, 0, -1)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
-        add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(), Metal{{Rgb(0.8f)}, 0});
-        add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.5f});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
-        const View view{look({0, 2, 6}, {0, 0.3, 0}, 40), 160, 120};
-        const ImageRgb found = render(scene, view, plain()).radiance;
-        const auto at = [&](Vec3d p) {
-            const Vec3d place = CameraModel(view).through().project(p);
-            return found(static_cast<int>(place.x), static_cast<int>(place.y)).g;
-        };
-        CHECK(at({0, 0.6, 0.15}) > 0.7f); // the sheet itself
-        for (const double x : {-0.5, 0.0, 0.5}) CHECK(at({x, 0, 1.5}) < 0.05f);
+        for (const double height : {0.1, 0.4, 2.0}) {
+            const View view{look({0, height, 6}, {0, 0, 0}, 20), 64, 48};
+            raster::Settings settings = plain();
+            settings.samples_per_pixel = 16;
+            const ImageRgb found = render(scene, view, settings).radiance;
+            const Vec3d place = CameraModel(view).through().project({0, 0, 1});
+            const Rgb seen = found(static_cast<int>(place.x), static_cast<int>(place.y));
+            CAPTURE(height);
+            CHECK(seen.g == doctest::Approx(1).epsilon(0.03));
+        }
     }
 
     TEST_CASE("moderately rough metal mirrors the wall before it, not the environment behind that") {
