@@ -92,7 +92,9 @@ TEST_SUITE("unit") {
         four.multisamples = 4;
         const std::array<std::pair<View, raster::Settings>, 3> ways{{{kView, plain()}, {kView, four}, {parallel, plain()}}};
         for (const bool triangles : {false, true})
-            for (const auto& [view, settings] : ways) {
+            for (const auto& way : ways) {
+                const View& view = way.first;
+                const raster::Settings& settings = way.second;
                 CAPTURE(triangles);
                 CAPTURE(settings.multisamples);
                 CAPTURE(static_cast<int>(view.camera.projection));

@@ -11,7 +11,8 @@ using namespace duet;
 TEST_SUITE("unit") {
 
     TEST_CASE("the greatest number in any part of an image: never less, never more than that of four times the part around it") {
-        for (const auto& [width, height] : {std::pair(1, 1), std::pair(64, 64), std::pair(37, 100)}) {
+        for (const auto& size : {std::pair(1, 1), std::pair(64, 64), std::pair(37, 100)}) {
+            const int width = size.first, height = size.second;
             ImageFloat image(width, height);
             for (std::size_t i = 0; i < image.size(); ++i) image[i] = unit_float(high_bits(stream_number(7, i)));
             const raster::NearestPyramid pyramid(image);

@@ -140,7 +140,7 @@ TEST_SUITE("unit") {
     TEST_CASE("no light through a vault's thin shell, where it begins to turn away from the sun, either") {
         for (const int facets : {10, 40, 160}) {
             Scene scene = with_sun({-0.5f, -0.75f, 0});
-            scene.materials.front() = Diffuse{Rgb(0)}; // the ground's
+            scene.materials.front() = Diffuse{{Rgb(0)}}; // the ground's
             add(scene, trough({0, 1, 0}, 2, 0, kPiDouble, facets));
             finish_scene(scene);
             raster::Settings settings;

@@ -61,7 +61,7 @@ TEST_SUITE("unit") {
             REQUIRE(statistics.first_invalid);
             const auto [sample, y, x] = *statistics.first_invalid;
             CHECK(sample == 2);
-            const auto invalid = [&](int i, int j) {
+            const auto invalid = [&, sample = sample](int i, int j) {
                 return explain(prepared, view, settings, {i, j, sample}).find("invalid: ") != std::string::npos;
             };
             CHECK(invalid(x, y));
