@@ -185,7 +185,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("drawing into the tiles of a grid covers what the oracle says") {
         Random random(6);
-        constexpr int kWidth = 150, kHeight = 130; // three by three tiles, those at the edges smaller
+        constexpr int kWidth = 300, kHeight = 270; // three by three tiles, those at the edges smaller
         const TileGrid grid{{0, 0, kWidth, kHeight}};
         for (int i = 0; i < 100; ++i) {
             const auto place = [&] { return random.integer(-kFull, 4 * kFull); };

@@ -237,7 +237,7 @@ TEST_SUITE("unit") {
         // Large triangles before each other in any order: blocks get full, and later ones are refused by their depth.
         std::mt19937 engine(3);
         const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
-        const raster::Viewport viewport{64, 64, 0.1, false};
+        const raster::Viewport viewport{128, 128, 0.1, false};
         for (int trial = 0; trial < 30; ++trial) {
             struct Pile : raster::WholeTriangles {
                 std::vector<raster::WholeTriangle> wholes;
@@ -248,7 +248,7 @@ TEST_SUITE("unit") {
                 const double middle = number(1, 10);
                 const auto vertex = [&] {
                     const double depth = middle * number(0.9, 1.1);
-                    return raster::PixelVertex{.xw = number(-60, 120) * depth, .yw = number(-60, 120) * depth, .w = depth, .depth = depth};
+                    return raster::PixelVertex{.xw = number(-120, 240) * depth, .yw = number(-120, 240) * depth, .w = depth, .depth = depth};
                 };
                 pile.wholes.push_back({vertex(), vertex(), vertex()});
                 const raster::WholeTriangle& t = pile.wholes.back();
@@ -257,23 +257,23 @@ TEST_SUITE("unit") {
                 if (raster::doubled_area(p[0], p[1], p[2]) != 0) pile.outlines.push_back(set_up(t, p, id, false, viewport));
             }
             raster::DepthTile together, alone;
-            together.reset({0, 0, 64, 64}, {}, viewport);
-            Image<float> nearest(64, 64, 0.0f);
-            Image<std::uint32_t> id(64, 64, raster::kNoTriangle);
+            together.reset({0, 0, 128, 128}, {}, viewport);
+            Image<float> nearest(128, 128, 0.0f);
+            Image<std::uint32_t> id(128, 128, raster::kNoTriangle);
             for (const raster::DrawTriangle& outline : pile.outlines) {
                 together.draw(outline, pile);
-                alone.reset({0, 0, 64, 64}, {}, viewport);
+                alone.reset({0, 0, 128, 128}, {}, viewport);
                 alone.draw(outline, pile);
-                for (int y = 0; y < 64; ++y)
-                    for (int x = 0; x < 64; ++x) {
+                for (int y = 0; y < 128; ++y)
+                    for (int x = 0; x < 128; ++x) {
                         if (!(alone.nearness(x, y) > nearest(x, y))) continue;
                         nearest(x, y) = alone.nearness(x, y);
                         id(x, y) = alone.id(x, y);
                     }
             }
             int wrong = 0;
-            for (int y = 0; y < 64; ++y)
-                for (int x = 0; x < 64; ++x)
+            for (int y = 0; y < 128; ++y)
+                for (int x = 0; x < 128; ++x)
                     wrong += together.id(x, y) != id(x, y) || together.nearness(x, y) != nearest(x, y);
             REQUIRE(wrong == 0);
         }

@@ -167,7 +167,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("progress never decreases, reaches 1, and stopping keeps what is finished") {
         const Scene scene = varied();
-        const View view{look({2, 2, 4}, {0, 0, 0}, 40), 150, 110};
+        const View view{look({2, 2, 4}, {0, 0, 0}, 40), 450, 330};
         raster::Settings settings;
         settings.samples_per_pixel = 4;
         settings.threads = 3;
