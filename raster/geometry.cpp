@@ -13,7 +13,7 @@ namespace {
 
 /// Triangles of a run: enough runs that threads are done at the same time, of so many triangles that a run's own work is
 /// none to speak of.
-constexpr std::uint32_t kMostInRun = 4096, kLeastInRun = 512, kRuns = 32;
+constexpr std::uint32_t kMostInRun = 8192, kLeastInRun = 512, kRuns = 16;
 
 /// The objects whose bounds touch the frustum; the others' primitives are counted.
 std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
