@@ -45,7 +45,7 @@ milliseconds_paused() { # of a frame, with these options
     process=$!
     while kill -STOP $process 2>/dev/null; do
         sleep 0.05
-        kill -CONT $process
+        kill -CONT $process 2>/dev/null || true # it may have ended just before
         sleep 0.01
     done
     wait $process || fail "paused: exit code $?"
