@@ -5,6 +5,7 @@
 #include "raster/hit_lists.h"
 #include "raster/mirrored.h"
 #include "raster/needs.h"
+#include "raster/occlusion_image.h"
 #include "raster/one_sample.h"
 #include "raster/screen_reflection.h"
 #include "raster/shade.h"
@@ -33,6 +34,13 @@ std::vector<std::uint8_t> mirrors(const Scene& scene) {
     for (const Object& object : scene.objects)
         result.push_back(std::all_of(object.materials.begin(), object.materials.end(), of_mirror));
     return result;
+}
+
+/// Works the occlusion out, if shading needs it.
+void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen) {
+    if (needs_occlusion(data, settings))
+        screen.set_occlusion(std::make_shared<const OcclusionImage>(
+            screen, settings.ambient_occlusion, static_cast<float>(occlusion_radius(data, settings)), settings.threads));
 }
 
 /// One view's look at the scene.

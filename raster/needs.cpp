@@ -2,7 +2,6 @@
 
 #include "raster/environment_light.h"
 #include "raster/mirrored.h"
-#include "raster/occlusion_image.h"
 
 #include "common/scene/used_materials.h"
 
@@ -19,12 +18,6 @@ bool needs_occlusion(const PreparedData& data, const Settings& settings) {
 bool needs_screen(const PreparedData& data, const Settings& settings) {
     return needs_occlusion(data, settings) ||
            (settings.output != Output::kNearness && (needs_screen_radiance(data, settings) || needs_screen_behind(data, settings)));
-}
-
-void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen) {
-    if (needs_occlusion(data, settings))
-        screen.set_occlusion(std::make_shared<const OcclusionImage>(
-            screen, settings.ambient_occlusion, static_cast<float>(occlusion_radius(data, settings)), settings.threads));
 }
 
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "raster/prepare.h"
-#include "raster/screen.h"
 
 namespace duet::raster {
 
@@ -14,8 +13,6 @@ bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
 bool needs_screen_behind(const PreparedData& data, const Settings& settings);
 /// Whether that must have its occlusion.
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
-/// Works it out, if so.
-void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen);
 /// Settings::occlusion_radius, or what its 0 stands for.
 double occlusion_radius(const PreparedData& data, const Settings& settings);
 

@@ -42,9 +42,9 @@ std::optional<Rgb> one_color(const Scene& scene, const Object& object) {
 }
 
 std::optional<MetalBsdf> one_metal(const Scene& scene, const Object& object) {
-    const std::optional<Rgb> color = one_color(scene, object);
+    if (!one_color(scene, object)) return std::nullopt;
     const auto* metal = std::get_if<Metal>(&scene.materials[object.materials.front()]);
-    if (!color || metal == nullptr || !metal->roughness.constant()) return std::nullopt;
+    if (metal == nullptr || !metal->roughness.constant()) return std::nullopt;
     return metal->at(scene.textures, SurfacePoint{});
 }
 

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kSeenWidth = 256;                      ///< pixels
 constexpr double kGuard = 4;                         ///< texels
-constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20);  ///< over all cubes, at most
 constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< and over all other maps
-constexpr int kLeastSide = 64;
-constexpr double kFloor = 1e-4;                      ///< of the scene's size: how far things may dip into a floor
+constexpr int kLeastSide = 64;                        ///< texels, of any map
+constexpr double kFloor = 1e-4;                       ///< of the scene's size: how far things may dip into a floor
 
 /// A scene's prepared data, with some of its objects: what a shadow map needs of it.
 PreparedData with_objects(const PreparedData& data, const std::vector<bool>& kept) {
@@ -137,8 +137,8 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
         sources_[i].moments.resize(moments_.size());
-        for (std::size_t k = 0; k < moments_.size(); ++k)
-            draw(data, settings, seen, sources_[i], moments_[k], sources_[i].moments[k]);
+        const std::vector<Camera> views = views_of(data, seen, sources_[i]);
+        for (std::size_t k = 0; k < moments_.size(); ++k) draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
     }
 }
 
@@ -202,13 +202,13 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
     return sources;
 }
 
-void Shadows::draw(const PreparedData& data, const Settings& settings, const std::vector<SeenPoint>& seen, Source& source,
-                   double moment, Maps& maps) {
+void Shadows::draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source, double moment,
+                   Maps& maps) {
     std::vector<bool> kept(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
-    if (std::vector<Camera> views = views_of(data, seen, source); !views.empty()) {
+    if (!views.empty()) {
         const Prepared casters = caster_scene(data, kept);
-        for (Camera& camera : views) {
+        for (Camera camera : views) {
             camera.shutter_open = camera.shutter_close = moment;
             maps.views.emplace_back(casters, camera, side_, settings.threads);
             memory_bytes_ += std::int64_t{4} * side_ * side_;

@@ -7,6 +7,7 @@
 #include "raster/soft_shadow.h"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace duet::raster {
@@ -52,7 +53,8 @@ private:
     /// `seen`: what the scene's camera sees, where there is a sun.
     std::vector<Camera> views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const;
     void fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen);
-    void draw(const PreparedData& data, const Settings& settings, const std::vector<SeenPoint>& seen, Source& source, double moment,
+    /// `views`: views_of the source.
+    void draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source, double moment,
               Maps& maps);
     /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
     CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment, int side,
