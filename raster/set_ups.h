@@ -62,9 +62,9 @@ public:
     const Sixteen& sixteen(std::size_t i) const { return kept_[i]; }
 
 private:
-    std::uint32_t place_of(std::int32_t id);
-    std::uint32_t find_or_keep(std::uint32_t id);
+    std::int32_t find_or_keep(std::int32_t id);
     void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    void fill_up();
     void begin_sixteen();
     void prefetch_triangle(std::int32_t id) const { prefetch(&mesh_->triangles[static_cast<std::size_t>(id) - first_id_]); }
     void prefetch_vertices(const StripOf<std::int32_t>& ids) const;
@@ -88,12 +88,11 @@ private:
     std::map<std::uint32_t, ObjectView> views_of_objects_;
 
     static constexpr float kLeastCosine = 0.125f;
-    static constexpr std::size_t kRoom = 512, kMost = kRoom / kStrip, kPlaces = 2 * kRoom; ///< at most half of which are taken
-    static std::size_t first_place(std::uint32_t id) { return id * 0x9e3779b1u >> (32 - std::countr_zero(kPlaces)); }
+    static constexpr std::size_t kRoom = 1024, kMost = kRoom / kStrip, kPlaces = kRoom;
     struct Place {
-        std::uint32_t id = kNoTriangle, kept = 0;
+        std::int32_t id = kNoTriangle, kept = 0;
     };
-    std::array<Place, kPlaces> places_; ///< by number, or at the next free one after
+    std::array<Place, kPlaces> places_; ///< by the lower bits of numbers: whose place another took is set up once more
     /// The last that were asked for, by the lower six bits of their numbers: sixteen samples are looked up side by side.
     struct Recent {
         StripOf<std::int32_t> ids, kept;
@@ -142,7 +141,7 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
     if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
     while (left != 0) {
         const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
-        const Ints place(static_cast<std::int32_t>(place_of(id)));
+        const Ints place(find_or_keep(id));
         left &= ~lanes_of_number(ids, id);
         for (std::size_t b = 0; b < kBatches; ++b)
             places[b] = xsimd::select(load(ids, b * Ints::size) == Ints(id), place, places[b]);
@@ -160,33 +159,30 @@ void SetUps<S, D>::keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int3
     count_ += kStrip;
 }
 
+/// The rest of the last sixteen is one of them.
+template <VertexShader S, typename D> void SetUps<S, D>::fill_up() {
+    for (std::size_t i = count_; i % kStrip != 0; ++i) wanted_[i / kStrip][i % kStrip] = wanted_[i / kStrip][i % kStrip - 1];
+}
+
 template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
+    fill_up();
     const std::size_t next = (count_ + kStrip - 1) / kStrip * kStrip;
     if (finished_ == count_) finished_ = next;
     count_ = next;
 }
 
-template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::place_of(std::int32_t id) {
-    const auto at = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
-    std::int32_t &recent = recent_[at / kStrip].ids[at % kStrip], &kept = recent_[at / kStrip].kept[at % kStrip];
-    if (recent != id) {
-        recent = id;
-        kept = static_cast<std::int32_t>(find_or_keep(static_cast<std::uint32_t>(id)));
-    }
-    return static_cast<std::uint32_t>(kept);
-}
-
-template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(std::uint32_t id) {
-    std::size_t at = first_place(id);
-    while (places_[at].id != id && places_[at].id != kNoTriangle) at = (at + 1) % kPlaces;
-    if (places_[at].id == id) return places_[at].kept;
-    const std::size_t kept = count_++;
-    places_[at] = {id, static_cast<std::uint32_t>(kept)};
-    StripOf<std::int32_t>& sixteen = wanted_[kept / kStrip];
-    if (kept % kStrip == 0) sixteen.fill(static_cast<std::int32_t>(id));
-    sixteen[kept % kStrip] = static_cast<std::int32_t>(id);
-    prefetch_triangle(static_cast<std::int32_t>(id));
-    return static_cast<std::uint32_t>(kept);
+/// Without a branch: which of them are kept is anyone's guess.
+template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(std::int32_t id) {
+    Place& place = places_[static_cast<std::size_t>(id) % kPlaces];
+    const bool found = place.id == id;
+    place = {id, found ? place.kept : static_cast<std::int32_t>(count_)};
+    count_ += found ? 0 : 1;
+    const auto kept = static_cast<std::size_t>(place.kept), recent = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
+    wanted_[kept / kStrip][kept % kStrip] = id;
+    recent_[recent / kStrip].ids[recent % kStrip] = id;
+    recent_[recent / kStrip].kept[recent % kStrip] = place.kept;
+    prefetch_triangle(id);
+    return place.kept;
 }
 
 /// The vertex function's numbers of the triangles from the i-th on, a batch of them; `side`: 1 in front, -1 behind.
@@ -331,6 +327,7 @@ template <VertexShader S, typename D> void SetUps<S, D>::prefetch_vertices(const
 /// All the waiting for memory at once.
 template <VertexShader S, typename D> void SetUps<S, D>::finish() {
     if (finished_ == count_) return;
+    fill_up();
     const std::size_t first = finished_ / kStrip, end = (count_ + kStrip - 1) / kStrip;
     for (std::size_t i = first; i < end; ++i) prefetch_vertices(wanted_[i]);
     for (std::size_t i = first; i < end; ++i) set_up(wanted_[i], kept_[i]);

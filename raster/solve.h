@@ -80,7 +80,7 @@ private:
     bool steps_;
     SampleOffset grid_offset_{0, 0};
     StripOf<D> grid_xs_ = kColumns<D>, grid_ys_ = kRows<D>; ///< of samples at that offset, from their strip's first pixel
-    static constexpr std::size_t kMost = 32, ///< strips whose triangles are set up side by side
+    static constexpr std::size_t kMost = 64, ///< strips whose triangles are set up side by side
         kTogether = 8; ///< solved: enough for one's work to overlap with the next's, few enough for the first cache
     std::array<ReadStrip, kMost> read_;
     std::array<Solved, kTogether> solved_;
