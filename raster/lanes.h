@@ -23,7 +23,10 @@ inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
 static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 
 /// Asks for a line of memory that will be read soon.
-inline void prefetch(const void* address) { __builtin_prefetch(address); }
+inline void prefetch(const void* address) {
+    __builtin_prefetch(address);
+    asm volatile(""); // else GCC takes functions that do nothing but prefetch for empty, and leaves their calls out
+}
 
 /// One number a sample of a strip, any until it is set: to clear them all would take longer than some of the work.
 template <typename T> struct alignas(64) StripOf {
