@@ -1,6 +1,7 @@
 // Phong's model: diffuse light, and a highlight about the mirror direction.
 #pragma once
 
+#include "common/vec/float_bits.h"
 #include "raster/lights.h"
 
 namespace duet::raster {
@@ -26,6 +27,7 @@ template <typename T> struct PhongFactors {
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
         lobe = lobe * T(kPhongSpecular);
     }
+    bool behind() const { return none_of_lanes(cosine > T(0)); } ///< gives no light at all
 };
 
 /// Radiance of a surface of a base colour under all lights, `ambient` being the radiance from all around; place() is its
@@ -36,6 +38,7 @@ RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& plac
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
         const PhongFactors<T> f(n, wo, light.wi);
+        if (f.behind()) return;
         const RgbT<T> arriving = light.irradiance * f.cosine;
         sum = {fused(arriving.r, diffuse.r + f.lobe, sum.r), fused(arriving.g, diffuse.g + f.lobe, sum.g),
                fused(arriving.b, diffuse.b + f.lobe, sum.b)};
@@ -53,6 +56,7 @@ PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direct
     PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
         const PhongFactors<T> f(n, wo, light.wi);
+        if (f.behind()) return;
         const RgbT<T> arriving = light.irradiance * f.cosine;
         sum.irradiance += arriving;
         sum.highlights += arriving * f.lobe;
