@@ -21,7 +21,8 @@ bool bulges(const Screen& screen, int x, int y) {
     const std::optional<Vec3> here = screen.seen(x, y);
     float sum = 0;
     for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)})
-        if (const auto there = screen.seen(x + dx, y + dy); here && there) sum += dot(screen.normal(x + dx, y + dy) - screen.normal(x, y), *there - *here);
+        if (const auto there = screen.seen(x + dx, y + dy); here && there)
+            sum += dot(screen.normal(x + dx, y + dy) - screen.normal(x, y), *there - *here);
     return sum >= 0;
 }
 
@@ -47,8 +48,8 @@ SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, con
 
 /// Of its front.
 Rgb SeenThrough::mirror(Vec3 way, float alpha, bool lamps) const {
-    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = 2 * turn_, .spread = blur_mirrored(alpha), .alpha = alpha,
-                         .lamps = lamps, .point = &point_, .from_picture = false});
+    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = 2 * turn_, .spread = blur_mirrored(alpha),
+                         .alpha = alpha, .lamps = lamps, .point = &point_, .from_picture = false});
 }
 
 Rgb SeenThrough::boundary(const DielectricBsdf& bsdf, float alpha) const {
@@ -64,7 +65,8 @@ Rgb SeenThrough::boundary(const DielectricBsdf& bsdf, float alpha) const {
             sum += mirror(way, alpha, alpha == 0) * sample->weight * sample->pdf;
         else if (point_.wo.z < 0) // seen from inside
             sum += around_.seen({.p = p_, .n = -point_.ng, .way = way, .width = width_, .turn = (bsdf.eta - 1) * turn_,
-                                 .spread = blur_through(bsdf.eta, alpha), .alpha = alpha, .from_picture = false}) * sample->weight * sample->pdf;
+                                 .spread = blur_through(bsdf.eta, alpha), .alpha = alpha, .from_picture = false}) *
+                   sample->weight * sample->pdf;
         else
             sum += through(way, bsdf.eta, alpha) * sample->pdf;
     }
@@ -84,9 +86,10 @@ Rgb SeenThrough::through(Vec3 way, float eta, float alpha) const {
     exit.ng = exit.ns = exit.horizon = left.n;
     exit.lift = {};
     const ShadingPoint leaves(exit, left.n);
-    const Rgb light = met ? *met : around_.seen({.p = left.p, .n = left.n, .way = left.way, .width = width_ - left.inside * bend, .turn = -2 * bend,
-                                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .point = &leaves,
-                                    .from_picture = false});
+    const Look look{.p = left.p, .n = left.n, .way = left.way, .width = width_ - left.inside * bend, .turn = -2 * bend,
+                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .point = &leaves,
+                    .from_picture = false};
+    const Rgb light = met ? *met : around_.seen(look);
     return light * tint * tint * Rgb(kept(glass.absorption.r), kept(glass.absorption.g), kept(glass.absorption.b));
 }
 
@@ -181,7 +184,8 @@ Rgb SeenThrough::operator()(const ThinDielectricBsdf& bsdf) const {
         const float t = sqr(parts.transmitted[c]) / max(1 - sqr(parts.reflected[c]), 1e-6f);
         transmitted[c] = t, reflected[c] += t * parts.reflected[c];
     }
-    const Rgb sum = around_.seen({.p = p_, .n = -point_.ng, .way = normalize(straight), .width = width_, .from_picture = false}) * transmitted;
+    const Look behind{.p = p_, .n = -point_.ng, .way = normalize(straight), .width = width_, .from_picture = false};
+    const Rgb sum = around_.seen(behind) * transmitted;
     if (!point_.receives(mirrored)) return sum;
     return sum + mirror(normalize(mirrored), 0, true) * reflected;
 }

@@ -8,7 +8,7 @@ namespace duet::raster {
 
 namespace {
 
-bool mirrors(const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= Mirrored::kRoughest; }
+bool mirrors(const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; }
 
 /// Ray number i of Mirrored::kRays from a rough metal: a (0,2)-net, of which each aligned part is one.
 Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), Mirrored::kRays); }

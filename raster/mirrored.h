@@ -19,9 +19,6 @@ bool is_mirror(const Material& material);
 /// as the part of the lobe that it stands for.
 class Mirrored {
 public:
-    /// GGX alpha up to which it does (roughness 0.54): of rougher metal the few rays are so far apart that each shows on a
-    /// smooth surface where it goes from one thing to the next.
-    static constexpr float kRoughest = 0.3f;
     static constexpr int kRays = 8; ///< of a pixel of rough metal
 
     /// `screen` has radiance. Refers to all.

@@ -75,7 +75,7 @@ LightParts lit(const PreparedData& data, const Settings& settings, const PartSet
         (diffuse ? parts.environment : parts.reflection) = std::visit(EnvironmentLight(data, settings, point, screen), bsdf);
     const auto* metal = std::get_if<MetalBsdf>(&bsdf);
     if (metal != nullptr && asked.reflection && settings.screen_reflections && screen != nullptr &&
-        !screen->first_look().radiance.empty() && metal->alpha <= Mirrored::kRoughest)
+        !screen->first_look().radiance.empty() && metal->alpha <= kRoughestMirror)
         if (const std::optional<Rgb> mirrored = Mirrored(data, settings, *screen, point, *metal)(taps)) parts.reflection = *mirrored;
     if (is_glass(data, point.surface.object) && asked.reflection && settings.screen_refractions && screen != nullptr &&
         screen->behind() != nullptr)

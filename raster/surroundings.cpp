@@ -2,7 +2,6 @@
 
 #include "common/scene/lamp_texture.h"
 #include "raster/environment_light.h"
-#include "raster/mirrored.h"
 #include "raster/prefiltered.h"
 
 #include <algorithm>
@@ -117,7 +116,7 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
     const std::optional<MetalBsdf>& metal = data_.objects[object].metal;
     const Vec3 n = screen.normal(x, y);
     const float away = dot(n, look.way);
-    if (!(away > 0) || !metal || metal->alpha > Mirrored::kRoughest) return std::nullopt;
+    if (!(away > 0) || !metal || metal->alpha > kRoughestMirror) return std::nullopt;
     Look again = look;
     again.p = look.p + look.way * hit.distance, again.n = -n, again.way = normalize(look.way - n * (2 * away));
     again.width = look.width + hit.distance * look.turn, again.point = nullptr;

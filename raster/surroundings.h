@@ -27,6 +27,10 @@ struct Look {
     float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
 };
 
+/// GGX alpha up to which metal mirrors what the picture shows (roughness 0.54): of rougher metal the few rays are so far apart
+/// that each shows on a smooth surface where it goes from one thing to the next.
+inline constexpr float kRoughestMirror = 0.3f;
+
 /// By how much GGX alpha spreads a mirrored look, radians: slopes turn it by 2, to each side. And the other way round.
 constexpr float blur_mirrored(float alpha) { return 4 * alpha; }
 constexpr float alpha_as_wide(float spread) { return 0.25f * spread; }
