@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
 constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for each metre behind the nearer side of what hides: deep in, means alone are known
-constexpr int kBlock = 16;      ///< pixels: blocks of the picture before which a ray is are passed at once
+constexpr int kLeastBlock = 8, kMostBlock = 256; ///< pixels: blocks of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
 float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
@@ -21,19 +21,20 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
 }
 
-/// How many of at most `most` steps (sx, sy) from a place stay in its block of kBlock × kBlock pixels, or fewer.
-int steps_in_block(float x, float y, float sx, float sy, int most) {
-    const auto along = [](float at, float step) {
-        const float from_edge = at - kBlock * std::floor(at / kBlock);
-        return step > 0 ? (kBlock - from_edge) / step : step < 0 ? from_edge / -step : 1e6f;
+/// How many of at most `most` steps (sx, sy) from a place stay in its block of `block` × `block` pixels, a power of two, or fewer.
+int steps_in_block(float x, float y, float sx, float sy, int block, int most) {
+    const auto side = static_cast<float>(block), per_side = 1 / side;
+    const auto along = [&](float at, float step) {
+        const float from_edge = at - side * std::floor(at * per_side);
+        return step > 0 ? (side - from_edge) / step : step < 0 ? from_edge / -step : 1e6f;
     };
     return std::min(most, static_cast<int>(std::min(along(x, sx), along(y, sy)) - 0.01f));
 }
 
 /// Whether all of a place's block lies farther than a depth.
-bool block_is_beyond(const Screen& screen, float x, float y, float depth) {
-    const int x0 = static_cast<int>(x) / kBlock * kBlock, y0 = static_cast<int>(y) / kBlock * kBlock;
-    return depth < screen.least_depth(x0, y0, std::min(x0 + kBlock, screen.width()) - 1, std::min(y0 + kBlock, screen.height()) - 1);
+bool block_is_beyond(const Screen& screen, float x, float y, int block, float depth) {
+    const int x0 = static_cast<int>(x) & -block, y0 = static_cast<int>(y) & -block;
+    return depth < screen.least_depth(x0, y0, std::min(x0 + block, screen.width()) - 1, std::min(y0 + block, screen.height()) - 1);
 }
 
 /// One ray on its way.
@@ -70,18 +71,25 @@ private:
         return deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
     }
 
-    /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays.
+    /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays: after one that is passed
+    /// larger ones are looked at, where it does not pass them smaller ones.
     int passed_at_once(int i, float& before) {
         if (i <= 2) return 0;
         const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t);
         if (!scenery_.all.contains(fx, fy)) return 0;
-        const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), line_.last() - i);
-        if (more <= 0) return 0;
-        const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
-        if (!block_is_beyond(scenery_.all, fx, fy, deepest)) return 0;
-        before = last_depth;
-        hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
-        return more;
+        for (;; block_ /= 2) {
+            const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), block_, line_.last() - i);
+            if (more > 0) {
+                const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
+                if (block_is_beyond(scenery_.all, fx, fy, block_, deepest)) {
+                    before = last_depth;
+                    hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
+                    block_ = std::min(2 * block_, kMostBlock);
+                    return more;
+                }
+            }
+            if (block_ == kLeastBlock) return 0;
+        }
     }
 
     /// A step, over which the ray's depth goes from `before` to `depth`.
@@ -247,6 +255,7 @@ private:
     Vec3 p_, n_, way_;
     bool from_picture_;
     Crossing line_;
+    int block_ = kLeastBlock;
     float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
 };
 
