@@ -48,6 +48,29 @@ Scene smooth_slivers() {
     return scene;
 }
 
+/// A wall of kAcross × kAcross cells, two triangles each: of any eight that follow each other numbers are 1024 apart, so that those
+/// side by side compete for the same places of a table.
+constexpr std::uint32_t kAcross = 64;
+Scene shuffled_wall() {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < (kAcross + 1) * (kAcross + 1); ++i)
+        mesh.positions.push_back(Vec3(static_cast<float>(i % (kAcross + 1)), static_cast<float>(i / (kAcross + 1)), 0) * (2.0f / kAcross) -
+                                 Vec3(1, 1, 0));
+    std::vector<std::array<std::uint32_t, 3>> in_rows;
+    for (std::uint32_t row = 0; row < kAcross; ++row)
+        for (std::uint32_t column = 0; column < kAcross; ++column) {
+            const std::uint32_t a = row * (kAcross + 1) + column, b = a + kAcross + 1;
+            in_rows.push_back({a, a + 1, b + 1});
+            in_rows.push_back({a, b + 1, b});
+        }
+    mesh.triangles.resize(in_rows.size());
+    for (std::size_t i = 0; i < in_rows.size(); ++i) mesh.triangles[i % 8 * (in_rows.size() / 8) + i / 8] = in_rows[i];
+    Scene scene;
+    add(scene, mesh);
+    finish_scene(scene);
+    return scene;
+}
+
 /// A picture's geometry, and its strips, tile by tile.
 struct Strips {
     const Scene scene;
@@ -129,6 +152,35 @@ TEST_SUITE("unit") {
             CHECK(worst > 0x1p-18);   // some are slivers
             CHECK(mended > 50);       // and some are worse
             CHECK(worst_mended < 1e-6);
+        }
+    }
+
+    TEST_CASE("of triangles that compete for places, more than there is room for, each strip has its own, all of them or a few at a time") {
+        using raster::NoVaryings, raster::StripSolver;
+        const Strips picture(shuffled_wall(), perspective());
+        const raster::Triangles& triangles = picture.geometry.triangles;
+        const NoVaryings nothing;
+        for (const std::size_t together : {std::size_t{1}, std::size_t{5}, std::size_t{10'000}}) {
+            int seen = 0;
+            double worst = 0;
+            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
+                StripSolver<NoVaryings, double> solver(triangles, picture.pass, rect, nothing, false);
+                for (std::size_t first = 0; first < places.size(); first += together) {
+                    const auto some = places.subspan(first, std::min(together, places.size() - first));
+                    solver.solve(some, false, [&](std::size_t s, const auto& strip) {
+                        for (std::size_t i = 0; i < raster::kStrip; ++i) {
+                            if (!(strip.samples->on_mesh >> i & 1)) continue;
+                            const raster::Interpolated wanted =
+                                interpolate(triangles.whole(static_cast<std::uint32_t>(some[s].ids[i])), some[s].position(i));
+                            worst = std::max({worst, std::abs(static_cast<double>(strip.b1[i]) - wanted.b1 / wanted.sum),
+                                              std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum)});
+                            ++seen;
+                        }
+                    });
+                }
+            });
+            CHECK(seen > 5'000);
+            CHECK(worst < 0.01); // beside its triangle a sample that only the snapped one covers is taken inside
         }
     }
 
