@@ -2,11 +2,11 @@
 
 #include "common/system/control.h"
 #include "common/system/error.h"
-#include "raster/glass.h"
-#include "raster/needs.h"
-#include "raster/prefiltered.h"
-#include "raster/screen.h"
-#include "raster/shadows.h"
+#include "raster/light/prefiltered.h"
+#include "raster/screen/glass.h"
+#include "raster/screen/needs.h"
+#include "raster/screen/screen.h"
+#include "raster/shadow/shadows.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // What a rendering took, what it left out and what it only approximated: its statistics.
 #pragma once
 
-#include "raster/geometry.h"
+#include "raster/geometry/geometry.h"
 
 #include <atomic>
 #include <mutex>

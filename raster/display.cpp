@@ -1,9 +1,9 @@
 #include "raster/display.h"
 
-#include "raster/encode_strip.h"
-#include "raster/environment_light.h"
+#include "raster/light/environment_light.h"
 #include "raster/shade.h"
-#include "raster/strip_samples.h"
+#include "raster/shader/encode_strip.h"
+#include "raster/visibility/strip_samples.h"
 
 #include "common/image/srgb.h"
 #include "common/system/parallel.h"

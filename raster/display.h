@@ -2,8 +2,8 @@
 // finished while it lies in the cache.
 #pragma once
 
-#include "raster/cover.h"
 #include "raster/prepare.h"
+#include "raster/visibility/cover.h"
 
 namespace duet::raster {
 

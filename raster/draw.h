@@ -1,12 +1,12 @@
 // A view drawn with a shader of the caller's.
 #pragma once
 
-#include "raster/program.h"
 #include "raster/render.h"
+#include "raster/shader/program.h"
 
 namespace duet::raster {
 
-/// render() by raster/shader.h's two functions in place of a built-in shading: Settings::shading and Settings::parts are
+/// render() by raster/shader/shader.h's two functions in place of a built-in shading: Settings::shading and Settings::parts are
 /// not asked. Where nothing is seen the picture is black. Threads share the shader, whose functions must be free of
 /// side effects. A radiance that is NaN, infinite or negative is dropped and counted (RenderStatistics::invalid_samples).
 template <Shader S>

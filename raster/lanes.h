@@ -18,7 +18,7 @@ using Floats = xsimd::batch<float>;
 using Ints = xsimd::batch<std::int32_t>;
 using Doubles = xsimd::batch<double>;
 
-/// Samples that are worked on together: two rows of a block of 8 × 8 (raster/depth_tile.h).
+/// Samples that are worked on together: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
 inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
 static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 

@@ -1,9 +1,9 @@
 #include "raster/prepare.h"
 
-#include "raster/geometry.h"
-#include "raster/prefiltered.h"
-#include "raster/shadows.h"
-#include "raster/surroundings.h"
+#include "raster/geometry/geometry.h"
+#include "raster/light/prefiltered.h"
+#include "raster/screen/surroundings.h"
+#include "raster/shadow/shadows.h"
 
 #include "common/system/error.h"
 

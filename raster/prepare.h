@@ -2,9 +2,9 @@
 #pragma once
 
 #include "common/scene/scene.h"
-#include "raster/irradiance.h"
+#include "raster/light/irradiance.h"
 #include "raster/render.h"
-#include "raster/texels.h"
+#include "raster/shader/texels.h"
 
 #include <cstdint>
 #include <memory>
@@ -32,9 +32,9 @@ struct alignas(32) PackedVertex {
 /// Of each shape of the scene; of those that are no meshes: none.
 std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);
 
-class GeometryPool; // raster/geometry.h
-class Shadows;      // raster/shadows.h
-class Prefiltered;  // raster/prefiltered.h
+class GeometryPool; // raster/geometry/geometry.h
+class Shadows;      // raster/shadow/shadows.h
+class Prefiltered;  // raster/light/prefiltered.h
 
 struct PreparedData {
     const Scene& scene;
@@ -42,8 +42,8 @@ struct PreparedData {
     std::vector<std::uint32_t> polygonal; ///< objects of triangles and quads, in order
     std::vector<std::uint32_t> spheres;   ///< the others
     std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
-                                                                 ///< above (raster/layers.h)
-    std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/glass.h)
+                                                                 ///< above (raster/visibility/layers.h)
+    std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/screen/glass.h)
     std::vector<std::size_t> lamps{};     ///< surface lights that mirrors look for beside the picture: the strongest, in order
     std::size_t unmirrored_lamps = 0;     ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects

@@ -1,8 +1,8 @@
 // raster SCENE -o OUT: renders a scene by projecting its primitives onto the pixels.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
-#include "raster/multisample.h"
 #include "raster/render.h"
+#include "raster/visibility/multisample.h"
 
 #include <CLI/CLI.hpp>
 

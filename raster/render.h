@@ -31,7 +31,7 @@ Shading shading(std::string_view name);
 /// "lit, phong … or depth".
 std::string shading_names();
 
-/// How the environment's occlusion is guessed from the picture's depths (raster/ambient_occlusion.h).
+/// How the environment's occlusion is guessed from the picture's depths (raster/screen/ambient_occlusion.h).
 enum class AmbientOcclusion { kNone, kSsao, kGtao };
 /// "none", "ssao", "gtao"; throws Error for another name.
 AmbientOcclusion ambient_occlusion(std::string_view name);
@@ -54,11 +54,11 @@ struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
     Output output = Output::kRadiance; ///< others: of the first sample a pixel, without auxiliary pictures
     bool front_faces_only = false;     ///< draw no back faces of any mesh or quad, as real-time renderers do
-    /// Multisampling (raster/multisample.h): 2, 4, 8 or 16 samples a pixel for coverage and depth, shaded once a primitive;
+    /// Multisampling (raster/visibility/multisample.h): 2, 4, 8 or 16 samples a pixel for coverage and depth, shaded once a primitive;
     /// 0: none. Together with samples_per_pixel = 1 only; through the lens's centre, as the shutter opens.
     int multisamples = 0;
     bool sample_shading = false; ///< with it: shade each of its samples, which is supersampling by its pattern
-    bool edges = false; ///< ink lines over the picture where depth, normals or objects change (raster/edges.h)
+    bool edges = false; ///< ink lines over the picture where depth, normals or objects change (raster/overlay/edges.h)
     PartSet parts; ///< all, but for a look at one, and for its price
     bool shadows = true; ///< Shading::kLit: shadow maps, made by prepare(), which must be asked for them, too
     int shadow_map_side = 2048; ///< texels along a side, in [64, 8192]; of each face of a cube of maps half as many,
@@ -77,7 +77,7 @@ struct Settings : RenderSettings {
 };
 
 struct PreparedData; // raster/prepare.h
-class Program;       // raster/strip_shader.h
+class Program;       // raster/shader/strip_shader.h
 
 /// What one scene needs for any number of views. Refers to the scene, which must outlive it.
 class Prepared {

@@ -1,10 +1,10 @@
 #include "raster/shade.h"
 
-#include "raster/direct.h"
-#include "raster/environment_light.h"
-#include "raster/glass.h"
-#include "raster/mirrored.h"
-#include "raster/shadows.h"
+#include "raster/light/direct.h"
+#include "raster/light/environment_light.h"
+#include "raster/screen/glass.h"
+#include "raster/screen/mirrored.h"
+#include "raster/shadow/shadows.h"
 #include "raster/split.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Stage 7: from a Hit to what the picture shows there, by the shared surface point, materials and lights.
 #pragma once
 
-#include "raster/cover.h"
 #include "raster/prepare.h"
-#include "raster/screen.h"
+#include "raster/screen/screen.h"
+#include "raster/visibility/cover.h"
 
 namespace duet::raster {
 

@@ -7,7 +7,7 @@
 
 namespace duet::raster {
 
-class Screen; // raster/screen.h
+class Screen; // raster/screen/screen.h
 
 /// Radiance towards the viewer, as Shading::kLit approximates it: the parts add up to what a picture shows. A part that
 /// Settings::parts leaves out is black.

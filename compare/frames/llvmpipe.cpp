@@ -2,7 +2,7 @@
 #include "compare/frames/peer.h"
 
 #include "compare/frames/gl.h"
-#include "raster/phong.h"
+#include "raster/shader/phong.h"
 
 #include "common/system/error.h"
 
@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-/// raster/phong.h in GLSL.
+/// raster/shader/phong.h in GLSL.
 constexpr const char* kFragmentShader = R"(#version 450 core
 in vec3 p, n;
 uniform vec3 eye, to_sun, diffuse, sun, ambient;

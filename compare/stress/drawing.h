@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/stress/exact_coverage.h"
-#include "raster/cover.h"
+#include "raster/visibility/cover.h"
 
 #include <memory>
 #include <vector>

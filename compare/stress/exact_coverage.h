@@ -1,7 +1,7 @@
 // Which samples a triangle of the sub-pixel grid covers: by the rule's definition, in integers that cannot overflow.
 #pragma once
 
-#include "raster/transform.h"
+#include "raster/geometry/transform.h"
 
 #include <array>
 #include <cstdint>

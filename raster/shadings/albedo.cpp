@@ -1,5 +1,5 @@
 // Base colours as they are, under no light.
-#include "raster/program.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

@@ -1,5 +1,5 @@
 // How near surfaces are: white at the camera, half as bright as far away as what it looks at, black at infinity.
-#include "raster/program.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

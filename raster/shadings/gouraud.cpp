@@ -1,7 +1,7 @@
 // Gouraud shading: light is worked out at vertices and interpolated; the base colour is each sample's own (Gouraud 1971,
 // «Continuous Shading of Curved Surfaces»).
-#include "raster/phong.h"
-#include "raster/program.h"
+#include "raster/shader/phong.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

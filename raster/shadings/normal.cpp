@@ -1,5 +1,5 @@
 // Shading normals as colours: (n + 1)/2, see direction_color.
-#include "raster/program.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

@@ -1,7 +1,7 @@
 // Phong shading: normals are interpolated, light is worked out at each sample (Phong 1975, «Illumination for Computer
 // Generated Pictures»).
-#include "raster/phong.h"
-#include "raster/program.h"
+#include "raster/shader/phong.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

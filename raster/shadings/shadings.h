@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/render.h"
-#include "raster/strip_shader.h"
+#include "raster/shader/strip_shader.h"
 
 #include <memory>
 

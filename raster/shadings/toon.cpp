@@ -2,8 +2,8 @@
 // a sharp edge (Lake, Marshall, Harris and Blackstein 2000, «Stylized Rendering Techniques for Scalable Real-Time 3D
 // Animation»). From band to band it goes within a pixel, by the normal's screen derivatives, so that borders do not
 // stair-step.
-#include "raster/phong.h"
-#include "raster/program.h"
+#include "raster/shader/phong.h"
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

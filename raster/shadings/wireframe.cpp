@@ -1,8 +1,8 @@
 // Wireframe with hidden lines removed: a triangle's edges, a pixel wide and anti-aliased, in the base colour (of a lamp in
 // its light); its inside black. The distance of a sample to an edge is barycentric: b / |∇b| pixels, exact on the edge
 // (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, «Single-pass Wireframe Rendering»). A quad's diagonal is no
-// edge; a sphere has none. Lines through and through: raster/lines.h.
-#include "raster/program.h"
+// edge; a sphere has none. Lines through and through: raster/overlay/lines.h.
+#include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
 namespace duet::raster {

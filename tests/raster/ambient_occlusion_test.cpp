@@ -1,8 +1,8 @@
 // The environment's occlusion against form factors.
 #include "tests/raster/scenes.h"
 
-#include "raster/ambient_occlusion.h"
 #include "raster/lanes.h"
+#include "raster/screen/ambient_occlusion.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "raster/clip.h"
+#include "raster/geometry/clip.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // What is left out can't be seen: pictures with and without culling, and the cases in which back faces must stay.
 #include "tests/raster/scenes.h"
 
-#include "raster/cull.h"
+#include "raster/geometry/cull.h"
 #include "raster/prepare.h"
 
 #include <doctest/doctest.h>

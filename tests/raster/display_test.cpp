@@ -1,7 +1,7 @@
 // Pictures for displays and shadow maps: the fast ways against the naive ones.
-#include "raster/cover.h"
 #include "raster/draw.h"
-#include "raster/encode_strip.h"
+#include "raster/shader/encode_strip.h"
+#include "raster/visibility/cover.h"
 #include "tests/raster/varied_scene.h"
 
 #include "common/image/srgb.h"

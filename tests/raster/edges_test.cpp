@@ -1,5 +1,5 @@
 // Ink lines: where they must be, and where there must be none.
-#include "raster/edges.h"
+#include "raster/overlay/edges.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>

@@ -1,10 +1,10 @@
 // What the picture does not show, guessed from the flat surfaces and the sky about it.
 #include "tests/raster/scenes.h"
 
-#include "raster/flat_look.h"
-#include "raster/screen_reflection.h"
+#include "raster/screen/flat_look.h"
+#include "raster/screen/screen_reflection.h"
+#include "raster/screen/surroundings.h"
 #include "raster/split.h"
-#include "raster/surroundings.h"
 
 #include <doctest/doctest.h>
 

@@ -3,8 +3,8 @@
 
 #include "common/image/same_bits.h"
 #include "common/material/fresnel.h"
-#include "raster/glass.h"
-#include "raster/screen.h"
+#include "raster/screen/glass.h"
+#include "raster/screen/screen.h"
 #include "raster/split.h"
 #include "raytrace/render.h"
 

@@ -1,4 +1,4 @@
-#include "raster/irradiance.h"
+#include "raster/light/irradiance.h"
 
 #include <doctest/doctest.h>
 

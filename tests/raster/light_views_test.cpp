@@ -1,7 +1,7 @@
 // What a sun's maps see: as fine as the camera sees it, near and far.
 #include "tests/raster/scenes.h"
 
-#include "raster/light_views.h"
+#include "raster/shadow/light_views.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Lines by integers against lines by exact fractions, and clipping against cutting the line into small pieces.
-#include "raster/lines.h"
+#include "raster/overlay/lines.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>

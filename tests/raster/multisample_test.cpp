@@ -1,5 +1,5 @@
 // Multisampling against supersampling by the same pattern, and against many samples.
-#include "raster/multisample.h"
+#include "raster/visibility/multisample.h"
 #include "tests/raster/varied_scene.h"
 
 #include "common/image/same_bits.h"

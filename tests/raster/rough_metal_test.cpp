@@ -5,9 +5,9 @@
 #include "common/material/ggx.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
-#include "raster/area_specular.h"
-#include "raster/ggx_fit.h"
-#include "raster/prefiltered.h"
+#include "raster/light/area_specular.h"
+#include "raster/light/ggx_fit.h"
+#include "raster/light/prefiltered.h"
 
 #include <doctest/doctest.h>
 

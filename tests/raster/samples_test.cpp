@@ -1,4 +1,4 @@
-#include "raster/samples.h"
+#include "raster/geometry/samples.h"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // What metal mirrors of the picture, against the mirrored ray itself.
 #include "tests/raster/scenes.h"
 
-#include "raster/screen_reflection.h"
+#include "raster/screen/screen_reflection.h"
+#include "raster/screen/surroundings.h"
 #include "raster/split.h"
-#include "raster/surroundings.h"
 
 #include <doctest/doctest.h>
 

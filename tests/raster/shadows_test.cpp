@@ -2,8 +2,8 @@
 #include "tests/raster/shadow_floor.h"
 
 #include "raster/prepare.h"
-#include "raster/shadow_map.h"
-#include "raster/shadows.h"
+#include "raster/shadow/shadow_map.h"
+#include "raster/shadow/shadows.h"
 
 #include <doctest/doctest.h>
 

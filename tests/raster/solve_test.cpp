@@ -1,6 +1,6 @@
-// Where samples lie on their triangles, side by side: in float as the error bounds of raster/solve.h say, in double exactly.
-#include "raster/cover.h"
-#include "raster/solve.h"
+// Where samples lie on their triangles, side by side: in float as the error bounds of raster/shader/solve.h say, in double exactly.
+#include "raster/shader/solve.h"
+#include "raster/visibility/cover.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>

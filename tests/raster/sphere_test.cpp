@@ -1,5 +1,5 @@
 // Screen bounds of spheres and ellipsoids against a ray for every pixel.
-#include "raster/sphere.h"
+#include "raster/geometry/sphere.h"
 
 #include <doctest/doctest.h>
 

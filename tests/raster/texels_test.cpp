@@ -1,5 +1,5 @@
 // Textures looked up side by side against the same looked up one by one: the same bits.
-#include "raster/texels.h"
+#include "raster/shader/texels.h"
 
 #include "common/texture/pyramid.h"
 #include "raster/prepare.h"

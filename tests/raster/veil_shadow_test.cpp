@@ -1,7 +1,7 @@
 // Shadows of what has holes or lets a part of the light through.
 #include "tests/raster/shadow_floor.h"
 
-#include "raster/shadow_map.h"
+#include "raster/shadow/shadow_map.h"
 
 #include <doctest/doctest.h>
 

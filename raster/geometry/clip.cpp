@@ -1,0 +1,68 @@
+#include "raster/geometry/clip.h"
+
+#include "common/system/sabotage.h"
+
+#include <algorithm>
+#include <span>
+
+namespace duet::raster {
+namespace {
+
+/// A half-space of homogeneous coordinates: inside where x·xw + y·yw + w·w + depth·depth + constant >= 0.
+struct Plane {
+    double x, y, w, depth, constant;
+
+    double distance(const PixelVertex& v) const { return x * v.xw + y * v.yw + w * v.w + depth * v.depth + constant; }
+};
+
+PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner_distance, double outer_distance) {
+    const double t = inner_distance / (inner_distance - outer_distance); // the signs differ: no cancellation
+    const auto mix = [t](double from, double to) { return from + (to - from) * t; };
+    return {mix(inner.xw, outer.xw), mix(inner.yw, outer.yw), mix(inner.w, outer.w), mix(inner.depth, outer.depth)};
+}
+
+ClippedPolygon clip(const ClippedPolygon& polygon, const Plane& plane) {
+    ClippedPolygon result;
+    const auto emit = [&](const PixelVertex& v) {
+        // A convex polygon gains one vertex a plane; rounding can make it cross a plane more than twice, where the
+        // ninth corner is within rounding of the plane and may be left out.
+        if (result.count < static_cast<int>(result.vertices.size()))
+            result.vertices[static_cast<std::size_t>(result.count++)] = v;
+    };
+    for (int i = 0; i < polygon.count; ++i) {
+        const PixelVertex& a = polygon.vertices[static_cast<std::size_t>(i)];
+        const PixelVertex& b = polygon.vertices[static_cast<std::size_t>((i + 1) % polygon.count)];
+        const double da = plane.distance(a), db = plane.distance(b);
+        if (da >= 0) emit(a);
+        if (da >= 0 && db < 0) emit(cut(a, b, da, db));
+        if (da < 0 && db >= 0) emit(cut(b, a, db, da));
+    }
+    if (result.count < 3) result.count = 0;
+    return result;
+}
+
+} // namespace
+
+ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, const Viewport& viewport) {
+    const double right = viewport.width + kGuardBand, bottom = viewport.height + kGuardBand;
+    const Plane planes[] = {
+        {0, 0, 0, 1, -viewport.near}, {1, 0, kGuardBand, 0, 0}, {-1, 0, right, 0, 0},
+        {0, 1, kGuardBand, 0, 0},     {0, -1, bottom, 0, 0},
+    };
+    ClippedPolygon polygon{{a, b, c}, 3};
+    for (const Plane& plane : planes) {
+        if (sabotaged(&plane == planes ? Guard::kNearClip : Guard::kGuardClip)) continue;
+        polygon = clip(polygon, plane);
+        if (&plane != planes) continue;
+        // A corner cut on the near plane has just its depth; interpolated from ends far apart it could be anything
+        // near zero. Under perspective w is the depth.
+        for (PixelVertex& v : std::span(polygon.vertices).first(static_cast<std::size_t>(polygon.count))) {
+            const bool perspective = v.w == v.depth;
+            v.depth = std::max(v.depth, viewport.near);
+            if (perspective) v.w = v.depth;
+        }
+    }
+    return polygon;
+}
+
+} // namespace duet::raster

@@ -1,0 +1,228 @@
+#include "raster/geometry/geometry.h"
+
+#include "common/system/error.h"
+#include "common/system/parallel.h"
+#include "common/system/stopwatch.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+
+namespace duet::raster {
+namespace {
+
+/// Triangles of a run: enough runs that threads are done at the same time, of so many triangles that a run's own work is
+/// none to speak of.
+constexpr std::uint32_t kMostInRun = 8192, kLeastInRun = 512, kRuns = 16;
+
+/// The objects whose bounds touch the frustum; the others' primitives are counted.
+std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
+                                      const PassView& view, CullCounts& culled) {
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t object : objects) {
+        if (outside_frustum(data.objects[object].bounds, view.pinhole, view.viewport))
+            culled.outside += primitive_count(data.scene.shapes[data.scene.objects[object].shape]);
+        else
+            result.push_back(object);
+    }
+    return result;
+}
+
+/// Runs of the objects' triangles and of the spheres, in the order of objects. Spheres get their numbers.
+std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
+                            std::vector<DrawSphere>& spheres) {
+    const auto triangles = [&](std::uint32_t object) {
+        const Shape& shape = scene.shapes[scene.objects[object].shape];
+        return primitive_count(shape) * (std::holds_alternative<Mesh>(shape) ? 1 : 2);
+    };
+    std::uint64_t all = 0;
+    for (const std::uint32_t object : polygonal) all += triangles(object);
+    const auto run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(all / kRuns, kLeastInRun, kMostInRun));
+    std::vector<Run> runs;
+    std::uint64_t id = 0;
+    std::size_t sphere = 0;
+    const auto add_spheres = [&](std::uint32_t before) {
+        for (; sphere < spheres.size() && spheres[sphere].object < before; ++sphere) {
+            spheres[sphere].id = static_cast<std::uint32_t>(id);
+            runs.push_back({static_cast<std::uint32_t>(sphere), 0, 1, static_cast<std::uint32_t>(id++), true});
+        }
+    };
+    for (std::uint32_t slot = 0; slot < polygonal.size(); ++slot) {
+        add_spheres(polygonal[slot]);
+        const std::uint32_t count = triangles(polygonal[slot]);
+        for (std::uint32_t first = 0; first < count; first += run) {
+            runs.push_back({slot, first, std::min(run, count - first), static_cast<std::uint32_t>(id), false});
+            id += runs.back().count;
+        }
+        if (id >= kNoTriangle) throw Error("more than 2^31 triangles in view");
+    }
+    add_spheres(kNoObject);
+    return runs;
+}
+
+/// Lends each of a loop's threads one of the assemblers.
+class Lender {
+public:
+    explicit Lender(std::vector<Assembler>& all) : all_(all) {}
+    Assembler take() {
+        const std::lock_guard lock(mutex_);
+        if (all_.empty()) return {};
+        Assembler one = std::move(all_.back());
+        all_.pop_back();
+        return one;
+    }
+    void give_back(Assembler one) {
+        const std::lock_guard lock(mutex_);
+        all_.push_back(std::move(one));
+    }
+
+private:
+    std::vector<Assembler>& all_;
+    std::mutex mutex_;
+};
+
+void assemble(const PreparedData& data, const AssemblyPlan& plan, int threads, Geometry& geometry) {
+    const Triangles& triangles = geometry.triangles;
+    geometry.batches.resize(triangles.runs.size());
+    Lender lender(geometry.assemblers);
+    parallel_for(triangles.runs.size(), threads, [&](std::size_t i) {
+        const Run& run = triangles.runs[i];
+        geometry.batches[i].clear();
+        if (run.sphere) return;
+        const TransformedObject& object = triangles.objects[run.object];
+        const bool cull = plan.front_faces_only ||
+                          (plan.skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid));
+        Assembler assembler = lender.take();
+        assembler.assemble(plan, triangles, run, cull, geometry.batches[i]);
+        lender.give_back(std::move(assembler));
+    });
+    for (const Batch& batch : geometry.batches) geometry.culled += batch.culled;
+}
+
+} // namespace
+
+std::unique_ptr<Geometry> GeometryPool::take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Geometry>();
+    std::unique_ptr<Geometry> geometry = std::move(free_.back());
+    free_.pop_back();
+    return geometry;
+}
+
+void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(geometry));
+}
+
+std::size_t GeometryPool::memory_bytes() {
+    const std::lock_guard lock(mutex_);
+    std::size_t sum = 0;
+    for (const auto& geometry : free_) sum += geometry->memory_bytes();
+    return sum;
+}
+
+std::size_t Geometry::memory_bytes() const {
+    std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
+                        patches.memory_bytes() + fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
+    for (const TransformedObject& object : triangles.objects)
+        bytes += object.vertices.size() * sizeof(SnappedVertex);
+    for (const Batch& batch : batches) bytes += batch.memory_bytes();
+    return bytes;
+}
+
+namespace {
+
+/// Which of each surface's two sides are drawn.
+enum class Sides { kAsSettings, kBacks };
+
+void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
+             const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
+             const Settings& settings, bool patches, Geometry& result, Sides sides = Sides::kAsSettings) {
+    Stopwatch watch;
+    result.culled = {};
+    const auto visible = [&](const std::vector<std::uint32_t>& objects) {
+        return settings.skips.frustum ? in_frustum(data, objects, view, result.culled) : objects;
+    };
+    const std::vector<std::uint32_t> polygonal = visible(all_polygonal);
+    result.triangles.prepared = &data;
+    result.triangles.scene = &data.scene;
+    result.triangles.vertices = &data.vertices;
+    transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,
+              result.triangles.objects);
+    result.transform_seconds = watch.lap();
+
+    result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
+    result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
+    const bool backs = sides == Sides::kBacks; // the fronts of what is turned inside out
+    for (DrawSphere& sphere : result.spheres) sphere.far_side = backs;
+    const auto turn = [&] {
+        for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
+    };
+    turn();
+    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only || backs, patches},
+             settings.threads, result);
+    turn();
+    result.setup_seconds = watch.lap();
+
+    result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
+    result.patches.gather(result.batches, &Batch::patch_segments, grid.size());
+    result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
+    result.sphere_bins = bin(grid, result.spheres);
+    result.bin_seconds = watch.lap();
+}
+
+} // namespace
+
+void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                      Geometry& result) {
+    process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
+}
+
+namespace {
+
+using Objects = std::vector<std::uint32_t>;
+
+Objects without(const Objects& objects, const Objects& taken) {
+    Objects kept;
+    std::set_difference(objects.begin(), objects.end(), taken.begin(), taken.end(), std::back_inserter(kept));
+    return kept;
+}
+Objects common_to(const Objects& objects, const Objects& others) {
+    Objects kept;
+    std::set_intersection(objects.begin(), objects.end(), others.begin(), others.end(), std::back_inserter(kept));
+    return kept;
+}
+
+} // namespace
+
+void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                           Geometry& result) {
+    process(data, without(data.polygonal, data.glass), without(data.spheres, data.glass), grid, view, settings, true, result);
+}
+
+void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                   Geometry& result) {
+    process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings, false, result);
+}
+
+void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings, bool glass,
+                   Geometry& result) {
+    const auto closed = [&](const Objects& objects) {
+        Objects kept = glass ? objects : without(objects, data.glass);
+        std::erase_if(kept, [&](std::uint32_t object) { return !data.objects[object].closed; });
+        return kept;
+    };
+    process(data, closed(data.polygonal), closed(data.spheres), grid, view, settings, true, result, Sides::kBacks);
+}
+
+void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                            bool patches, Geometry& result) {
+    process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, patches, result, Sides::kBacks);
+}
+
+void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                    Geometry& result) {
+    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, false, result);
+}
+
+} // namespace duet::raster

@@ -1,0 +1,146 @@
+#include "raster/geometry/assemble.h"
+
+#include "raster/geometry/planes.h"
+
+#include <bit>
+#include <optional>
+
+namespace duet::raster {
+namespace {
+
+std::array<Vec3, 3> triangle_corners(const Shape& shape, const Mesh* mesh, std::uint32_t triangle) {
+    if (mesh != nullptr) {
+        const auto& corner = mesh->triangles[triangle];
+        return {mesh->positions[corner[0]], mesh->positions[corner[1]], mesh->positions[corner[2]]};
+    }
+    const Corners four = primitive_corners(shape, triangle / 2);
+    const std::size_t half = triangle % 2;
+    return {four.p[0], four.p[1 + half], four.p[2 + half]};
+}
+
+} // namespace
+
+/// What set_up does for one triangle, side by side: the planes of nearness of up to sixteen unclipped triangles of the
+/// object, each counted from its own place in the picture.
+template <typename IndexOf, typename OriginOf>
+void Assembler::find_planes(std::size_t count, const IndexOf& index_of, const OriginOf& origin_of, PlaneStrip& planes) const {
+    const Viewport& viewport = plan_->viewport;
+    const Mat4d& m = object_->to_pixel;
+    const Shape& shape = triangles_->shape(run_);
+    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    std::array<std::array<StripOf<double>, 3>, 3> p; // corner, axis
+    StripOf<double> from_x, from_y;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, index_of(i));
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k][0][i] = static_cast<double>(corners[k].x);
+            p[k][1][i] = static_cast<double>(corners[k].y);
+            p[k][2][i] = static_cast<double>(corners[k].z);
+        }
+        const Vec2d from = origin_of(i);
+        from_x[i] = from.x, from_y[i] = from.y;
+    }
+    for (std::size_t i = 0; i < count; i += Doubles::size) {
+        std::array<Doubles, 3> x, y, w, depth;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Doubles px = load(p[k][0], i), py = load(p[k][1], i), pz = load(p[k][2], i);
+            const auto row = [&](std::size_t r) {
+                return Doubles(m[r][0]) * px + Doubles(m[r][1]) * py + Doubles(m[r][2]) * pz + Doubles(m[r][3]);
+            };
+            depth[k] = row(2);
+            w[k] = viewport.orthographic ? Doubles(1.0) : depth[k];
+            x[k] = row(0) - load(from_x, i) * w[k];
+            y[k] = row(1) - load(from_y, i) * w[k];
+        }
+        const TrianglePlanes<Doubles> all = triangle_planes(x, y, w, depth);
+        const Doubles scale = Doubles(viewport.orthographic ? 1.0 : viewport.near) / abs(all.determinant);
+        for (std::size_t c = 0; c < 3; ++c)
+            store(planes.plane[c], i, (viewport.orthographic ? all.depth_sum[c] : all.sum[c]) * scale);
+        store(planes.least_depth, i, min(min(depth[0], depth[1]), depth[2]));
+    }
+}
+
+void Assembler::set_up_outlines() {
+    PlaneStrip planes;
+    for (std::size_t first = 0; first < outlined_.size(); first += kStrip) {
+        const std::span<const Outlined> some = std::span(outlined_).subspan(first, std::min(kStrip, outlined_.size() - first));
+        const auto triangle = [&](std::size_t i) -> DrawTriangle& { return batch_->triangles[some[i].number]; };
+        const auto origin_of = [&](std::size_t i) {
+            const Origin from = origin(triangle(i).corners, plan_->viewport);
+            return Vec2d(from.x, from.y);
+        };
+        find_planes(some.size(), [&](std::size_t i) { return some[i].index; }, origin_of, planes);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            set_plane(triangle(i), {planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]}, planes.least_depth[i], false,
+                      plan_->viewport.near);
+    }
+}
+
+void Assembler::find_nearness() {
+    PlaneStrip planes;
+    for (std::size_t first = 0; first < small_.size(); first += kStrip) {
+        const std::span<const Small> some = std::span(small_).subspan(first, std::min(kStrip, small_.size() - first));
+        const auto first_sample = [&](std::size_t i) { return least_.position(some[i].x, some[i].y); };
+        find_planes(some.size(), [&](std::size_t i) { return some[i].index; }, first_sample, planes);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const Small& small = some[i];
+            const NearnessPlane plane{planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]};
+            constexpr int kFew = 2; // cheaper one by one
+            const bool as_patch = plan_->patches && std::popcount(small.covered & small.well_inside) > kFew;
+            if (as_patch) add_patch(small, plane);
+            add_fragments(small, as_patch ? small.covered & ~small.well_inside : small.covered, plane);
+        }
+    }
+}
+
+/// As Triangles::whole, without the way from number to mesh.
+WholeTriangle Assembler::whole_triangle(std::uint32_t index) const {
+    if (mesh_ == nullptr) return triangles_->whole(run_, index);
+    const auto& corner = mesh_->triangles[index];
+    const auto vertex = [&](std::size_t k) { return pixel_vertex(*object_, mesh_->positions[corner[k]]); };
+    return {vertex(0), vertex(1), vertex(2), Piece::kTriangle};
+}
+
+void Assembler::add_patch(const Small& small, const NearnessPlane& plane) {
+    const auto number = static_cast<std::uint32_t>(batch_->patches.size());
+    const std::uint64_t samples = small.covered & small.well_inside;
+    batch_->patches.push_back(
+        {.samples = samples, .nearness = plane, .id = run_.first_id + small.index - run_.first, .x = small.x, .y = small.y});
+    std::uint64_t columns = samples | samples >> 32; // all rows or-ed
+    columns |= columns >> 16;
+    columns |= columns >> 8;
+    const auto length = [](std::uint64_t bits) { return 64 - std::countl_zero(bits); };
+    const int width = length(columns & 0xff), height = (length(samples) + kSmallSide - 1) / kSmallSide;
+    plan_->grid.for_each({small.x, small.y, small.x + width, small.y + height}, [&](std::size_t tile) {
+        patch_touches_.push_back({static_cast<std::uint32_t>(tile), number});
+    });
+}
+
+/// Covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
+void Assembler::add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane) {
+    if (samples == 0) return;
+    constexpr std::uint32_t kSize = TileGrid::kTileSize;
+    const std::uint32_t id = run_.first_id + small.index - run_.first;
+    const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
+               top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
+    const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
+    std::optional<WholeTriangle> whole; // where it is needed
+    for (std::uint64_t bits = samples; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
+        double nearness = (plane.constant + down * plane.y) + across * plane.x;
+        if (plan_->viewport.orthographic) nearness = plan_->viewport.near / nearness;
+        const bool inside = small.well_inside >> bit & 1;
+        if (!inside) {
+            if (!whole) whole = whole_triangle(small.index);
+            nearness = interpolate(*whole, least_.position(small.x + across, small.y + down)).nearness(plan_->viewport.near);
+        }
+        const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
+        batch_->fragments.push_back({.id = id,
+                                     .nearness = kept_nearness(nearness),
+                                     .place = static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize) & 0x7fff),
+                                     .inside = inside,
+                                     .tile = static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
+    }
+}
+
+} // namespace duet::raster

@@ -1,0 +1,131 @@
+#include "raster/geometry/setup.h"
+
+#include "raster/geometry/planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace duet::raster {
+Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
+    : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
+    const auto local = [&](const PixelVertex& v) {
+        const Vec3d p(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w);
+        return sabotaged(Guard::kPerspective) ? p / v.w : p;
+    };
+    const Vec3d va = local(a), vb = local(b), vc = local(c);
+    e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
+    if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
+}
+
+// A sample may lie outside, where only the snapped outline covers it: by less than 1/256 pixel. It is mirrored at the
+// edge to a point as far inside, not just moved onto the edge: two faces that meet at a silhouette edge have the same
+// depth on it, but a common point inside of both tells which one is in front.
+Vec2d Interpolation::mirrored_inside(Vec2d p) const {
+    for (const Vec3d& edge : e) {
+        const double value = edge.x * p.x + edge.y * p.y + edge.z, steepness = edge.x * edge.x + edge.y * edge.y;
+        constexpr double kReach = 1.0 / 128; // farther only for a sliver, whose edge says nothing
+        if (value < 0 && value * value < kReach * kReach / 4 * steepness)
+            p = p - Vec2d(edge.x, edge.y) * (2 * value / steepness);
+    }
+    return p;
+}
+
+// Where that leads across another edge, because the sample lies at a corner or the triangle is thinner than snapping
+// moves its edges. (To set negative barycentrics to zero would not do: in a sliver it leads from one end to the other.)
+Vec2d Interpolation::nearest_on_outline(Vec2d p) const {
+    const auto value = [](const Vec3d& edge, Vec2d q) { return edge.x * q.x + edge.y * q.y + edge.z; };
+    Vec2d nearest = p;
+    double least = std::numeric_limits<double>::infinity();
+    const auto offer = [&](Vec2d q) {
+        const double distance = dot(q - p, q - p);
+        if (!(distance < least)) return;
+        least = distance;
+        nearest = q;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d &edge = e[i], &next = e[(i + 1) % 3], &last = e[(i + 2) % 3];
+        const Vec2d foot = p - Vec2d(edge.x, edge.y) * (value(edge, p) / (edge.x * edge.x + edge.y * edge.y));
+        if (value(next, foot) >= 0 && value(last, foot) >= 0) offer(foot);
+        const Vec3d meeting = cross(edge, next);
+        const Vec2d corner(meeting.x / meeting.z, meeting.y / meeting.z);
+        if (value(last, corner) > 0) offer(corner); // else it lies behind the eye
+    }
+    return nearest;
+}
+
+namespace {
+
+/// Whether a sample lies beyond the diagonal of a quad, which is no edge of it, in the other half.
+bool in_other_half(const Interpolated& at, Piece piece) {
+    const auto beyond = [](double across, double other1, double other2) {
+        return other1 >= 0 && other2 >= 0 && across + other1 >= 0 && across + other2 >= 0;
+    };
+    if (sabotaged(Guard::kQuadDiagonal)) return false;
+    switch (piece) {
+    case Piece::kQuadFirst:
+        return beyond(at.b1, at.b0, at.b2);
+    case Piece::kQuadSecond:
+        return beyond(at.b2, at.b0, at.b1);
+    default:
+        return false;
+    }
+}
+
+} // namespace
+
+Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
+    Vec2d p(pixel.x - origin_x, pixel.y - origin_y);
+    const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
+    Interpolated result{value(0), value(1), value(2), 0, 0};
+    const bool outside = result.b0 < 0 || result.b1 < 0 || result.b2 < 0;
+    if (outside && !in_other_half(result, piece) && !sabotaged(Guard::kInsideTriangle)) {
+        const Vec2d sample = p;
+        p = mirrored_inside(p);
+        const bool still_outside = value(0) < 0 || value(1) < 0 || value(2) < 0;
+        if (still_outside && !sabotaged(Guard::kNearestOutline)) p = nearest_on_outline(sample);
+        result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
+    }
+    result.sum = result.b0 + result.b1 + result.b2;
+    if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // seen exactly edge-on: any of its points will do
+    result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
+    return result;
+}
+
+Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
+    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
+                            static_cast<std::int32_t>(pixel.y) * kSubPixels};
+    return Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.piece);
+}
+
+Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+                            const Viewport& viewport) {
+    const Origin from = origin(corners, viewport);
+    return {whole.a, whole.b, whole.c, {from.x * kSubPixels, from.y * kSubPixels}};
+}
+
+// Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective) Σ eᵢ·(xᵢ, yᵢ, wᵢ) = det · (x, y, 1), so
+// the divisor is the determinant, whatever the pixel; with w = 1 (orthographic) the dividend is.
+DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+                    bool clipped, const Viewport& viewport) {
+    const Origin from = origin(corners, viewport);
+    const PixelVertex &a = whole.a, &b = whole.b, &c = whole.c;
+    const TrianglePlanes<double> all =
+        triangle_planes<double>({a.xw - from.x * a.w, b.xw - from.x * b.w, c.xw - from.x * c.w},
+                                {a.yw - from.y * a.w, b.yw - from.y * b.w, c.yw - from.y * c.w}, {a.w, b.w, c.w},
+                                {a.depth, b.depth, c.depth});
+    const auto& sum = viewport.orthographic ? all.depth_sum : all.sum;
+    const double scale = (viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant);
+    DrawTriangle result{.corners = corners, .id = id};
+    set_plane(result, {sum[0] * scale, sum[1] * scale, sum[2] * scale}, std::min({a.depth, b.depth, c.depth}), clipped, viewport.near);
+    return result;
+}
+
+void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near) {
+    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant) && !sabotaged(Guard::kPerspective);
+    triangle.clipped = clipped;
+    if (!clipped) triangle.nearest = static_cast<float>(near / least_depth) * (1 + 0x1p-22f);
+    triangle.nearness = plane;
+}
+
+} // namespace duet::raster

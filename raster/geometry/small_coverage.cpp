@@ -1,0 +1,96 @@
+#include "raster/geometry/assemble.h"
+
+#include "raster/geometry/setup.h"
+
+namespace duet::raster {
+namespace {
+
+/// An edge's function at the first sample of a small box, and its steps to the next.
+struct SmallEdge {
+    Ints at, step_x, step_y;
+    Ints length; ///< |x| + |y|
+
+    SmallEdge(Ints from_x, Ints from_y, Ints to_x, Ints to_y, Ints sample_x, Ints sample_y) {
+        const Ints dx = to_x - from_x, dy = to_y - from_y, zero(0);
+        const auto left_or_top = dy < zero || (dy == zero && dx > zero);
+        at = dx * (sample_y - from_y) - dy * (sample_x - from_x);
+        if (!sabotaged(Guard::kTopLeftRule)) at = at + xsimd::select(left_or_top, zero, Ints(-1));
+        length = abs(dx) + abs(dy);
+        step_x = zero - dy * Ints(kSubPixels);
+        step_y = dx * Ints(kSubPixels);
+    }
+};
+
+/// Samples along one axis from the first on, of the triangle that has most; corners and first samples in grid points.
+std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const Ints& first) {
+    const Ints widths = max(max(a, b), c) - first; // of small boxes: exact as floats
+    return (static_cast<std::int32_t>(highest(xsimd::to_float(widths))) >> kSubPixelBits) + 1;
+}
+
+} // namespace
+
+/// The samples of small boxes against their triangles' edges, sixteen triangles side by side: as many rows and columns of
+/// samples as the largest of their boxes has.
+void Assembler::cover_candidates() {
+    Candidates& c = candidates_;
+    constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallSide / kWordRows;
+    std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
+    const Ints zero(0);
+    for (std::size_t i = 0; i < c.count; i += Ints::size) {
+        const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
+        Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
+        const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+        const auto negative = area < zero; // to be wound the other way
+        const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
+                   sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
+        const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
+        cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
+        const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
+        const std::array<Ints, 3> margin = edge_margins({ab.length, bc.length, ca.length}, Ints(abs(area)));
+        std::array<Ints, 3> row{ab.at, bc.at, ca.at};
+        const std::int32_t columns = samples_across(ax, px, cx, sx), rows = samples_across(ay, py, cy, sy);
+        for (std::int32_t word = 0; word < kWords; ++word) {
+            Ints some = zero, sure = zero;
+            for (std::int32_t y = word * kWordRows; y < std::min((word + 1) * kWordRows, rows); ++y) {
+                std::array<Ints, 3> e = row;
+                Ints bit(static_cast<std::int32_t>(1u << y % kWordRows * kSmallSide));
+                for (std::int32_t x = 0; x < columns; ++x) {
+                    const Ints least = min(min(e[0], e[1]), e[2]);
+                    some = some | xsimd::select(least >= zero, bit, zero);
+                    sure = sure | xsimd::select(e[0] >= margin[0] && e[1] >= margin[1] && e[2] >= margin[2], bit, zero);
+                    e = {e[0] + ab.step_x, e[1] + bc.step_x, e[2] + ca.step_x};
+                    bit = bit + bit;
+                }
+                row = {row[0] + ab.step_y, row[1] + bc.step_y, row[2] + ca.step_y};
+            }
+            store(covered[static_cast<std::size_t>(word)], i, some);
+            store(well_inside[static_cast<std::size_t>(word)], i, sure);
+        }
+    }
+    for (std::size_t i = 0; i < c.count; ++i) {
+        const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
+            return std::uint64_t{static_cast<std::uint32_t>(words[0][i])} |
+                   std::uint64_t{static_cast<std::uint32_t>(words[1][i])} << 32;
+        };
+        add_small(i, bits(covered), bits(well_inside));
+    }
+    c.count = 0;
+}
+
+void Assembler::add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside) {
+    const Candidates& c = candidates_;
+    if (covered == 0) {
+        batch_->culled.subpixel += plan_->skips.subpixel;
+        return;
+    }
+    Small small{c.index[i], c.sample_x[i], c.sample_y[i], covered, well_inside};
+    const PixelRect& r = plan_->grid.region;
+    if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
+        for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
+            const int x = small.x + bit % kSmallSide, y = small.y + bit / kSmallSide;
+            if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1) small.covered &= ~(std::uint64_t{1} << bit);
+        }
+    if (small.covered != 0) small_.push_back(small);
+}
+
+} // namespace duet::raster

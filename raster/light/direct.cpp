@@ -1,0 +1,164 @@
+#include "raster/light/direct.h"
+
+#include "common/light/lambert.h"
+#include "raster/light/area_specular.h"
+#include "raster/shader/lights.h"
+#include "raster/shadow/shadows.h"
+
+#include <array>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr Vec2 kMiddle{0.5f, 0.5f};
+
+struct Polygon {
+    std::array<Vec3, 5> v;
+    std::size_t count = 0;
+};
+Polygon outline(const SurfaceLight::Triangle& t) { return {{t.a, t.b, t.c}, 3}; }
+Polygon outline(const Quad& q) { return {{q.corner, q.corner + q.u, q.corner + q.u + q.v, q.corner + q.v}, 4}; }
+
+/// The part of a polygon above the plane through p with normal n.
+Polygon above(const Polygon& polygon, Vec3 p, Vec3 n) {
+    Polygon result;
+    const auto emit = [&](Vec3 v) {
+        if (result.count < result.v.size()) result.v[result.count++] = v;
+    };
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Vec3 a = polygon.v[i], b = polygon.v[(i + 1) % polygon.count];
+        const float da = dot(n, a - p), db = dot(n, b - p);
+        if (da >= 0) emit(a);
+        if ((da > 0 && db < 0) || (da < 0 && db > 0)) emit(a + (b - a) * (da / (da - db)));
+    }
+    return result;
+}
+
+/// Irradiance where the shading normal is not the horizon's: the light is cut at the horizon, then, in the closed
+/// form, at the shading normal's.
+template <typename Shape>
+Rgb irradiance_above(const SurfaceLight& light, const Shape& shape, const ShadingPoint& point) {
+    const Vec3 p = point.surface.p;
+    if (!emits_towards(light, p)) return {};
+    const Polygon visible = above(outline(shape), p, point.horizon);
+    if (visible.count < 3) return {};
+    const std::span<const Vec3> vertices(visible.v.data(), visible.count);
+    return light.radiance * static_cast<float>(polygon_form_factor_times_pi(p, point.ns, vertices));
+}
+/// A sphere counts in full unless all of it is below the horizon.
+Rgb irradiance_above(const SurfaceLight& light, const Sphere& sphere, const ShadingPoint& point) {
+    const float height = dot(point.horizon, sphere.center - point.surface.p);
+    return height > -sphere.radius ? surface_light_irradiance(light, point.surface.p, point.ns) : Rgb();
+}
+
+bool is_own(const SurfaceLight& light, const SurfacePoint& point) {
+    return light.object == point.object && light.primitive == point.primitive;
+}
+
+Vec3 center(const SurfaceLight::Triangle& t) { return (t.a + t.b + t.c) * (1.0f / 3); }
+Vec3 center(const Quad& q) { return q.corner + (q.u + q.v) * 0.5f; }
+Vec3 center(const Sphere& s) { return s.center; }
+
+/// Light as from one direction: what a delta light gives.
+using Incident = IncidentT<float>;
+std::optional<Incident> delta_light(const Light& light, Vec3 p) {
+    const std::optional<LightSample> sample = sample_light(light, p, kMiddle);
+    if (!sample) return std::nullopt;
+    return Incident{sample->wi, sample->radiance};
+}
+
+std::optional<Incident> from_center(const SurfaceLight& light, Vec3 p) {
+    const Vec3 way = std::visit([](const auto& shape) { return center(shape); }, light.shape) - p;
+    if (!(length_squared(way) > 0)) return std::nullopt;
+    const Vec3 wi = normalize(way);
+    return Incident{wi, surface_light_irradiance(light, p, wi)};
+}
+
+template <typename BsdfType> Rgb reflected(const BsdfType& bsdf, const ShadingPoint& point, const Incident& light) {
+    if (!point.receives(light.wi)) return {};
+    const Vec3 wi = point.frame.to_local(light.wi);
+    return bsdf.eval(point.wo, wi, TransportMode::kRadiance) * abs_cos_theta(wi) * light.irradiance;
+}
+
+} // namespace
+
+ShadingPoint::ShadingPoint(const SurfacePoint& point, Vec3 to_viewer)
+    : surface(point), frame(frame_from_normal(point.ns)) {
+    const float side = dot(point.ng, to_viewer) < 0 ? -1.0f : 1.0f;
+    ng = point.ng * side;
+    ns = point.ns * side;
+    horizon = point.horizon * side;
+    wo = lifted_above_horizon(frame.to_local(to_viewer), side);
+}
+
+Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point) {
+    if (is_own(light, point.surface)) return {};
+    if (point.horizon == point.ns) return surface_light_irradiance(light, point.surface.p, point.ns);
+    return std::visit([&](const auto& shape) { return irradiance_above(light, shape, point); }, light.shape);
+}
+
+float Visibility::operator()(std::size_t light, const ShadingPoint& point) const {
+    return shadows != nullptr ? shadows->visibility(light, point, taps) : 1;
+}
+
+Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility) {
+    Direct sum;
+    if (is_black(bsdf.albedo)) return sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        Rgb light;
+        if (const auto* surface = std::get_if<SurfaceLight>(&lights[i]))
+            light = bsdf.albedo * kInvPi * irradiance(*surface, point);
+        else if (const auto incident = delta_light(lights[i], point.surface.p))
+            light = reflected(bsdf, point, *incident);
+        if (!is_black(light)) sum.add(light, visibility(i, point));
+    }
+    return sum;
+}
+
+Direct direct_light(std::span<const Light> lights, const RoughDiffuseBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility) {
+    Direct sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
+        if (surface != nullptr && is_own(*surface, point.surface)) continue;
+        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p);
+        if (!incident) continue;
+        // How rough it is turns with the light's direction, the irradiance is a surface light's own.
+        Rgb light;
+        if (surface != nullptr) {
+            Vec3 wi = point.frame.to_local(incident->wi);
+            wi.z = std::abs(wi.z) * (point.wo.z < 0 ? -1.0f : 1.0f); // a light on the horizon may have its centre below
+            light = bsdf.eval(point.wo, wi, TransportMode::kRadiance) * irradiance(*surface, point);
+        } else {
+            light = reflected(bsdf, point, *incident);
+        }
+        if (!is_black(light)) sum.add(light, visibility(i, point));
+    }
+    return sum;
+}
+
+Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
+                    const Visibility& visibility, bool transformed_cosines) {
+    Direct sum;
+    if (bsdf.smooth()) return sum;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
+        if (surface != nullptr && is_own(*surface, point.surface)) continue;
+        Rgb light;
+        if (surface != nullptr && transformed_cosines)
+            light = area_reflection(*surface, bsdf, point);
+        else if (const auto incident =
+                     surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p))
+            light = reflected(bsdf, point, *incident);
+        if (!is_black(light)) sum.add(light, visibility(i, point));
+    }
+    return sum;
+}
+
+Incident as_distant(const SurfaceLight& light, Vec3 p) {
+    return from_center(light, p).value_or(Incident{Vec3(0, 0, 1), Rgb()});
+}
+
+} // namespace duet::raster

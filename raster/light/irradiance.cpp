@@ -1,0 +1,88 @@
+#include "raster/light/irradiance.h"
+
+#include "common/system/parallel.h"
+
+#include <cmath>
+#include <vector>
+
+namespace duet::raster {
+namespace {
+
+using Harmonics = std::array<double, 9>;
+
+/// The real spherical harmonics of orders 0, 1 and 2 in direction w (Ramamoorthi and Hanrahan 2001, eq. 3).
+Harmonics harmonics(Vec3d w) {
+    return {0.28209479177387814,
+            0.4886025119029199 * w.y,
+            0.4886025119029199 * w.z,
+            0.4886025119029199 * w.x,
+            1.0925484305920792 * w.x * w.y,
+            1.0925484305920792 * w.y * w.z,
+            0.31539156525252005 * (3 * w.z * w.z - 1),
+            1.0925484305920792 * w.x * w.z,
+            0.5462742152960396 * (w.x * w.x - w.y * w.y)};
+}
+
+/// What convolution with the clamped cosine does to each order (eq. 8).
+constexpr Harmonics kCosineLobe = {kPiDouble,         kPiDouble * 2 / 3, kPiDouble * 2 / 3,
+                                   kPiDouble * 2 / 3, kPiDouble / 4,     kPiDouble / 4,
+                                   kPiDouble / 4,     kPiDouble / 4,     kPiDouble / 4};
+
+/// One row of the sky: radiance × harmonics over its pixels, each weighted by the solid angle it subtends.
+std::array<Rgbd, 9> project_row(const Environment& environment, int row, int width, int height) {
+    std::array<Rgbd, 9> sums{};
+    const double top = kPiDouble * row / height, bottom = kPiDouble * (row + 1) / height; // angles from +y
+    const double solid_angle = 2 * kPiDouble / width * (std::cos(top) - std::cos(bottom));
+    const double theta = (top + bottom) / 2;
+    for (int column = 0; column < width; ++column) {
+        const double longitude = 2 * kPiDouble * ((column + 0.5) / width - 0.5);
+        const Vec3d w(std::sin(theta) * std::sin(longitude), std::cos(theta), -std::sin(theta) * std::cos(longitude));
+        const Rgbd light = Rgbd(radiance(environment, Vec3(w))) * solid_angle;
+        const Harmonics y = harmonics(w);
+        for (std::size_t i = 0; i < 9; ++i) sums[i] += light * y[i];
+    }
+    return sums;
+}
+
+} // namespace
+
+Irradiance::Irradiance(const Environment& environment, int threads) {
+    const auto* picture = std::get_if<ImageEnvironment>(&environment);
+    if (picture == nullptr || picture->image.empty()) return;
+    closed_form_ = false;
+    const int width = picture->image.width(), height = picture->image.height();
+    std::vector<std::array<Rgbd, 9>> rows(static_cast<std::size_t>(height));
+    parallel_for(rows.size(), threads,
+                 [&](std::size_t row) { rows[row] = project_row(environment, static_cast<int>(row), width, height); });
+    for (const auto& row : rows)
+        for (std::size_t i = 0; i < 9; ++i) coefficients_[i] += row[i] * kCosineLobe[i];
+}
+
+Rgb Irradiance::at(const Environment& environment, Vec3 n, const SkySeen& seen) const {
+    const float hidden = 1 - seen.visible;
+    if (hidden == 0) return at(environment, n);
+    const auto positive = [](Rgb c) { return Rgb(max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)); };
+    if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
+        // down + (up − down) (1 + w·y)/2 over what is hidden.
+        const Rgb lost = (sky->down + sky->up) * (0.5f * hidden) + (sky->up - sky->down) * (0.5f * seen.hidden.y);
+        return positive(at(environment, n) - lost * kPi);
+    }
+    if (closed_form_) return at(environment, n) * seen.visible;
+    // An order's irradiance is its light convolved with the cosine, a factor: that of a hidden direction is its light.
+    const Harmonics at_n = harmonics(Vec3d(n)), at_hidden = harmonics(Vec3d(seen.hidden));
+    Rgbd sum = coefficients_[0] * at_n[0] * static_cast<double>(seen.visible);
+    for (std::size_t i = 1; i < 4; ++i) sum += coefficients_[i] * (at_n[i] - 1.5 * at_hidden[i]);
+    for (std::size_t i = 4; i < 9; ++i) sum += coefficients_[i] * (at_n[i] * static_cast<double>(seen.visible));
+    return positive(Rgb(sum));
+}
+
+Rgb Irradiance::at(const Environment& environment, Vec3 n) const {
+    if (closed_form_) return irradiance_closed_form(environment, n).value_or(Rgb());
+    const Harmonics y = harmonics(Vec3d(n));
+    Rgbd sum;
+    for (std::size_t i = 0; i < 9; ++i) sum += coefficients_[i] * y[i];
+    return {static_cast<float>(max(sum.r, 0.0)), static_cast<float>(max(sum.g, 0.0)),
+            static_cast<float>(max(sum.b, 0.0))};
+}
+
+} // namespace duet::raster

@@ -1,0 +1,37 @@
+#include "raster/overlay/overlay.h"
+
+#include "common/system/parallel.h"
+#include "raster/overlay/lines.h"
+
+namespace duet::raster {
+
+bool draws_edges(const Settings& settings) { return settings.edges || settings.shading == Shading::kEdges; }
+
+void Overlay::add_lines(const PassView& view) {
+    for (const SampleOffset offset : view.samples) {
+        Image<std::uint8_t> marks(sums_.width(), sums_.height(), 0);
+        draw_lines(data_, view, offset, settings_.threads, marks);
+        for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += marks[i];
+        ++samples_;
+    }
+}
+
+void Overlay::add_edges(const SeenPicture& seen) {
+    parallel_for(static_cast<std::size_t>(sums_.height()), settings_.threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < sums_.width(); ++x) sums_(x, y) += ink(seen, x, y);
+    });
+    ++samples_;
+}
+
+void Overlay::put(ImageRgb& picture) const {
+    if (samples_ == 0) return;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const float covered = sums_[i] / static_cast<float>(samples_);
+        picture[i] = settings_.shading == Shading::kLines   ? Rgb(covered)
+                     : settings_.shading == Shading::kEdges ? Rgb(1 - covered)
+                                                            : picture[i] * (1 - covered);
+    }
+}
+
+} // namespace duet::raster

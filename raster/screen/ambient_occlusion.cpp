@@ -1,0 +1,218 @@
+#include "raster/screen/ambient_occlusion.h"
+
+#include "common/sampling/sobol.h"
+#include "common/sampling/warp.h"
+#include "common/vec/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr float kSlack = 1e-3f;    ///< of the distance between two points: lower is no step over a plane, but rounding
+constexpr float kClosest = 3e-4f;  ///< of the distance to the eye: closer points' directions are rounding
+constexpr float kFadeFrom = 0.75f; ///< of the radius: where horizons begin to count less
+constexpr float kLeastCosine = 0.02f; ///< between normal and viewer: shading normals may even turn away
+constexpr int kPoints = 16;        ///< of a pattern in the hemisphere
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+
+template <typename F> std::array<float, OcclusionPattern::kPatterns> each_pattern(const F& f) {
+    std::array<float, OcclusionPattern::kPatterns> result;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = f(static_cast<std::uint32_t>(i));
+    return result;
+}
+
+/// Of each place in 8 × 8 pixels, row by row, its pattern: a number whose reversed bits differ most for those next to each
+/// other (Bayer 1973, «An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures»). Aligned parts have
+/// consecutive ones, which are parts of the net below.
+const std::array<std::int32_t, OcclusionPattern::kPatterns> kPatternOf = [] {
+    std::array<std::int32_t, OcclusionPattern::kPatterns> result{};
+    for (std::uint32_t place = 0; place < result.size(); ++place)
+        for (std::uint32_t x = place % OcclusionPattern::kSide, y = place / OcclusionPattern::kSide, bit = 0; bit < 3; ++bit)
+            result[place] |= static_cast<std::int32_t>((((x ^ y) >> bit & 1u) | (y >> bit & 1u) << 1) << 2 * bit);
+    return result;
+}();
+/// Of each pattern, in [0, 1): how far its lines are turned, and where between two steps they look; together a
+/// (0,2)-net.
+const auto kTurn = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).x; });
+const auto kJitter = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).y; });
+
+/// arccos, to 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
+Floats arc_cosine(const Floats& x) {
+    const Floats a = min(abs(x), Floats(1.0f));
+    const Floats polynomial = Floats(1.5707288f) + a * (Floats(-0.2121144f) + a * (Floats(0.0742610f) + a * Floats(-0.0187293f)));
+    const Floats result = xsimd::sqrt(Floats(1.0f) - a) * polynomial;
+    return xsimd::select(x < Floats(0.0f), Floats(kPi) - result, result);
+}
+
+Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
+
+/// Where an image has a pixel, of those inside. Pictures have up to 2^28 of them, more than floats can tell apart.
+Ints pixel_place(const Screen& screen, const Floats& x, const Floats& y, const Mask& inside) {
+    const Floats none(0.0f);
+    return truncated(xsimd::select(inside, y, none)) * Ints(screen.width()) + truncated(xsimd::select(inside, x, none));
+}
+
+/// What is seen from the viewer's direction, θ = 0, to a horizon, of directions in the plane of v and t whose normal
+/// there is at the angle γ: ∫ cos(θ − γ) sin θ dθ, and the same times cos θ and sin θ.
+struct Arc {
+    Floats all, along_v, along_t;
+};
+Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Floats& cos_gamma, const Floats& sin_gamma) {
+    const Floats third(1.0f / 3), cube = sine * sine * sine * third;
+    return {Floats(0.5f) * (cos_gamma * sine * sine + sin_gamma * (angle - sine * cosine)),
+            cos_gamma * (third - cosine * cosine * cosine * third) + sin_gamma * cube,
+            cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
+}
+
+/// The greatest cosine to the viewer of what the picture shows along a line from each point, at least `lowest`.
+class HorizonSearch {
+public:
+    HorizonSearch(const Screen& screen, const OcclusionPoints& points, float radius, int steps)
+        : screen_(screen), points_(points), home_(screen.homogeneous(points.p)), radius_(radius),
+          closest_(Floats(kClosest * kClosest) * dot(points.p, points.p)), steps_(steps) {
+        const Floats over_w = Floats(1.0f) / home_[3];
+        x_ = home_[0] * over_w, y_ = home_[1] * over_w;
+    }
+
+    /// `way`: unit, across the view.
+    Floats operator()(const Vec3s& way, const Floats& lowest, const Floats& jitter) const {
+        const std::array<Floats, 4> change = screen_.homogeneous_change(way);
+        const Floats over_w = Floats(1.0f) / home_[3];
+        Floats step_x = (change[0] - x_ * change[3]) * over_w, step_y = (change[1] - y_ * change[3]) * over_w;
+        const Floats speed = xsimd::sqrt(step_x * step_x + step_y * step_y), per_pixel = Floats(1.0f) / max(speed, Floats(1e-20f));
+        step_x *= per_pixel, step_y *= per_pixel;
+        const Floats width(static_cast<float>(screen_.width())), height(static_cast<float>(screen_.height()));
+        const Floats pixels = min(speed * Floats(radius_), min(to_edge(x_, step_x, width), to_edge(y_, step_y, height)));
+        Floats highest = lowest;
+        for (int i = 0; i < steps_; ++i) {
+            const Floats part = (Floats(static_cast<float>(i)) + jitter) * Floats(1 / static_cast<float>(steps_));
+            const Floats reach = Floats(1.0f) + part * part * pixels; // closer together near the point
+            const Floats x = xsimd::floor(x_ + step_x * reach), y = xsimd::floor(y_ + step_y * reach);
+            const Mask inside = (x >= Floats(0.0f)) & (y >= Floats(0.0f)) & (x < width) & (y < height);
+            const Floats nearness = gather(screen_.nearness().pixels().data(), pixel_place(screen_, x, y, inside));
+            const Vec3s to = screen_.at(x, y, nearness) - points_.p;
+            const Floats squared = dot(to, to), over = inverse_sqrt(squared), distance = squared * over;
+            const Mask counts = inside & (nearness > Floats(0.0f)) & (squared > closest_) & (distance < Floats(radius_)) &
+                                (dot(points_.n, to) >= Floats(kSlack) * distance);
+            const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) - Floats(kFadeFrom / (1 - kFadeFrom)), Floats(0.0f));
+            const Floats cosine = dot(to, points_.to_viewer) * over;
+            highest = xsimd::select(counts, max(highest, lerp(cosine, lowest, fade)), highest);
+        }
+        return highest;
+    }
+
+private:
+    /// How far the picture goes on in a unit direction, pixels.
+    static Floats to_edge(const Floats& at, const Floats& way, const Floats& size) {
+        const Floats end = xsimd::select(way > Floats(0.0f), size, Floats(0.0f));
+        return max(xsimd::select(way == Floats(0.0f), Floats(1e9f), (end - at) / way), Floats(0.0f));
+    }
+    const Screen& screen_;
+    const OcclusionPoints& points_;
+    std::array<Floats, 4> home_;
+    Floats x_, y_;
+    float radius_;
+    Floats closest_;
+    int steps_;
+};
+
+/// Points in the hemisphere about +z, each pattern's one after the other.
+struct HemispherePoints {
+    std::array<std::array<float, OcclusionPattern::kPatterns>, kPoints> x, y, z;
+};
+const HemispherePoints& hemisphere_points() {
+    static const HemispherePoints points = [] {
+        HemispherePoints result;
+        constexpr int kAll = OcclusionPattern::kPatterns * kPoints;
+        for (std::uint32_t pattern = 0; pattern < OcclusionPattern::kPatterns; ++pattern)
+            for (std::uint32_t i = 0; i < kPoints; ++i) {
+                const std::uint32_t index = pattern * kPoints + i;
+                const Vec2 u = net_point(index, kAll);
+                const float part = (static_cast<float>(index * 77u % kAll) + 0.5f) / kAll;
+                const Vec3 q = cosine_hemisphere(u) * sqr(part);
+                result.x[i][pattern] = q.x, result.y[i][pattern] = q.y, result.z[i][pattern] = q.z;
+            }
+        return result;
+    }();
+    return points;
+}
+
+} // namespace
+
+OcclusionPattern OcclusionPattern::of_row(int x, int y) {
+    alignas(64) std::array<std::int32_t, Ints::size> which;
+    for (std::size_t i = 0; i < Ints::size; ++i) {
+        const int column = (x + static_cast<int>(i)) % kSide, row = y % kSide;
+        which[i] = kPatternOf[static_cast<std::size_t>(column + row * kSide)];
+    }
+    return {Ints::load_aligned(which.data())};
+}
+OcclusionPattern OcclusionPattern::of_point(int first) {
+    return {truncated(load(kLanesAsFloats, 0)) + Ints(first)};
+}
+
+SkySeenT<Floats> screen_space_occlusion(const Screen& screen, const OcclusionPoints& points, const OcclusionPattern& pattern,
+                                        float radius) {
+    const FrameT<Floats> frame = frame_from_normal(points.n);
+    const HemispherePoints& hemisphere = hemisphere_points();
+    const Floats width(static_cast<float>(screen.width())), height(static_cast<float>(screen.height())), none(0.0f);
+    const Floats closest = Floats(kClosest * kClosest) * dot(points.p, points.p);
+    Floats hidden(0.0f);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        const Vec3s local{gather(hemisphere.x[i].data(), pattern.which), gather(hemisphere.y[i].data(), pattern.which),
+                          gather(hemisphere.z[i].data(), pattern.which)};
+        const auto [hx, hy, depth, w] = screen.homogeneous(points.p + frame.to_world(local) * Floats(radius));
+        const Floats x = xsimd::floor(hx / w), y = xsimd::floor(hy / w);
+        const Mask inside = (depth > none) & (x >= none) & (y >= none) & (x < width) & (y < height);
+        const Floats nearness = gather(screen.nearness().pixels().data(), pixel_place(screen, x, y, inside));
+        const Vec3s to = screen.at(x, y, nearness) - points.p;
+        // Far in front of the point it hides the view, but hardly its light.
+        const Floats squared = dot(to, to);
+        const Mask hides = inside & (nearness * depth > Floats(screen.near())) & (squared > closest) &
+                           (squared < Floats(radius * radius)) & (dot(points.n, to) > Floats(kSlack) * xsimd::sqrt(squared));
+        hidden += xsimd::select(hides, Floats(1.0f / kPoints), none);
+    }
+    return {Floats(1.0f) - hidden, points.n * (hidden * Floats(2.0f / 3))};
+}
+
+SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& points, const OcclusionPattern& pattern,
+                                   float radius, int lines, int steps) {
+    const Vec3s v = points.to_viewer;
+    const Floats one(1.0f), none(0.0f);
+    const Vec3s n = unit_of(points.n + v * max(Floats(kLeastCosine) - dot(points.n, v), none));
+    const HorizonSearch search(screen, points, radius, steps);
+    const FrameT<Floats> frame = frame_from_normal(v);
+    const Floats turn = gather(kTurn.data(), pattern.which), jitter = gather(kJitter.data(), pattern.which);
+    const Floats other_jitter = jitter + Floats(0.5f) - xsimd::select(jitter >= Floats(0.5f), one, none);
+    Floats all(0.0f), lost(0.0f);
+    Vec3s hidden{none, none, none};
+    for (int i = 0; i < lines; ++i) {
+        const Floats angle = (turn + Floats(static_cast<float>(i))) * Floats(kPi / static_cast<float>(lines));
+        const auto [sine, cosine] = xsimd::sincos(angle);
+        const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
+        const Vec3s in_plane = n - across * dot(n, across); // the normal in the plane of v and t
+        const Floats size = xsimd::sqrt(dot(in_plane, in_plane)), over = one / max(size, Floats(1e-6f));
+        const Floats cos_gamma = min(dot(in_plane, v) * over, one), sin_gamma = dot(in_plane, t) * over;
+        const Floats turned = arc_cosine(cos_gamma), gamma = xsimd::select(sin_gamma < none, -turned, turned);
+        all += size * (cos_gamma + gamma * sin_gamma);
+        for (const float side : {1.0f, -1.0f}) {
+            const Floats s = Floats(side) * sin_gamma, lowest = -s; // the cosine of its own horizon, π/2 past the normal
+            const Floats highest = search(t * Floats(side), lowest, side > 0 ? jitter : other_jitter);
+            const Arc open = arc(Floats(kPi / 2) + Floats(side) * gamma, lowest, cos_gamma, cos_gamma, s);
+            const Arc seen = arc(arc_cosine(highest), highest, xsimd::sqrt(max(one - highest * highest, none)), cos_gamma, s);
+            const auto less = [&](const Floats& whole, const Floats& part) { // nothing hidden is exactly nothing
+                return xsimd::select(highest > lowest, size * (whole - part), none);
+            };
+            lost += max(less(open.all, seen.all), none);
+            hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
+        }
+    }
+    const Floats over = xsimd::select(all > none, one / all, none);
+    return {max(one - lost * over, none), hidden * over};
+}
+
+} // namespace duet::raster

@@ -1,0 +1,70 @@
+// The way of a ray across a picture.
+#pragma once
+
+#include "raster/screen/screen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+
+/// A ray's way across the picture, from 0 where it begins to 1, in whole steps of a pixel. Along it 1/depth is linear (under
+/// perspective; a parallel view's depth is itself).
+class Crossing {
+public:
+    Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
+        if (!(from_.z > 0)) return;
+        const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
+        // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
+        reach_ = std::min(deeper < 0 ? 0.5f * from_.z / -deeper : kInfinity, 1e3f * from_.z);
+        to_ = screen.project(p + way * reach_);
+        pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
+        if (!moves()) return;
+        float in = 0, out = 1;
+        clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
+        clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
+        if (!(in <= out)) return;
+        // A start far beside the picture may be any number of pixels away.
+        const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
+        first_ = std::max(1, whole(std::ceil(in * pixels_))), last_ = whole(std::floor(out * pixels_));
+    }
+
+    Vec3 from() const { return from_; }
+    bool moves() const { return pixels_ > 1; }
+    int first() const { return first_; } ///< steps at which it is in the picture: rays may begin beside that
+    int last() const { return last_; }
+    float part(int step) const { return static_cast<float>(step) / pixels_; }
+    float x(float t) const { return lerp(from_.x, to_.x, t); }
+    float y(float t) const { return lerp(from_.y, to_.y, t); }
+    float step_x() const { return (to_.x - from_.x) / pixels_; }
+    float step_y() const { return (to_.y - from_.y) / pixels_; }
+    float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
+    bool comes_nearer() const { return to_.z < from_.z; }
+    /// The other way round; the end where it keeps its depth.
+    float part_at(float depth) const {
+        const float gained = perspective_ ? 1 / to_.z - 1 / from_.z : to_.z - from_.z;
+        return gained != 0 ? (perspective_ ? 1 / depth - 1 / from_.z : depth - from_.z) / gained : 1;
+    }
+    /// Metres gone at t, where it has a depth: a ray across the view keeps that.
+    float distance(float t, float depth) const {
+        return std::abs(to_.z - from_.z) > 1e-3f * from_.z ? reach_ * (depth - from_.z) / (to_.z - from_.z) : reach_ * t;
+    }
+
+private:
+    /// Of one axis: where the line from `at` on stays within [0, size).
+    static void clip(float at, float way, float size, float& in, float& out) {
+        if (way == 0) {
+            if (!(at >= 0 && at < size)) out = -1;
+            return;
+        }
+        const float a = -at / way, b = (size - at) / way;
+        in = std::max(in, std::min(a, b)), out = std::min(out, std::max(a, b));
+    }
+
+    Vec3 from_, to_; ///< in pixels, and depth
+    bool perspective_;
+    float reach_ = 0, pixels_ = 0;
+    int first_ = 1, last_ = 0;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,158 @@
+#include "raster/screen/occlusion_image.h"
+
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
+constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
+constexpr float kCoarse = 160, kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are wide, and little
+/// By the distance from the middle: a box of 4 pixels; and one of 8, softened by one of 4, so that what a pattern meets comes
+/// and goes slowly. In both each place in 4 × 4 pixels counts alike, and so, in the second, each pattern.
+constexpr std::array<float, 7> kBox{0.25f, 0.25f, 0.125f, 0, 0, 0, 0};
+constexpr std::array<float, 7> kSoftBox{0.125f, 0.125f, 3.75f / 32, 3.0f / 32, 2.0f / 32, 1.0f / 32, 0.25f / 32};
+constexpr int kLanesWide = static_cast<int>(Floats::size);
+
+/// From the first to the second, as pictures grow from coarse to fine: no size looks other than the next one.
+std::array<float, 7> kernel_of(const Screen& screen) {
+    const float side = static_cast<float>(std::min(screen.width(), screen.height()));
+    const float soft = clamp((side - kCoarse) / (kFine - kCoarse), 0.0f, 1.0f);
+    std::array<float, 7> kernel;
+    for (std::size_t i = 0; i < kernel.size(); ++i) kernel[i] = lerp(kBox[i], kSoftBox[i], soft);
+    return kernel;
+}
+
+/// 1 on the same plane facing the same way, 0 off it.
+template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, T tolerance) {
+    const T off = T(1) - abs(dot(n, to)) / tolerance, facing = (dot(n, other_n) - T(kLeastLike)) * T(1 / (1 - kLeastLike));
+    return max(off, T(0)) * min(max(facing, T(0)), T(1));
+}
+
+Floats load_from(const ImageFloat& image, int x, int y) { return Floats::load_unaligned(&image(x, y)); }
+Vec3T<Floats> normals_from(const Screen& screen, int x, int y) {
+    const auto& [nx, ny, nz] = screen.normals();
+    return {load_from(nx, x, y), load_from(ny, x, y), load_from(nz, x, y)};
+}
+
+/// What a pixel that sees nothing is given, so that all that follows stays finite.
+Floats any_nearness(const Floats& nearness) { return xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)); }
+
+/// Columns at which batches begin that cover a row; the last ones may overlap.
+template <typename F> void for_batches(int width, const F& use) {
+    for (int x = 0; x < width; x += kLanesWide) use(std::min(x, width - kLanesWide));
+}
+
+} // namespace
+
+OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads)
+    : screen_(screen), kind_(kind), radius_(radius), kernel_(kernel_of(screen)) {
+    if (screen.width() < kLanesWide) return; // every point is looked at by itself
+    const auto rows = static_cast<std::size_t>(screen.height());
+    Planes along_rows;
+    for (std::size_t k = 0; k < found_.size(); ++k) found_[k] = along_rows[k] = ImageFloat(screen.width(), screen.height());
+    parallel_for(rows, threads, [&](std::size_t y) { look_row(static_cast<int>(y)); });
+    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), false, found_, along_rows); });
+    parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), true, along_rows, found_); });
+}
+
+SkySeenT<Floats> OcclusionImage::look(const OcclusionPoints& points, const OcclusionPattern& pattern) const {
+    return kind_ == AmbientOcclusion::kSsao ? screen_space_occlusion(screen_, points, pattern, radius_)
+                                            : horizon_occlusion(screen_, points, pattern, radius_, kLines, kSteps);
+}
+
+void OcclusionImage::look_row(int y) {
+    for_batches(screen_.width(), [&](int x) {
+        const Floats nearness = load_from(screen_.nearness(), x, y);
+        if (xsimd::all(nearness <= Floats(0.0f))) return;
+        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
+        OcclusionPoints points;
+        points.p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
+        points.n = normals_from(screen_, x, y);
+        points.to_viewer = screen_.to_viewer(points.p);
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_row(x, y));
+        const std::array<Floats, 4> numbers{seen.visible, seen.hidden.x, seen.hidden.y, seen.hidden.z};
+        for (std::size_t k = 0; k < 4; ++k)
+            xsimd::select(nearness > Floats(0.0f), numbers[k], Floats(0.0f)).store_unaligned(&found_[k](x, y));
+    });
+}
+
+void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to) const {
+    const int width = screen_.width(), height = screen_.height();
+    const int reach = static_cast<int>(std::ranges::find(kernel_, 0.0f) - kernel_.begin()) - 1;
+    const Floats none(0.0f), last(static_cast<float>(width - 1));
+    for_batches(width, [&](int x) {
+        const Floats nearness = load_from(screen_.nearness(), x, y);
+        if (xsimd::all(nearness <= none)) return;
+        const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
+        const Vec3T<Floats> p = screen_.at(column, Floats(static_cast<float>(y)), any_nearness(nearness));
+        const Vec3T<Floats> n = normals_from(screen_, x, y);
+        const Floats tolerance = screen_.pixel_size(Floats(kPixels * screen_.near()) / any_nearness(nearness));
+        Floats weights(0.0f);
+        std::array<Floats, 4> sums{none, none, none, none};
+        for (int step = -reach; step <= reach; ++step) {
+            const int dx = down ? 0 : step, row = down ? y + step : y;
+            if (row < 0 || row >= height) continue;
+            const Floats at = column + Floats(static_cast<float>(dx));
+            const bool within = x + dx >= 0 && x + dx + kLanesWide <= width;
+            const Ints places = truncated(min(max(at, none), last));
+            const auto of = [&](const ImageFloat& image) {
+                return within ? load_from(image, x + dx, row) : gather(&image(0, row), places);
+            };
+            const Floats other = of(screen_.nearness());
+            const Vec3T<Floats> q = screen_.at(at, Floats(static_cast<float>(row)), any_nearness(other));
+            const Vec3T<Floats> other_n{of(screen_.normals()[0]), of(screen_.normals()[1]), of(screen_.normals()[2])};
+            const auto counts = (other > none) & (at >= none) & (at <= last);
+            const Floats near(kernel_[static_cast<std::size_t>(std::abs(step))]);
+            const Floats weight = xsimd::select(counts, same_surface(q - p, n, other_n, tolerance) * near, none);
+            weights += weight;
+            for (std::size_t k = 0; k < 4; ++k) sums[k] += xsimd::select(counts, weight * of(from[k]), none);
+        }
+        const Floats over = Floats(1.0f) / max(weights, Floats(1e-20f));
+        for (std::size_t k = 0; k < 4; ++k) (sums[k] * over).store_unaligned(&to[k](x, y));
+    });
+}
+
+/// How much what pixel (x, y) sees is of the surface through p.
+float OcclusionImage::likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) const {
+    const std::optional<Vec3> seen = screen_.seen(x, y);
+    return seen ? same_surface(*seen - p, n, screen_.normal(x, y), tolerance) : 0.0f;
+}
+
+SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
+    if (found_[0].empty()) return look(p, n);
+    const float depth = screen_.homogeneous(p)[2], tolerance = screen_.pixel_size(kPixels * depth);
+    const auto found = [&](int column, int row) {
+        return SkySeen{found_[0](column, row), {found_[1](column, row), found_[2](column, row), found_[3](column, row)}};
+    };
+    if (likeness(x, y, p, n, tolerance) > 0.5f) return found(x, y);
+    float weights = 0;
+    SkySeen sum{0, {}};
+    for (int row = std::max(y - 1, 0); row <= std::min(y + 1, screen_.height() - 1); ++row)
+        for (int column = std::max(x - 1, 0); column <= std::min(x + 1, screen_.width() - 1); ++column) {
+            const float weight = likeness(column, row, p, n, tolerance);
+            if (!(weight > 0)) continue;
+            const SkySeen here = found(column, row);
+            weights += weight;
+            sum.visible += here.visible * weight;
+            sum.hidden += here.hidden * weight;
+        }
+    if (!(weights > 0.25f)) return look(p, n);
+    return {sum.visible / weights, sum.hidden / weights};
+}
+
+SkySeen OcclusionImage::look(Vec3 p, Vec3 n) const {
+    const OcclusionPoints points{spread<Floats>(p), spread<Floats>(n), spread<Floats>(screen_.to_viewer(p))};
+    SkySeen sum{0, {}};
+    for (int first = 0; first < OcclusionPattern::kOfPoint; first += kLanesWide) {
+        const SkySeenT<Floats> seen = look(points, OcclusionPattern::of_point(first));
+        sum.visible += xsimd::hadd(seen.visible);
+        sum.hidden += Vec3(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
+    }
+    return {sum.visible / OcclusionPattern::kOfPoint, sum.hidden / static_cast<float>(OcclusionPattern::kOfPoint)};
+}
+
+} // namespace duet::raster

@@ -1,0 +1,284 @@
+#include "raster/screen/screen_reflection.h"
+
+#include "raster/screen/crossing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
+constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for each metre behind the nearer side of what hides: deep in, means alone are known
+constexpr int kLeastBlock = 8, kMostBlock = 256; ///< pixels: blocks of the picture before which a ray is are passed at once
+
+/// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
+float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
+    const std::optional<Vec3> seen = screen.seen(x, y);
+    if (!seen) return kInfinity;
+    const Vec3 n = screen.normal(x, y);
+    const float towards = -dot(n, way), height = dot(n, p - *seen);
+    return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
+}
+
+/// How many of at most `most` steps (sx, sy) from a place stay in its block of `block` × `block` pixels, a power of two, or fewer.
+int steps_in_block(float x, float y, float sx, float sy, int block, int most) {
+    const auto side = static_cast<float>(block), per_side = 1 / side;
+    const auto along = [&](float at, float step) {
+        const float from_edge = at - side * std::floor(at * per_side);
+        return step > 0 ? (side - from_edge) / step : step < 0 ? from_edge / -step : 1e6f;
+    };
+    return std::min(most, static_cast<int>(std::min(along(x, sx), along(y, sy)) - 0.01f));
+}
+
+/// Whether all of a place's block lies farther than a depth.
+bool block_is_beyond(const Screen& screen, float x, float y, int block, float depth) {
+    const int x0 = static_cast<int>(x) & -block, y0 = static_cast<int>(y) & -block;
+    return depth < screen.least_depth(x0, y0, std::min(x0 + block, screen.width()) - 1, std::min(y0 + block, screen.height()) - 1);
+}
+
+/// One ray on its way.
+class ScreenTrace {
+public:
+    ScreenTrace(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture)
+        : scenery_(scenery), scene_(scene), p_(p), n_(n), way_(way), from_picture_(from_picture), line_(scenery.all, p, way) {}
+
+    std::optional<ScreenHit> follow() {
+        if (!(line_.from().z > 0)) return std::nullopt;
+        if (!line_.moves()) return in_one_pixel();
+        float before = line_.depth(line_.part(line_.first() - 1));
+        for (int i = line_.first(); i <= line_.last(); ++i) {
+            i += passed_at_once(i, before);
+            const float t = line_.part(i), depth = line_.depth(t), fx = line_.x(t), fy = line_.y(t);
+            if (!scenery_.all.contains(fx, fy)) continue; // by rounding
+            if (const auto hit = visit(i, t, fx, fy, before, depth)) return hit;
+            before = depth;
+        }
+        return beyond_edge();
+    }
+
+private:
+    struct Pixel {
+        int x = -1, y = -1;
+        bool valid() const { return x >= 0; }
+    };
+
+    std::optional<ScreenHit> in_one_pixel() const {
+        const Vec3 from = line_.from();
+        if (from_picture_ || !scenery_.all.contains(from.x, from.y)) return std::nullopt;
+        const auto x = static_cast<int>(from.x), y = static_cast<int>(from.y);
+        const float beyond = scenery_.at(x, y).depth(x, y) - from.z, deeper = scenery_.all.homogeneous_change(way_)[2];
+        return deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
+    }
+
+    /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays: after one that is passed
+    /// larger ones are looked at, where it does not pass them smaller ones.
+    int passed_at_once(int i, float& before) {
+        if (i <= 2) return 0;
+        const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t);
+        if (!scenery_.all.contains(fx, fy)) return 0;
+        for (;; block_ /= 2) {
+            const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), block_, line_.last() - i);
+            if (more > 0) {
+                const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
+                if (block_is_beyond(scenery_.all, fx, fy, block_, deepest)) {
+                    before = last_depth;
+                    hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
+                    block_ = std::min(2 * block_, kMostBlock);
+                    return more;
+                }
+            }
+            if (block_ == kLeastBlock) return 0;
+        }
+    }
+
+    /// A step, over which the ray's depth goes from `before` to `depth`.
+    std::optional<ScreenHit> visit(int i, float t, float fx, float fy, float before, float depth) {
+        const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
+        if (from_picture_ && i < 2) return std::nullopt;
+        const Screen& screen = scenery_.at(x, y);
+        const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
+        const float distance = line_.distance(t, depth);
+        if (far < seen_depth) {
+            hidden_from_ = -1, in_front_ = distance;
+            return std::nullopt;
+        }
+        const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
+        const bool glass = is_passed_glass(screen, x, y);
+        const bool behind = near > seen_depth + (glass ? 0 : thickness);
+        if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
+        if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
+            const float crossed = meets_plane(screen, p_, way_, x, y);
+            if (crossed > hidden_from_ && crossed <= distance) {
+                const ScreenHit hit = guess(screen, fx, fy, crossed);
+                return of_hidden(flat_at(hit, beside_edge(hit, seen_depth)));
+            }
+        }
+        if (behind || glass) return std::nullopt;
+        const auto hit = meet(screen, i, t, x, y, near, known > 0);
+        if (!hit || hidden_from_ < 0) return hit;
+        const auto flat = goes_on(last_flat(i), hidden_from_); // it may have gone under that, hidden
+        return flat && flat->distance < hit->distance ? flat : hit;
+    }
+
+    /// Whether a pixel shows glass that the ray comes through the other way: what it shows the viewer it does not show the ray.
+    bool is_passed_glass(const Screen& screen, int x, int y) const {
+        const Screen* behind = screen.behind();
+        return behind != nullptr && line_.comes_nearer() && behind->first_look().objects(x, y) != screen.first_look().objects(x, y);
+    }
+
+    /// What is seen at a pixel, where the ray is no nearer and not behind it.
+    std::optional<ScreenHit> meet(const Screen& screen, int i, float t, int x, int y, float near, bool closed) const {
+        const std::optional<Vec3> seen = screen.seen(x, y);
+        if (!seen) return std::nullopt;
+        const Vec3 step = *seen - p_;
+        const float depth = screen.depth(x, y);
+        const bool inside = closed && near > depth; // it has come from behind or beside
+        if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
+        if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
+        if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
+        if (closed && dot(screen.normal(x, y), way_) >= 0) return std::nullopt; // it comes past its edge
+        const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
+        const float fx = line_.x(met), fy = line_.y(met);
+        return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
+    }
+
+    /// Whether a look between pixels sees the mirror that the ray has left: there it has met something in its first steps.
+    bool touches_own(float fx, float fy) const {
+        if (scenery_.without != nullptr) return false; // what the look does not see
+        for (const float dx : {-0.5f, 0.5f})
+            for (const float dy : {-0.5f, 0.5f}) {
+                const auto [x, y] = scenery_.all.pixel_at({fx + dx, fy + dy, 0});
+                if (scenery_.is_own(x, y)) return true;
+            }
+        return false;
+    }
+
+    /// The last pixel that it has come to.
+    Pixel last() const {
+        for (int i = line_.last(); i >= line_.first(); --i)
+            if (const Pixel at = pixel(i); at.valid()) return at;
+        const auto [x, y] = scenery_.all.pixel_at(line_.from());
+        return {x, y};
+    }
+    /// The last one, up to a step, that shows a flat surface that it is before.
+    Pixel last_flat(int i) const {
+        for (; i >= line_.first(); --i) {
+            const Pixel at = pixel(i);
+            if (!at.valid() || scenery_.is_own(at.x, at.y) || !is_flat(scenery_.at(at.x, at.y), at.x, at.y)) continue;
+            const float depth = scenery_.at(at.x, at.y).depth(at.x, at.y);
+            if (std::max(line_.depth(line_.part(i - 1)), line_.depth(line_.part(i))) < depth) return at;
+        }
+        return {};
+    }
+    /// None where rounding takes it out of the picture.
+    Pixel pixel(int step) const {
+        const float t = line_.part(step), fx = line_.x(t), fy = line_.y(t);
+        return scenery_.all.contains(fx, fy) ? Pixel{static_cast<int>(fx), static_cast<int>(fy)} : Pixel{};
+    }
+
+    /// Where it meets the plane of a flat surface that a pixel shows, farther than `from`.
+    std::optional<ScreenHit> goes_on(Pixel at, float from) const {
+        if (!at.valid()) return std::nullopt;
+        const Screen& screen = scenery_.at(at.x, at.y);
+        const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
+        if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
+        const ScreenHit hit = guess(screen, middle(at.x), middle(at.y), crossed);
+        return of_hidden(flat_at(hit, hit));
+    }
+
+    std::optional<ScreenHit> beyond_edge() const {
+        const Pixel end = last();
+        if (hidden_from_ >= 0) {
+            if (const auto hit = goes_on(last_flat(line_.last()), hidden_from_)) return hit;
+            return of_hidden(guess(scenery_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_from_));
+        }
+        const Screen& screen = scenery_.at(end.x, end.y);
+        if (scenery_.is_own(end.x, end.y) || !screen.seen(end.x, end.y)) return std::nullopt;
+        const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
+        return goes_on(flat ? end : last_flat(line_.last()), 0);
+    }
+
+    /// What a pixel shows stands for what is met at a distance.
+    ScreenHit guess(const Screen& screen, float x, float y, float distance) const {
+        const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
+        return {x, y, distance, seen ? length(*seen - p_ - way_ * distance) : 0.0f};
+    }
+    /// Whether across the ray's way another object than at a place begins behind it.
+    bool at_own_edge(float fx, float fy) const {
+        const auto [x, y] = scenery_.all.pixel_at({fx, fy, 0});
+        const std::uint32_t object = scenery_.at(x, y).first_look().objects(x, y);
+        for (const float side : {-1.0f, 1.0f}) {
+            const auto [i, k] = scenery_.all.pixel_at({fx - side * line_.step_y(), fy + side * line_.step_x(), 0});
+            const Screen& screen = scenery_.at(i, k);
+            if (screen.first_look().objects(i, k) != object && screen.depth(i, k) > scenery_.at(x, y).depth(x, y)) return true;
+        }
+        return false;
+    }
+    /// A flat surface's hit, moved to where it would be seen: in the flat look surfaces go on behind round things as they are about
+    /// them, and at the picture's edge as they are there. `otherwise` behind a flat thing, and at the surface's own edge.
+    ScreenHit flat_at(ScreenHit hit, const ScreenHit& otherwise) const {
+        const Vec3 place = scenery_.all.project(p_ + way_ * hit.distance);
+        if (!(place.z > 0) || !scenery_.all.contains(place.x, place.y)) {
+            const Pixel end = last();
+            hit.x = middle(end.x), hit.y = middle(end.y);
+            return hit;
+        }
+        const auto [x, y] = scenery_.all.pixel_at(place);
+        const Screen& there = scenery_.at(x, y);
+        if (is_flat(there, x, y) && there.depth(x, y) < (1 - kSameSurface) * place.z) return otherwise;
+        if (at_own_edge(hit.x, hit.y)) return otherwise;
+        if (hidden_from_ >= 0) hit.gap = kHiddenBlur * std::min(hit.gap, hit.distance - hidden_from_);
+        hit.x = place.x, hit.y = place.y;
+        return hit;
+    }
+    /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
+    ScreenHit beside_edge(ScreenHit hit, float depth) const {
+        const float most = 0.1f * static_cast<float>(scenery_.all.width());
+        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), most);
+        const float x = hit.x + aside * line_.step_x(), y = hit.y + aside * line_.step_y();
+        if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
+        return hit;
+    }
+    static ScreenHit of_hidden(ScreenHit hit) {
+        hit.hidden = true;
+        return hit;
+    }
+    static ScreenHit of_alone(ScreenHit hit) {
+        hit.alone = true;
+        return hit;
+    }
+    static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
+
+    const Scenery& scenery_;
+    const Box3& scene_;
+    Vec3 p_, n_, way_;
+    bool from_picture_;
+    Crossing line_;
+    int block_ = kLeastBlock;
+    float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
+};
+
+} // namespace
+
+bool Scenery::one_object(float x, float y, float reach) const {
+    const auto object_at = [&](float i, float k) {
+        const auto [column, row] = all.pixel_at({i, k, 0});
+        return at(column, row).first_look().objects(column, row);
+    };
+    const std::uint32_t seen = object_at(x, y);
+    const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
+    return same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1);
+}
+
+float Scenery::width_within(float x, float y, float width) const {
+    for (; width > 1; width *= 0.7f)
+        if (one_object(x, y, 2 * width)) return width; // of the coarser level, between its pixels
+    return 1;
+}
+
+std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
+    return ScreenTrace(scenery, scene, p, n, way, from_picture).follow();
+}
+
+} // namespace duet::raster

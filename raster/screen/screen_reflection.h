@@ -1,0 +1,67 @@
+// What metal and glass see of the scene, as far as the picture shows it.
+#pragma once
+
+#include "common/geometry/hit.h"
+#include "common/vec/box.h"
+#include "raster/screen/flat_look.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace duet::raster {
+
+/// What an object sees of a picture: the picture, but where it is itself in the way what is behind it.
+struct Scenery {
+    const Screen& all;                 ///< with a first look
+    const Screen* without = nullptr;   ///< the same view with the first surface of each pixel gone; null: nothing sees through
+    std::uint32_t object = kNoObject;  ///< that looks
+
+    bool is_own(int x, int y) const { return all.first_look().objects(x, y) == object; }
+    const Screen& at(int x, int y) const { return without != nullptr && is_own(x, y) ? *without : all; }
+    /// Of a look at `width` pixels about a place how many see its object alone, one at least.
+    float width_within(float x, float y, float width) const;
+    /// Whether a place's pixel and four about it, so far along each axis, show one object.
+    bool one_object(float x, float y, float reach) const;
+    /// The one for a look at some pixels about a place, in which it must not see itself.
+    const Screen& about(float x, float y, float width) const {
+        const float reach = std::max(1.0f, 0.5f * width);
+        for (const float dx : {-reach, 0.0f, reach})
+            for (const float dy : {-reach, 0.0f, reach}) {
+                const auto [column, row] = all.pixel_at({x + dx, y + dy, 0});
+                if (const Screen& screen = at(column, row); &screen != &all) return screen;
+            }
+        return all;
+    }
+};
+
+/// Where a ray from a point of the picture meets what the picture shows.
+struct ScreenHit {
+    float x, y;     ///< in pixels
+    float distance; ///< from the point, metres
+    float gap = 0;  ///< metres from what that pixel sees to what is met, where that is but guessed to be alike; of the hidden more
+    bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
+    bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
+};
+
+/// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
+/// until it goes behind what is seen there. `p` is relative to the eye, in the picture or beside it; n, its surface's unit
+/// normal, and `way`, are unit. A closed thing is met from behind, too: it is as thick as its nearest back face says
+/// (Screen::thickness), and what it shows of itself stands for its far side. Of another the picture does not say how
+/// thick it is: one that the ray passes farther behind than it is itself deep over two pixels, or kThickness of its depth, is
+/// taken to be passed.
+///
+/// What the picture does not show it may still tell of. A flat surface that the ray, when it comes out from behind
+/// something, has already crossed by its plane is what it has met there; one that it was last seen before goes on behind
+/// what hides the ray up to the picture's edge, which stands for what it meets where there is none; and flat surfaces go on
+/// beyond the edge as they are there, up to the bounds of the scene (relative to the eye). Where that is behind something
+/// round it is looked up at its own place, which the flat look fills from all sides. Glass that the ray comes through
+/// towards the viewer is not met: what that shows the viewer it does not show the ray. Empty where the ray meets nothing so.
+///
+/// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
+std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
+
+inline constexpr float kThickness = 0.02f;
+/// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.
+inline constexpr float kGuessBlur = 0.25f;
+
+} // namespace duet::raster

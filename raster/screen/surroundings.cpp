@@ -1,0 +1,148 @@
+#include "raster/screen/surroundings.h"
+
+#include "common/scene/lamp_texture.h"
+#include "raster/light/environment_light.h"
+#include "raster/light/prefiltered.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+/// A lamp that a ray meets: how far off, and how much of a look of some width about the ray it fills.
+struct LampSeen {
+    float distance = kInfinity, part = 0;
+};
+
+/// Of a stretch of some length, looked at over `width` metres about the fraction x of it.
+float part_within(float x, float length, float width) {
+    const auto side = [&](float to_edge) { return clamp(to_edge * length / width + 0.5f, 0.0f, 1.0f); };
+    return side(x) * side(1 - x);
+}
+
+struct LampFinder {
+    Vec3 p, way;
+    const Look& look;
+
+    LampSeen operator()(const Quad& quad) const {
+        float distance, a, b;
+        if (!meet(quad.corner, quad.u, quad.v, distance, a, b)) return {};
+        const float wide = max(look.size(distance), 1e-6f * distance);
+        return {distance, part_within(a, length(quad.u), wide) * part_within(b, length(quad.v), wide)};
+    }
+    /// Others may go on beyond its edges.
+    LampSeen operator()(const SurfaceLight::Triangle& t) const {
+        float distance, a, b;
+        if (!meet(t.a, t.b - t.a, t.c - t.a, distance, a, b) || a < 0 || b < 0 || a + b > 1) return {};
+        return {distance, 1};
+    }
+    LampSeen operator()(const Sphere& sphere) const {
+        const Vec3 to = sphere.center - p;
+        const float along = dot(to, way), beside = length(to - way * along);
+        if (!(along > 0) || dot(to, to) < sqr(sphere.radius)) return {};
+        const float wide = max(look.size(along), 1e-6f * along);
+        return {along - std::sqrt(max(sqr(sphere.radius) - sqr(beside), 0.0f)),
+                clamp((sphere.radius - beside) / wide + 0.5f, 0.0f, 1.0f)};
+    }
+
+private:
+    /// Where the ray meets the plane through `corner`, and there a and b of corner + a·u + b·v.
+    bool meet(Vec3 corner, Vec3 u, Vec3 v, float& distance, float& a, float& b) const {
+        const Vec3 n = cross(u, v), to = corner - p;
+        const float towards = dot(n, way);
+        if (towards == 0) return false;
+        distance = dot(n, to) / towards;
+        if (!(distance > 1e-5f * length(to))) return false;
+        const Vec3 q = way * distance - to;
+        const float over = 1 / dot(n, n);
+        a = dot(cross(q, v), n) * over, b = dot(cross(u, q), n) * over;
+        return true;
+    }
+};
+
+} // namespace
+
+Surroundings::Surroundings(const PreparedData& data, const Settings& settings, const Scenery& scenery)
+    : data_(data), settings_(settings), scenery_(scenery),
+      bounds_{scenery.all.relative(data.scene.bounds.low), scenery.all.relative(data.scene.bounds.high)} {
+    const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
+    bounds_ = {bounds_.low - slack, bounds_.high + slack};
+}
+
+Rgb Surroundings::seen(const Look& look) const {
+    float distance = kInfinity;
+    Rgb sum = picture_or_environment(look, distance);
+    const auto& lights = data_.scene.lights;
+    if (!look.lamps) return sum;
+    const Vec3 p = scenery_.all.absolute(look.p);
+    const LampFinder finder{p, look.way, look};
+    LampSeen nearest;
+    const SurfaceLight* lamp = nullptr;
+    std::size_t index = 0;
+    for (const std::size_t i : data_.lamps) {
+        const auto& light = std::get<SurfaceLight>(lights[i]);
+        const LampSeen found = std::visit(finder, light.shape);
+        if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
+    }
+    // What the picture shows a little before the lamp is the lamp.
+    if (lamp == nullptr || distance < 0.98f * nearest.distance) return sum;
+    if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
+    const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, *lamp, p, look.way, nearest.distance)
+                                                      : lamp->radiance;
+    return lerp(sum, shown, nearest.part);
+}
+
+Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
+    if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
+        distance = hit->distance;
+        if (const auto mirrored = behind_metal(look, *hit)) return *mirrored;
+        return picture(look, *hit, distance);
+    }
+    if (!shows_environment(data_, settings_)) return {};
+    const Environment& environment = data_.scene.environment;
+    const bool blurred = look.alpha > 0 && settings_.prefiltered_environment && data_.prefiltered;
+    return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
+}
+
+/// What a sheet of metal mirrors that is met from behind: the lamps and the sky that its front shows the viewer are none of
+/// that. Of what is mirrored again the picture stands for itself. Empty where something else is met.
+std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit& hit) const {
+    if (look.mirrored_again || hit.hidden) return std::nullopt;
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const Screen& screen = scenery_.at(x, y);
+    const std::uint32_t object = screen.first_look().objects(x, y);
+    if (object == kNoObject || data_.objects[object].closed) return std::nullopt;
+    const std::optional<MetalBsdf>& metal = data_.objects[object].metal;
+    const Vec3 n = screen.normal(x, y);
+    const float away = dot(n, look.way);
+    if (!(away > 0) || !metal || metal->alpha > kRoughestMirror) return std::nullopt;
+    Look again = look;
+    again.p = look.p + look.way * hit.distance, again.n = -n, again.way = normalize(look.way - n * (2 * away));
+    again.width = look.width + hit.distance * look.turn, again.point = nullptr;
+    again.spread += blur_mirrored(metal->alpha), again.alpha = min(look.alpha + metal->alpha, 1.0f);
+    again.from_picture = false, again.mirrored_again = true;
+    float distance = kInfinity;
+    return picture_or_environment(again, distance) * metal->albedo(away);
+}
+
+Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
+    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
+    const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
+    // No narrower than a rough surface blurs: what it sees beside is not a guess.
+    const float wide = hit.alone ? max(scenery_.width_within(hit.x, hit.y, size), hit.distance * look.spread / pixel) : size;
+    const Screen& screen = scenery_.about(hit.x, hit.y, wide);
+    const Screen::FirstLook& shown = screen.first_look();
+    // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
+    // wherever what is met is guessed.
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const bool is_lamp = shown.lamps(x, y) != 0;
+    if (is_lamp) distance = kInfinity; // it hides none
+    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
+    const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
+    const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
+    const bool sees_another = hit.alone && wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f); // between pixels
+    return sees_another ? radiance_seen.finest()(x, y) : radiance_seen.at(hit.x, hit.y, wide);
+}
+
+} // namespace duet::raster

@@ -1,0 +1,64 @@
+// The scene's lights as shading models take them: each from one direction, for one point or for a batch.
+#pragma once
+
+#include "raster/light/direct.h"
+#include "raster/shader/shader.h"
+
+namespace duet::raster {
+
+template <typename T> struct IncidentT {
+    Vec3T<T> wi;        ///< unit, to the light
+    RgbT<T> irradiance; ///< on a surface that faces it; nothing occludes it
+};
+
+/// Light at a point of the world, of any but a sun. A surface light counts as a distant one of the same irradiance in its centre's
+/// direction.
+template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
+    const auto from = [&](Vec3 position, Rgb intensity) -> IncidentT<T> {
+        const Vec3T<T> way = spread<T>(position) - p;
+        const T squared = dot(way, way);
+        return {way * inverse_sqrt(squared), spread<T>(intensity) * (T(1) / squared)};
+    };
+    if (const auto* point = std::get_if<PointLight>(&light)) return from(point->position, point->intensity);
+    if (const auto* spot = std::get_if<SpotLight>(&light)) {
+        IncidentT<T> result = from(spot->position, spot->intensity);
+        const T cosine = -dot(result.wi, spread<T>(spot->direction));
+        const float range = spot->cos_inner - spot->cos_outer; // 0: a hard edge
+        const T s = clamp((cosine - T(spot->cos_outer)) / T(max(range, 1e-6f)), T(0), T(1));
+        result.irradiance *= s * s * (T(3) - T(2) * s);
+        return result;
+    }
+    const auto& surface = std::get<SurfaceLight>(light);
+    if constexpr (std::same_as<T, float>) {
+        return as_distant(surface, p);
+    } else {
+        Vec3T<StripOf<float>> points, wi;
+        RgbT<StripOf<float>> irradiance;
+        store(points.x, 0, p.x), store(points.y, 0, p.y), store(points.z, 0, p.z);
+        for (std::size_t i = 0; i < T::size; ++i) {
+            const IncidentT<float> one = as_distant(surface, Vec3(points.x[i], points.y[i], points.z[i]));
+            wi.x[i] = one.wi.x, wi.y[i] = one.wi.y, wi.z[i] = one.wi.z;
+            irradiance.r[i] = one.irradiance.r, irradiance.g[i] = one.irradiance.g, irradiance.b[i] = one.irradiance.b;
+        }
+        return {{load(wi.x, 0), load(wi.y, 0), load(wi.z, 0)},
+                {load(irradiance.r, 0), load(irradiance.g, 0), load(irradiance.b, 0)}};
+    }
+}
+
+template <typename T> IncidentT<T> incident(const SunLight& sun) { return {spread<T>(-sun.direction), spread<T>(sun.irradiance)}; }
+
+/// use(IncidentT<T>) for each light, at the point of the world that place() returns; suns, which shine everywhere alike,
+/// don't ask for it.
+template <bool kSuns, typename Place, typename Use>
+void for_each_incident(Lights<kSuns> lights, const Place& place, const Use& use) {
+    using T = decltype(place().x);
+    for (const Light& light : lights.all) {
+        const auto* sun = std::get_if<SunLight>(&light);
+        if (kSuns || sun != nullptr)
+            use(incident<T>(*sun));
+        else
+            use(incident<T>(light, place()));
+    }
+}
+
+} // namespace duet::raster

@@ -1,0 +1,56 @@
+// Vectors that are linear in the pixel, such as a camera's rays: for the strips of a tile, by adding.
+#pragma once
+
+#include "raster/geometry/samples.h"
+#include "raster/geometry/tiles.h"
+#include "raster/visibility/strip_samples.h"
+
+#include <array>
+
+namespace duet::raster {
+
+/// What a column of blocks has of such a vector, and what a row of strips and the samples' places in their pixels add: rounded
+/// once a tile, to floats whose errors are of their last place. So no strip has to wait for its place to become a number.
+class LinearInTile {
+public:
+    /// start + dx·x + dy·y, for the pixels (x, y) of a tile, TileGrid::kTileSize or less of them each way.
+    LinearInTile(Vec3d start, Vec3d dx, Vec3d dy, const PixelRect& tile) : step_x_(dx), step_y_(dy), x0_(tile.x0), y0_(tile.y0) {
+        const Vec3 first(start + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0));
+        for (std::size_t k = 0; k < columns_.size(); ++k)
+            for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+                const Floats x = Floats(static_cast<float>(k * kStripWidth)) + load(kColumns<float>, i);
+                const Vec3T<Floats> here = spread<Floats>(first) + moved(x, load(kRows<float>, i));
+                for (std::size_t axis = 0; axis < 3; ++axis) store(columns_[k][axis], i, here[axis]);
+            }
+        for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = step_y_ * static_cast<float>(k * kStripHeight);
+    }
+
+    /// So the samples of the strips that follow lie in their pixels.
+    void use(SampleOffset offset) {
+        if (offset == offset_) return;
+        offset_ = offset;
+        shift_ = moved(static_cast<float>(offset.x) / kSubPixels, static_cast<float>(offset.y) / kSubPixels);
+    }
+    /// Of the strip that begins at pixel (x, y): its samples from the i-th on, as many as there are lanes.
+    Vec3T<Floats> at(int x, int y, std::size_t i) const {
+        const auto& column = columns_[static_cast<std::size_t>(x - x0_) / kStripWidth];
+        const Vec3 row = rows_[static_cast<std::size_t>(y - y0_) / kStripHeight] + shift_;
+        return {load(column[0], i) + Floats(row.x), load(column[1], i) + Floats(row.y), load(column[2], i) + Floats(row.z)};
+    }
+    /// What as many pixels to the right and down add.
+    template <typename T> Vec3T<T> moved(T x, T y) const {
+        const auto along = [&](std::size_t axis) { return fused(T(step_x_[axis]), x, T(step_y_[axis]) * y); };
+        return {along(0), along(1), along(2)};
+    }
+
+private:
+    static constexpr std::size_t kStripHeight = DepthTile::kStripRows;
+    Vec3 step_x_, step_y_;
+    int x0_, y0_;
+    std::array<std::array<StripOf<float>, 3>, TileGrid::kTileSize / kStripWidth> columns_;
+    std::array<Vec3, TileGrid::kTileSize / kStripHeight> rows_;
+    SampleOffset offset_{0, 0};
+    Vec3 shift_;
+};
+
+} // namespace duet::raster

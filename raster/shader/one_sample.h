@@ -1,0 +1,76 @@
+// A shader at one hit, whatever it is of: triangle, quad or sphere. The naive way, to which batches are held.
+#pragma once
+
+#include "raster/shader/shader.h"
+#include "raster/visibility/cover.h"
+
+namespace duet::raster {
+
+/// The corners of what is hit, and the weights that make the hit of them; with their derivatives by the sample's place.
+/// Of a sphere three of its points: where it is hit, and where the rays through the next pixels to the right and below
+/// would, if they met its tangent plane.
+struct HitCorners {
+    std::array<Vec3, 3> p, n; ///< in the object's space
+    std::array<Vec2, 3> uv;
+    std::array<Vec3, 3> edges; ///< VertexInput::edges
+    Vec3 ng, middle;           ///< VertexInput's
+    std::array<float, 3> weights{}, dx{}, dy{};
+    SurfacePoint surface;
+    Vec3 ns; ///< shading normal in the world, unit, on the side that is seen
+    double depth = 0; ///< camera-space −z
+};
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel);
+/// The base colour where a camera ray hits, textures filtered over what the sample stands for.
+Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel);
+
+/// The shading normal there, likewise, on the side that is seen.
+Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
+
+/// And the radiance of its own towards the viewer.
+Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
+
+/// The colour of a hit of the ray through `pixel`. `nearness`: known, or null.
+template <Shader S>
+Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
+              int samples_per_pixel, const float* nearness = nullptr) {
+    struct Source final : ColorSource {
+        const Scene& scene;
+        const HitCorners& at;
+        const SurfacePoint& surface;
+        Vec3 to_viewer;
+        Source(const Scene& scene_, const HitCorners& at_, Vec3 to_viewer_)
+            : scene(scene_), at(at_), surface(at_.surface), to_viewer(to_viewer_) {}
+        Vec3 bent_normal(std::size_t) const override { return at.ns; }
+        Rgb base_color(std::size_t) const override {
+            return duet::base_color(scene.materials[surface.material], scene.textures, surface);
+        }
+        Rgb emitted(std::size_t) const override {
+            return duet::emitted(scene.materials[surface.material], scene.textures, surface, to_viewer);
+        }
+    };
+    const ObjectView object(data, view, hit.object);
+    const HitCorners at = hit_corners(view, hit, pixel, object, samples_per_pixel);
+    std::array<std::array<float, kVaryings<S>>, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = numbers<S, float>(
+            shader.vertex(VertexInput<float>{at.p[k], at.n[k], at.uv[k], at.ng, at.middle, at.edges[k], object}));
+    const auto weighed = [&](const std::array<float, 3>& w) {
+        std::array<float, kVaryings<S>> sum;
+        for (std::size_t c = 0; c < sum.size(); ++c)
+            sum[c] = w[0] * corners[0][c] + w[1] * corners[1][c] + w[2] * corners[2][c];
+        return varyings<S, float>(sum);
+    };
+    using V = VaryingsOf<S, float>;
+    ScreenDerivatives<V, wants_derivatives<S>()> derivatives;
+    if constexpr (wants_derivatives<S>()) derivatives = {weighed(at.dx), weighed(at.dy)};
+    const Pinhole& pinhole = view.pinhole;
+    const Vec3 way(pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y);
+    const Source colors(data.scene, at, -way);
+    return shader.template fragment<float>(FragmentOf<S, float>{
+        derivatives, {at.ng}, weighed(at.weights),
+        Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),
+        way, static_cast<float>(at.depth),
+        nearness != nullptr ? *nearness : static_cast<float>(min(pinhole.near / at.depth, 1.0)), object, colors, 0});
+}
+
+} // namespace duet::raster

@@ -1,0 +1,356 @@
+// What follows from a triangle for all the samples of a tile that see it: worked out sixteen triangles side by side, and
+// kept so, for strips beside each other see much the same triangles.
+#pragma once
+
+#include "raster/geometry/geometry.h"
+#include "raster/geometry/planes.h"
+#include "raster/geometry/triangles.h"
+#include "raster/shader/shader.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+#include <memory>
+
+namespace duet::raster {
+
+/// Of sixteen triangles. Planes are the coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's
+/// e[1] and e[2], the sum of its three, and Σ(e·depth). They are of D, float or double: pixels are counted from an origin
+/// beside the triangle's first corner, so that what cancels is of the triangle's size.
+template <VertexShader S, typename D> struct SetUp {
+    using Plane = std::array<StripOf<D>, 3>;
+    using Numbers = std::array<StripOf<float>, kVaryings<S>>;
+    static constexpr bool kDirections = wants_directions<S>() && std::is_same_v<D, float>;
+    /// What a plane is at most, M = steepest·(|x| + |y|) + greatest, over Σe: the triangle's length over its height in pixels, or
+    /// its farthest depth in the tile over the sample's, and some. Beyond this the planes are too coarse.
+    static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
+
+    StripOf<D> x, y; ///< the origin, counted from the tile's corner: a pixel of the tile
+    Plane e1, e2, sum, depth_sum;
+    StripOf<D> steepest, greatest; ///< of e1, e2 and sum: no |coefficient| of x and y, and none of 1, is more
+    Numbers n, n1, n2;             ///< the first corner's varyings, and their changes along the barycentrics
+    std::array<StripOf<float>, 3> ng; ///< VertexInput::ng
+    /// Of shaders of directions: Σ(e·varying), a plane each, counted from the tile's corner.
+    std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
+    /// A bit for each triangle where those may take the place of varyings: M/Σe is at most kSteepest wherever it is seen in the
+    /// tile, and its corners' normals are all on the side that is seen.
+    std::uint32_t easy;
+};
+
+/// Set-ups of meshes' triangles under one view of a tile; S's vertex function is asked for what is interpolated.
+template <VertexShader S, typename D> class SetUps {
+public:
+    using Sixteen = SetUp<S, D>;
+
+    SetUps(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
+        : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {
+        for (Recent& part : recent_) part.ids.fill(kNoTriangle);
+    }
+
+    /// The object whose triangles are asked for from now on; its first triangle's number.
+    void use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id);
+    /// The object in use; stays where it is.
+    const ObjectView& object() const { return *view_of_object_; }
+
+    /// Whether a strip's triangles can still be kept.
+    bool has_room() const { return count_ + 2 * kStrip <= kRoom; }
+    void forget();
+    /// Of each sample's triangle where its set-up is kept, which may be made by finish() only; where there is room.
+    void keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    void finish();
+    /// Those kept from place 16·i on.
+    const Sixteen& sixteen(std::size_t i) const { return kept_[i]; }
+
+private:
+    std::int32_t find_or_keep(std::int32_t id);
+    void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    void fill_up();
+    void begin_sixteen();
+    void prefetch_triangle(std::int32_t id) const { prefetch(&mesh_->triangles[static_cast<std::size_t>(id) - first_id_]); }
+    void prefetch_vertices(const StripOf<std::int32_t>& ids) const;
+    void set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const;
+    using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
+    void gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const;
+    const PackedVertex* vertices() const { return (*triangles_.vertices)[triangles_.scene->objects[object_->object].shape].data(); }
+    std::uint32_t set_up_planes(const Corners& corners, Sixteen& to) const;
+    void set_up_varyings(std::size_t i, const Corners& corners, Floats side, Sixteen& to) const;
+    void set_up_directions(std::size_t i, Sixteen& to) const;
+    std::uint32_t facing(std::size_t i, const Corners& corners, const Sixteen& of) const;
+
+    const Triangles& triangles_;
+    const PassView& view_;
+    const S& shader_;
+    int origin_x_, origin_y_;
+    const TransformedObject* object_ = nullptr;
+    const Mesh* mesh_ = nullptr;
+    std::size_t first_id_ = 0;
+    const ObjectView* view_of_object_ = nullptr;
+    std::map<std::uint32_t, ObjectView> views_of_objects_;
+
+    static constexpr float kLeastCosine = 0.125f;
+    static constexpr std::size_t kRoom = 1024, kMost = kRoom / kStrip, kPlaces = kRoom;
+    struct Place {
+        std::int32_t id = kNoTriangle, kept = 0;
+    };
+    std::array<Place, kPlaces> places_; ///< by the lower bits of numbers: whose place another took is set up once more
+    /// The last that were asked for, by the lower six bits of their numbers: sixteen samples are looked up side by side.
+    struct Recent {
+        StripOf<std::int32_t> ids, kept;
+    };
+    std::array<Recent, 4> recent_;
+    std::unique_ptr<Sixteen[]> kept_ = std::make_unique_for_overwrite<Sixteen[]>(kMost);
+    std::array<StripOf<std::int32_t>, kMost> wanted_; ///< numbers of those kept, and of those to be
+    std::size_t count_ = 0, finished_ = 0;            ///< of either, and of those that are set up
+};
+
+template <VertexShader S, typename D>
+void SetUps<S, D>::use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id) {
+    if (object_ == &object) return;
+    finish();
+    begin_sixteen(); // each are of one object
+    object_ = &object;
+    mesh_ = &mesh;
+    first_id_ = first_id;
+    view_of_object_ = &views_of_objects_.try_emplace(object.object, *triangles_.prepared, view_, object.object).first->second;
+}
+
+template <VertexShader S, typename D> void SetUps<S, D>::forget() {
+    count_ = finished_ = 0;
+    places_.fill({});
+    for (Recent& part : recent_) part.ids.fill(kNoTriangle);
+}
+
+template <VertexShader S, typename D>
+void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
+    constexpr std::size_t kBatches = kStrip / Ints::size;
+    std::array<Ints, kBatches> places;
+    std::uint32_t found = 0;
+    for (std::size_t b = 0; b < kBatches; ++b) {
+        const std::size_t i = b * Ints::size;
+        const Ints id = load(ids, i);
+        const auto first = (id & Ints(2 * kStrip)) == Ints(0);
+        const auto recent = [&](StripOf<std::int32_t> Recent::*which) {
+            return xsimd::select(first, look_up(recent_[0].*which, recent_[1].*which, ids, i),
+                                 look_up(recent_[2].*which, recent_[3].*which, ids, i));
+        };
+        found |= lane_bits(recent(&Recent::ids) == id) << i;
+        places[b] = recent(&Recent::kept);
+    }
+    std::uint32_t left = ((1u << kStrip) - 1) & ~found;
+    constexpr int kMany = 8; // new ones: cheaper all at once than one by one
+    if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
+    while (left != 0) {
+        const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
+        const Ints place(find_or_keep(id));
+        left &= ~lanes_of_number(ids, id);
+        for (std::size_t b = 0; b < kBatches; ++b)
+            places[b] = xsimd::select(load(ids, b * Ints::size) == Ints(id), place, places[b]);
+    }
+    for (std::size_t b = 0; b < kBatches; ++b) store(kept, b * Ints::size, places[b]);
+}
+
+/// Sixteen of them as they are, and never found again.
+template <VertexShader S, typename D>
+void SetUps<S, D>::keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
+    begin_sixteen();
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) store(kept, i, Ints(static_cast<std::int32_t>(count_)) + load(kLanes, i));
+    wanted_[count_ / kStrip] = ids;
+    for (const std::int32_t id : ids.v) prefetch_triangle(id);
+    count_ += kStrip;
+}
+
+/// The rest of the last sixteen is one of them.
+template <VertexShader S, typename D> void SetUps<S, D>::fill_up() {
+    for (std::size_t i = count_; i % kStrip != 0; ++i) wanted_[i / kStrip][i % kStrip] = wanted_[i / kStrip][i % kStrip - 1];
+}
+
+template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
+    fill_up();
+    const std::size_t next = (count_ + kStrip - 1) / kStrip * kStrip;
+    if (finished_ == count_) finished_ = next;
+    count_ = next;
+}
+
+/// Without a branch: which of them are kept is anyone's guess.
+template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(std::int32_t id) {
+    Place& place = places_[static_cast<std::size_t>(id) % kPlaces];
+    const bool found = place.id == id;
+    place = {id, found ? place.kept : static_cast<std::int32_t>(count_)};
+    count_ += found ? 0 : 1;
+    const auto kept = static_cast<std::size_t>(place.kept), recent = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
+    wanted_[kept / kStrip][kept % kStrip] = id;
+    recent_[recent / kStrip].ids[recent % kStrip] = id;
+    recent_[recent / kStrip].kept[recent % kStrip] = place.kept;
+    prefetch_triangle(id);
+    return place.kept;
+}
+
+/// The vertex function's numbers of the triangles from the i-th on, a batch of them; `side`: 1 in front, -1 behind.
+template <VertexShader S, typename D>
+void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats side, Sixteen& to) const {
+    const auto vector = [&](std::size_t k, std::size_t first) {
+        return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
+    };
+    const std::array<Vec3T<Floats>, 3> p{vector(0, 0), vector(1, 0), vector(2, 0)};
+    const Vec3T<Floats> ng = cross(p[1] - p[0], p[2] - p[0]) * side, middle = (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
+    std::array<std::array<Floats, kVaryings<S>>, 3> v;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto edge = [k](std::size_t of) { return Floats(of == k ? 1.0f : 0.0f); };
+        Vec2T<Floats> uv(Floats(0.0f), Floats(0.0f));
+        if constexpr (wants_texture_coordinates<S>()) uv = {load(corners[k][3], i), load(corners[k][7], i)};
+        v[k] = numbers<S, Floats>(shader_.vertex(VertexInput<Floats>{
+            p[k], vector(k, 4), uv, ng, middle, {edge(0), edge(1), edge(2)}, *view_of_object_}));
+    }
+    for (std::size_t c = 0; c < kVaryings<S>; ++c) {
+        store(to.n[c], i, v[0][c]);
+        store(to.n1[c], i, v[1][c] - v[0][c]);
+        store(to.n2[c], i, v[2][c] - v[0][c]);
+    }
+    store(to.ng[0], i, ng.x);
+    store(to.ng[1], i, ng.y);
+    store(to.ng[2], i, ng.z);
+}
+
+/// Of the triangles from the i-th on, a batch of them, once their planes and varyings are known: e0·n0 + e1·n1 + e2·n2, with
+/// Σe − e1 − e2 for e0.
+template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::size_t i, Sixteen& to) const {
+    if constexpr (Sixteen::kDirections)
+        for (std::size_t c = 0; c < kVaryings<S>; ++c) {
+            const Floats n = load(to.n[c], i), n1 = load(to.n1[c], i), n2 = load(to.n2[c], i);
+            const auto coefficient = [&](std::size_t k) {
+                return fused(load(to.e1[k], i), n1, fused(load(to.e2[k], i), n2, Floats(load(to.sum[k], i) * n)));
+            };
+            const Floats by_x = coefficient(0), by_y = coefficient(1);
+            store(to.directions[c][0], i, by_x);
+            store(to.directions[c][1], i, by_y);
+            store(to.directions[c][2], i, fused_minus(by_x, load(to.x, i), fused_minus(by_y, load(to.y, i), coefficient(2))));
+        }
+}
+
+/// A bit for each triangle, likewise, all of whose corners' normals are on the side that is seen, and no farther from ng than
+/// leaves of what is interpolated kLeastCosine: its direction errs by at most 40ε·kSteepest / kLeastCosine, 2^-8 (mostly by less
+/// than 2^-12, as steepness and leaning seldom meet).
+template <VertexShader S, typename D>
+std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const Sixteen& of) const {
+    const Vec3T<Floats> ng = view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
+    const Floats of_ng = inverse_sqrt(dot(ng, ng));
+    std::uint32_t all = (1u << Floats::size) - 1;
+    for (const auto& corner : corners) {
+        const Vec3T<Floats> n = view_of_object_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
+        const Floats cosine = dot(n, ng) * inverse_sqrt(dot(n, n)) * of_ng;
+        all &= lane_bits(cosine > Floats(kLeastCosine));
+    }
+    return all << i;
+}
+
+/// Of each of three corners eight numbers: position and u, normal and v.
+template <VertexShader S, typename D>
+void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const {
+    const PackedVertex* all = vertices();
+    std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
+    for (std::size_t i = 0; i < kStrip; ++i) triangles[i] = mesh_->triangles[static_cast<std::size_t>(ids[i]) - first_id_];
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < kStrip; i += Quads::size)
+            for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
+                const auto [x, y, z, w] = load_columns<Quads::size>(
+                    [&](std::size_t lane) { return &all[triangles[i + lane][k]].p.x + first; });
+                x.store_aligned(corners[k][first].at(i));
+                y.store_aligned(corners[k][first + 1].at(i));
+                z.store_aligned(corners[k][first + 2].at(i));
+                if constexpr (wants_texture_coordinates<S>()) w.store_aligned(corners[k][first + 3].at(i));
+            }
+}
+
+/// Returns a bit for each triangle that runs counter-clockwise in the picture. Worked out in doubles, whatever D is; scaled so
+/// that no coefficient of e1, e2 and sum is more than 1.
+template <VertexShader S, typename D>
+std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) const {
+    const Mat4d& m = object_->to_pixel;
+    const auto entry = [&](std::size_t r, std::size_t c) { return Doubles(m[r][c]); };
+    const Doubles left(static_cast<double>(origin_x_)), top(static_cast<double>(origin_y_)), zero(0.0), size(TileGrid::kTileSize);
+    std::uint32_t front = 0;
+    for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
+        std::array<Doubles, 3> x, y, w, d;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto& p = corners[k];
+            const Doubles px = load_doubles(p[0].at(i)), py = load_doubles(p[1].at(i)), pz = load_doubles(p[2].at(i));
+            const auto row = [&](std::size_t r) {
+                return entry(r, 0) * px + entry(r, 1) * py + entry(r, 2) * pz + entry(r, 3);
+            };
+            d[k] = row(2);
+            w[k] = view_.viewport.orthographic ? Doubles(1.0) : d[k];
+            x[k] = row(0) - left * w[k];
+            y[k] = row(1) - top * w[k];
+        }
+        TrianglePlanes<Doubles> planes = triangle_planes(x, y, w, d);
+        front |= lane_bits(planes.determinant < zero) << i;
+        const auto beside = [&](const Doubles& at) {
+            return xsimd::select(w[0] > zero, xsimd::floor(min(max(at / w[0], zero), size)), zero);
+        };
+        const Doubles from_x = beside(x[0]), from_y = beside(y[0]);
+        const auto move = [&](std::array<Doubles, 3>& plane) {
+            plane[2] = fused(plane[0], from_x, fused(plane[1], from_y, plane[2]));
+        };
+        Doubles steepest = zero, greatest = zero;
+        for (auto* plane : {&planes.e1, &planes.e2, &planes.sum}) {
+            move(*plane);
+            steepest = max(steepest, max(abs((*plane)[0]), abs((*plane)[1])));
+            greatest = max(greatest, abs((*plane)[2]));
+        }
+        // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
+        if (view_.viewport.orthographic) move(planes.depth_sum);
+        // Σe is least where the triangle is farthest: eₖ there, of that corner, which is the determinant over w. What M is at
+        // most, counted from the tile's corner: of the plane's way to there and back.
+        const Doubles farthest = max(max(w[0], w[1]), w[2]), most = fused(steepest, Doubles(4.0) * size, greatest);
+        to.easy |= lane_bits(abs(planes.determinant) * Doubles(double{Sixteen::kSteepest}) >= most * farthest) << i;
+        const Doubles scale = Doubles(1.0) / max(steepest, greatest);
+        for (std::size_t c = 0; c < 3; ++c) {
+            store_rounded(to.e1[c], i, planes.e1[c] * scale);
+            store_rounded(to.e2[c], i, planes.e2[c] * scale);
+            store_rounded(to.sum[c], i, planes.sum[c] * scale);
+            store_rounded(to.depth_sum[c], i, planes.depth_sum[c] * scale);
+        }
+        store_rounded(to.x, i, from_x);
+        store_rounded(to.y, i, from_y);
+        store_rounded(to.steepest, i, steepest * scale);
+        store_rounded(to.greatest, i, greatest * scale);
+    }
+    return front;
+}
+
+template <VertexShader S, typename D> void SetUps<S, D>::prefetch_vertices(const StripOf<std::int32_t>& ids) const {
+    const PackedVertex* all = vertices();
+    for (const std::int32_t id : ids.v)
+        for (const std::uint32_t corner : mesh_->triangles[static_cast<std::size_t>(id) - first_id_]) prefetch(&all[corner]);
+}
+
+/// All the waiting for memory at once.
+template <VertexShader S, typename D> void SetUps<S, D>::finish() {
+    if (finished_ == count_) return;
+    fill_up();
+    const std::size_t first = finished_ / kStrip, end = (count_ + kStrip - 1) / kStrip;
+    for (std::size_t i = first; i < end; ++i) prefetch_vertices(wanted_[i]);
+    for (std::size_t i = first; i < end; ++i) set_up(wanted_[i], kept_[i]);
+    finished_ = count_;
+}
+
+/// Of triangles of the object in use.
+template <VertexShader S, typename D> void SetUps<S, D>::set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const {
+    Corners corners;
+    gather_vertices(ids, corners);
+    to.easy = 0;
+    // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
+    std::uint32_t front = set_up_planes(corners, to);
+    if (object_->mirrored) front = ~front;
+    std::uint32_t facing_ones = 0;
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), to);
+        if (Sixteen::kDirections && view_of_object_->smooth && view_of_object_->even()) facing_ones |= facing(i, corners, to);
+    }
+    to.easy &= facing_ones;
+    if (to.easy != 0)
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) set_up_directions(i, to);
+}
+
+} // namespace duet::raster

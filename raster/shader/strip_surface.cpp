@@ -1,0 +1,130 @@
+#include "raster/shader/strip_surface.h"
+
+#include "raster/shader/one_sample.h"
+
+#include "common/vec/robust.h"
+
+namespace duet::raster {
+namespace {
+
+/// Texture coordinates over a triangle, of one sample or a batch: as surface_point() has them, in float, as the barycentrics
+/// are that they follow from.
+template <typename T> struct TriangleUv {
+    Vec2T<T> first{T(0), T(0)}, along_u{T(1), T(0)}, along_v{T(0), T(1)};
+
+    Vec2T<T> at(const T& u, const T& v) const {
+        return {fused(along_u.x, u, fused(along_v.x, v, first.x)), fused(along_u.y, u, fused(along_v.y, v, first.y))};
+    }
+    /// How far they go where the barycentrics go so far.
+    Vec2T<T> step(const T& du, const T& dv) const {
+        return {fused(along_u.x, du, T(along_v.x * dv)), fused(along_u.y, du, T(along_v.y * dv))};
+    }
+};
+
+struct UvTriangle : TriangleUv<float> {
+    bool has_area = true; ///< in the texture
+
+    UvTriangle(const Mesh& mesh, std::size_t triangle) {
+        if (mesh.uvs.empty()) return;
+        const auto& corners = mesh.triangles[triangle];
+        const Vec2 a = mesh.uvs[corners[0]], b = mesh.uvs[corners[1]], c = mesh.uvs[corners[2]];
+        first = a, along_u = b - a, along_v = c - a;
+        has_area = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0;
+    }
+};
+
+/// Those of the triangles of samples side by side, and a bit for each that has an area in the texture.
+struct UvTriangles : TriangleUv<Floats> {
+    std::uint32_t with_area = 0;
+
+    void set(std::uint32_t lanes, const UvTriangle& triangle) {
+        const auto here = lanes_from<float>(lanes);
+        const auto put = [&](Vec2T<Floats>& to, Vec2 from) {
+            to = {xsimd::select(here, Floats(from.x), to.x), xsimd::select(here, Floats(from.y), to.y)};
+        };
+        put(first, triangle.first), put(along_u, triangle.along_u), put(along_v, triangle.along_v);
+        if (triangle.has_area) with_area |= lanes;
+    }
+};
+
+} // namespace
+
+/// As PixelFootprint's.
+float StripSurface::step_scale() const { return static_cast<float>(1 / std::sqrt(samples_per_pixel(*place_, view_))); }
+
+Vec3 StripSurface::bent_normal(std::size_t sample) const {
+    if (!(samples_->seen >> sample & 1)) return {0, 0, 1};
+    const Vec2d pixel = place_->position(sample);
+    return hit_normal(data_.scene, view_, find_hit(geometry_, view_, samples_->id(sample), pixel), pixel,
+                      samples_per_pixel(*place_, view_));
+}
+
+Rgb StripSurface::emitted(std::size_t sample) const {
+    if (!(samples_->seen >> sample & 1)) return {};
+    const Vec2d pixel = place_->position(sample);
+    return hit_emission(data_.scene, view_, find_hit(geometry_, view_, samples_->id(sample), pixel), pixel,
+                        samples_per_pixel(*place_, view_));
+}
+
+/// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
+/// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
+Rgb StripSurface::base_color(std::size_t sample) const {
+    if (!(samples_->seen >> sample & 1)) return {};
+    const Mesh& mesh = *samples_->mesh;
+    const std::size_t triangle = samples_->index(sample);
+    const float u = (*at_.b1)[sample], v = (*at_.b2)[sample];
+    SurfacePoint point;
+    point.object = samples_->object->object;
+    point.primitive = static_cast<std::uint32_t>(triangle);
+    point.material = material_index(data_.scene, point.object, point.primitive);
+    point.time = view_.time;
+    const auto& corners = mesh.triangles[triangle];
+    const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
+    point.p_object = Vec3(a + (b - a) * static_cast<double>(u) + (c - a) * static_cast<double>(v));
+    const UvTriangle uv(mesh, triangle);
+    point.uv = uv.at(u, v);
+    if (data_.scene.needs.footprints && uv.has_area) {
+        const auto step = [&](std::size_t axis) {
+            return uv.step((*at_.b1_steps)[axis][sample], (*at_.b2_steps)[axis][sample]) * step_scale();
+        };
+        point.duv_dx = step(0);
+        point.duv_dy = step(1);
+    }
+    return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
+}
+
+/// The same side by side, of an object that one texture colours.
+RgbT<Floats> StripSurface::base_colors(std::size_t first) const {
+    const std::optional<RgbSlot>& slot = data_.objects[samples_->object->object].one_texture;
+    if (!slot) return ColorSource::base_colors(first);
+    const auto& texture = std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
+    const RgbT<Floats> c = spread<Floats>(slot->value) * data_.texels[texture.image].look_up(texture, texture_places(first));
+    const Floats zero(0.0f), one(1.0f); // as evaluate_reflectance()
+    return {clamp(c.r, zero, one), clamp(c.g, zero, one), clamp(c.b, zero, one)};
+}
+
+/// Triangle by triangle: samples side by side mostly see the same.
+TexturePlaces StripSurface::texture_places(std::size_t first) const {
+    constexpr std::uint32_t kAll = (1u << Floats::size) - 1;
+    TexturePlaces places;
+    places.lanes = samples_->seen >> first & kAll;
+    UvTriangles uv;
+    for (std::uint32_t left = places.lanes; left != 0;) {
+        const std::size_t sample = first + static_cast<std::size_t>(std::countr_zero(left));
+        const std::uint32_t lanes = lanes_of_number(samples_->ids, samples_->ids[sample]) >> first & kAll;
+        uv.set(lanes, UvTriangle(*samples_->mesh, samples_->index(sample)));
+        left &= ~lanes;
+    }
+    places.uv = uv.at(load(*at_.b1, first), load(*at_.b2, first));
+    const auto has_area = lanes_from<float>(uv.with_area);
+    const Floats zero(0.0f), scale(step_scale());
+    const auto step = [&](std::size_t axis) {
+        const Vec2T<Floats> whole = uv.step(load((*at_.b1_steps)[axis], first), load((*at_.b2_steps)[axis], first)) * scale;
+        return Vec2T<Floats>(xsimd::select(has_area, whole.x, zero), xsimd::select(has_area, whole.y, zero));
+    };
+    places.duv_dx = step(0);
+    places.duv_dy = step(1);
+    return places;
+}
+
+} // namespace duet::raster

@@ -1,0 +1,201 @@
+// Where blockers are between a receiver and a light: how close at most, and in the mean.
+#include "raster/shadow/light_cone.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace duet::raster {
+namespace {
+
+/// The middle of cell (x, y) of n × n on a face, unit.
+Vec3 cell_way(std::size_t face, int x, int y, int n) {
+    const float step = 2.0f / static_cast<float>(n);
+    return normalize(from_face(face, {-1 + (static_cast<float>(x) + 0.5f) * step, 1 - (static_cast<float>(y) + 0.5f) * step, 1}));
+}
+
+} // namespace
+
+/// Of each cell of directions, the distance of what is closest that may be in the cone of a receiver there. All of a
+/// cone is within the light's radius of the line from the centre to the receiver: what is seen at the distance d and the
+/// angle ψ beside the receiver is so only if d sin ψ ≤ r.
+void SoftLight::find_closest() {
+    constexpr int kSeen = 2 * kWays;
+    struct Seen {
+        Vec3 way;
+        float distance; ///< at least
+    };
+    std::vector<Seen> seen;
+    const int side = 2 * static_cast<int>(cube_.middle);
+    for (std::size_t face = 0; face < 6; ++face) {
+        if (nearest_[face] == nullptr) continue;
+        for (int y = 0; y < kSeen; ++y)
+            for (int x = 0; x < kSeen; ++x) {
+                const Vec3 way = cell_way(face, x, y, kSeen);
+                const auto texel = [&](int cell) { return std::min(cell * side / kSeen, side - 1); };
+                const float nearness = nearest_[face]->greatest(texel(x), texel(y), texel(x + 1), texel(y + 1));
+                if (nearness > 0) seen.push_back({way, cube_.near / nearness * 0.9999f});
+            }
+    }
+    // Half the diagonals of a cell of each kind, at most, and the texels of the guard that a cell may reach over.
+    const float slack = std::sqrt(2.0f) / kWays + std::sqrt(2.0f) / kSeen + 0.1f;
+    const float cosine = std::cos(slack), sine = std::sin(slack);
+    for (std::size_t face = 0; face < 6; ++face)
+        for (int y = 0; y < kWays; ++y)
+            for (int x = 0; x < kWays; ++x) {
+                const Vec3 way = cell_way(face, x, y, kWays);
+                float closest = kInfinity;
+                for (const Seen& s : seen) {
+                    if (s.distance >= closest) continue;
+                    const float c = dot(way, s.way);
+                    const float beside = c >= cosine  ? 0.0f
+                                         : c < -sine ? 1.0f // behind: only as close as the light itself
+                                                     : std::sqrt(1 - c * c) * cosine - c * sine; // sin(ψ − slack)
+                    if (s.distance * beside <= radius_) closest = s.distance;
+                }
+                closest_[(face * kWays + static_cast<std::size_t>(y)) * kWays + static_cast<std::size_t>(x)] = closest;
+            }
+}
+
+/// As bound(), of all that is around the receiver's direction.
+float SoftLight::first_reach(Vec3 p, std::size_t face, float farthest) const {
+    const Vec3 along = to_face(face, p);
+    const auto cell = [&](float at) {
+        return static_cast<std::size_t>(std::clamp(static_cast<int>((at / along.z + 1) * (0.5f * kWays)), 0, kWays - 1));
+    };
+    const float distance = length(p), closest = closest_[(face * kWays + cell(-along.y)) * kWays + cell(along.x)];
+    if (closest >= std::max(distance, farthest)) return 0;
+    return distance > farthest ? std::min((distance - closest) / (distance - farthest), 1.0f) : 1.0f;
+}
+
+/// How far from the receiver, as a fraction of the way, anything in the parts of the map can stand.
+float SoftLight::bound(const Faces& faces, float farthest) const {
+    float bound = 0;
+    for (std::size_t i = 0; i < faces.count; ++i) {
+        const auto& [face, cone, window] = *faces.parts[i];
+        const float nearness = nearest_[face]->greatest(window.x0, window.y0, window.x1, window.y1);
+        if (!(nearness > 0)) continue;
+        const float depth = cube_.near / nearness * 0.9999f, distance = length(cone.p);
+        // What is at the fraction f of the way is no farther from the centre than |p| (1 − f) + r f; and, where one
+        // face sees all, no deeper than p.z (1 − f) + z f.
+        if (distance > farthest) bound = std::max(bound, (distance - depth) / (distance - farthest));
+        else bound = 1;
+        if (faces.count > 1) continue;
+        const float deepest = highest(cone.corners_z);
+        if (cone.p.z > deepest) bound = std::min(bound, (cone.p.z - depth) / (cone.p.z - deepest));
+    }
+    return bound;
+}
+
+/// What of a row of texels, or of the nearest in blocks of them, hides a part of the light, and how much of it.
+struct SoftLight::Found {
+    Floats::batch_bool_type blocks;
+    Floats fraction; ///< of the way
+    Floats margin;   ///< half a texel, or a block, there, as a part of the light's edges
+};
+
+SoftLight::Blockers SoftLight::search(const Faces& faces) const {
+    Blockers blockers;
+    for (std::size_t i = 0; i < faces.count; ++i)
+        add_blockers(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    return blockers;
+}
+
+/// The same, not of some texels all over the windows, but of those around which blockers may be.
+SoftLight::Blockers SoftLight::search_closely(const Faces& faces) const {
+    Blockers blockers;
+    for (std::size_t i = 0; i < faces.count; ++i) add_blocks(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    return blockers;
+}
+
+/// Adds up at which fraction of the way blockers in a window stand. Each counts by how much of the light it hides: its
+/// size as seen from the receiver.
+void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
+    const int rows = std::min(window.rows(), kSearchedRows);
+    const float down = static_cast<float>(window.rows()) / static_cast<float>(rows),
+                across = static_cast<float>(window.columns()) / kSearchedSide;
+    // As in dark_taps: a texel's point is over the receiver's plane where height + over · nearness > 0.
+    const float per_texel = cube_.near / cube_.scale;
+    const Floats over(-dot(cone.n, cone.p) - cone.slack), n_x(cone.n.x * per_texel);
+    const int width = 2 * static_cast<int>(cube_.middle);
+    // Of a narrow window whole rows are loaded, wherever they begin.
+    const bool narrow = window.columns() <= kSearchedSide;
+    const int left = narrow ? std::min(window.x0, width - kSearchedSide) : window.x0;
+    for (int first = 0; first < kSearchedSide; first += static_cast<int>(Floats::size)) {
+        const Floats column = load(kLanesAsFloats, 0) + Floats(static_cast<float>(first));
+        const Floats x = Floats(static_cast<float>(left)) + (narrow ? column : xsimd::floor(column * Floats(across)));
+        const auto inside = (x >= Floats(static_cast<float>(window.x0))) & (x <= Floats(static_cast<float>(window.x1)));
+        const Ints places = truncated(x);
+        const Floats from_middle = x + Floats(0.5f - cube_.middle), height_x = n_x * from_middle;
+        for (int row = 0; row < rows; ++row) {
+            const int y = window.y0 + static_cast<int>(static_cast<float>(row) * down);
+            const float up = cube_.middle - 0.5f - static_cast<float>(y);
+            const float* line = cube_.faces[face]->nearness().pixels().data() + y * width;
+            const Floats nearness = narrow ? Floats::load_unaligned(line + left + first) : gather(line, places);
+            const Floats height = height_x + Floats(cone.n.y * per_texel * up + cone.n.z * cube_.near);
+            const auto above = inside & (height + over * nearness > Floats(0.0f));
+            if (!xsimd::any(above)) continue;
+            const Found found = this->found(cone, above, nearness, from_middle, up, 1);
+            if (!xsimd::any(found.blocks)) continue;
+            const Floats none(0.0f), about = found.fraction + found.margin, weight = Floats(1.0f) / (about * about);
+            blockers.weights += xsimd::hadd(xsimd::select(found.blocks, weight, none));
+            blockers.sum += xsimd::hadd(xsimd::select(found.blocks, weight * found.fraction, none));
+        }
+    }
+}
+
+/// Looks for blocks of texels the nearest of which may hide a part of the light, and then for blockers in them.
+void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
+    int level = 0;
+    Window blocks = window;
+    while (blocks.columns() > kSearchedSide || blocks.rows() > kSearchedRows) {
+        ++level;
+        blocks = {window.x0 >> level, window.y0 >> level, window.x1 >> level, window.y1 >> level};
+    }
+    const ImageFloat& image = nearest_[face]->level(level);
+    const int texels = 1 << level;
+    const float block = static_cast<float>(texels), per_texel = cube_.near / cube_.scale;
+    // Wherever in its block the nearest is, it is over the plane.
+    const float rim = 0.5f * (block - 1) * (std::abs(cone.n.x) + std::abs(cone.n.y)) * per_texel;
+    const Floats over(-dot(cone.n, cone.p) - cone.slack), n_x(cone.n.x * per_texel);
+    const bool rows = image.width() >= kSearchedSide; // then whole ones are loaded, wherever they begin
+    const int start = rows ? std::min(blocks.x0, image.width() - kSearchedSide) : 0;
+    for (int first = start; first <= blocks.x1; first += static_cast<int>(Floats::size)) {
+        const Floats x = min(load(kLanesAsFloats, 0) + Floats(static_cast<float>(first)), Floats(static_cast<float>(image.width() - 1)));
+        const Floats from_middle = (x + Floats(0.5f)) * Floats(block) - Floats(cube_.middle), height_x = n_x * from_middle;
+        const Ints places = truncated(x);
+        for (int y = blocks.y0; y <= blocks.y1; ++y) {
+            const float up = cube_.middle - (static_cast<float>(y) + 0.5f) * block;
+            const float* line = image.pixels().data() + y * image.width();
+            const Floats nearness = rows ? Floats::load_unaligned(line + first) : gather(line, places);
+            const Floats height = height_x + Floats(cone.n.y * per_texel * up + cone.n.z * cube_.near - rim);
+            const auto above = height + over * nearness > Floats(0.0f);
+            if (!xsimd::any(above)) continue;
+            const auto found = this->found(cone, above, nearness, from_middle, up, block).blocks;
+            for (std::uint32_t left = lane_bits(found); left != 0; left &= left - 1) {
+                const int i = first + std::countr_zero(left);
+                if (i < blocks.x0 || i > blocks.x1) continue;
+                const int x0 = i * texels, y0 = y * texels;
+                add_blockers(cone, face, {std::max(x0, window.x0), std::max(y0, window.y0), std::min(x0 + texels - 1, window.x1),
+                                          std::min(y0 + texels - 1, window.y1)}, blockers);
+            }
+        }
+    }
+}
+
+SoftLight::Found SoftLight::found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right,
+                                  float up, float block) const {
+    const Floats depth = Floats(cube_.near) / nearness, per_scale = depth * Floats(1 / cube_.scale);
+    const Vec3T<Floats> to{right * per_scale - Floats(cone.p.x), Floats(up) * per_scale - Floats(cone.p.y),
+                           depth - Floats(cone.p.z)};
+    const Floats fraction = dot(spread<Floats>(cone.o.axis), to) * Floats(cone.per_height);
+    // Where the cone is narrower than a texel, half a texel beside it still belongs to what the filter sees: but not the
+    // next facet of a concave surface (kConcave).
+    const Floats none(0.0f), margin = per_scale * Floats(0.5f * block * cone.per_metre);
+    const auto steps_up = block > 1 ? above : dot(spread<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(kConcave));
+    return {above & (fraction > none) & (fraction < Floats(1.0f)) & cone.meets(to, fraction, xsimd::select(steps_up, margin, none)),
+            fraction, margin};
+}
+
+} // namespace duet::raster

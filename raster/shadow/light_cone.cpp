@@ -1,0 +1,76 @@
+#include "raster/shadow/light_cone.h"
+
+#include <algorithm>
+
+namespace duet::raster {
+namespace {
+
+/// What is seen, in a face, of the part before it of the hull of a point and a quadrangle.
+void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes<Quads>& z, float clip, float& left, float& right,
+               float& bottom, float& top) {
+    left = bottom = kInfinity, right = top = -kInfinity;
+    const auto cover = [&](Vec3 q) {
+        const float per_depth = 1 / q.z;
+        left = std::min(left, q.x * per_depth), right = std::max(right, q.x * per_depth);
+        bottom = std::min(bottom, q.y * per_depth), top = std::max(top, q.y * per_depth);
+    };
+    const auto cover_edge = [&](Vec3 a, Vec3 b) {
+        if ((a.z >= clip) != (b.z >= clip)) {
+            const Vec3 q = a + (b - a) * ((clip - a.z) / (b.z - a.z));
+            cover({q.x, q.y, clip});
+        }
+    };
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = {x[i], y[i], z[i]};
+    if (p.z >= clip) cover(p);
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (corners[i].z >= clip) cover(corners[i]);
+        cover_edge(p, corners[i]);
+        cover_edge(corners[i], corners[(i + 1) % 4]);
+    }
+}
+
+} // namespace
+
+/// The part of a face that the cone, up to a fraction of the way, covers; none if it misses the face. `whole`: set to
+/// false where the cone goes on beyond the face.
+std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach, bool& whole) const {
+    const float clip = 1e-4f * (length(cone.p) + radius_); // before the light's plane all of the map is covered
+    const Quads t(reach), one(1.0f);
+    const Quads qx = Quads(cone.p.x) + (cone.corners_x - Quads(cone.p.x)) * t,
+                qy = Quads(cone.p.y) + (cone.corners_y - Quads(cone.p.y)) * t,
+                qz = Quads(cone.p.z) + (cone.corners_z - Quads(cone.p.z)) * t;
+    float left, right, bottom, top;
+    const bool before = lowest(qz) >= clip && cone.p.z >= clip;
+    if (before) {
+        const Quads per_depth = one / qz, x = qx * per_depth, y = qy * per_depth;
+        const float px = cone.p.x / cone.p.z, py = cone.p.y / cone.p.z;
+        left = std::min(px, lowest(x)), right = std::max(px, highest(x));
+        bottom = std::min(py, lowest(y)), top = std::max(py, highest(y));
+    } else {
+        clip_hull(cone.p, Lanes<Quads>(qx), Lanes<Quads>(qy), Lanes<Quads>(qz), clip, left, right, bottom, top);
+    }
+    if (!before || left < -1 || right > 1 || bottom < -1 || top > 1) whole = false;
+    if (left > 1 || right < -1 || bottom > 1 || top < -1 || !(left <= right)) return std::nullopt;
+    const int last = 2 * static_cast<int>(cube_.middle) - 1;
+    const auto place = [&](float at, float margin) { // with every texel of which the filter would take a part
+        return std::clamp(static_cast<int>(cube_.middle + std::clamp(at, -1.0f, 1.0f) * cube_.scale + margin), 0, last);
+    };
+    return Window{place(left, -0.5f), place(-top, -0.5f), place(right, 0.5f), place(-bottom, 0.5f)};
+}
+
+/// What the cone covers up to a fraction of the way: parts of one face or of several.
+SoftLight::Faces SoftLight::faces(const Cone& cone, std::size_t main_face, const Outline& outline, Vec3 p, Vec3 n, float reach) const {
+    Faces result;
+    bool whole = true;
+    if (const auto window = this->window(cone, reach, whole)) result.add(main_face, cone, *window);
+    for (std::size_t face = 0; !whole && face < 6; ++face) {
+        if (face == main_face || cube_.faces[face] == nullptr) continue;
+        const Cone there(kind_, turned(outline, face), to_face(face, p), to_face(face, n), cone.slack);
+        bool other = true;
+        if (const auto window = this->window(there, reach, other)) result.add(face, there, *window);
+    }
+    return result;
+}
+
+} // namespace duet::raster

@@ -1,0 +1,153 @@
+#include "raster/shadow/shadow_map.h"
+
+#include "raster/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+
+ShadowMap::ShadowMap(const Prepared& casters, const Camera& camera, int side, int threads)
+    : view_(CameraModel({camera, side, side}).through()),
+      orthographic_(camera.projection == Camera::Projection::kOrthographic), layered_(casters.data().has_layers()) {
+    Settings settings;
+    settings.output = Output::kNearness;
+    settings.threads = threads;
+    Control control;
+    nearness_ = std::move(render(casters, {camera, side, side}, settings, control).nearness);
+}
+
+std::optional<Vec3d> ShadowMap::place(Vec3d p, double margin) const {
+    const Vec4d h = view_.world_to_pixel * Vec4d(p, 1.0);
+    const double most = side() - margin;
+    if (!(h.z > view_.near) || !(h.x >= margin * h.w && h.x <= most * h.w && h.y >= margin * h.w && h.y <= most * h.w))
+        return std::nullopt;
+    return Vec3d(h.x / h.w, h.y / h.w, h.z);
+}
+
+double ShadowMap::texel(double depth) const {
+    return orthographic_ ? length(view_.origin_dx) : length(view_.direction_dx) * depth;
+}
+
+/// The receiver's plane in the map, as a linear function of texels, larger where the plane is nearer to the light; and how
+/// far off it what is seen may be, and is still the receiver's surface.
+struct ShadowMap::Plane {
+    double at, dx, dy;     ///< at the receiver's place; its change from texel to texel
+    double rounding;       ///< everywhere
+    /// More, per texel beside the place: over the plane, and under it; each on the light's side of the receiver, and on the other.
+    Vec2d rising, falling;
+};
+
+/// The plane n·(q − p) = 0 meets the ray o + d·w of a texel at the depth d = n·(p − o)/n·w. Seen from a point o is the
+/// same for all and 1/d is linear in w; seen from infinitely far w is the same, and d is linear in o.
+ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
+    const Vec3d n = receiver.n;
+    const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
+    const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
+    const double rounding = (2 * receiver.error + place.z * 0x1p-22) / towards, texel = this->texel(place.z) / towards;
+    // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
+    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them, before and behind it.
+    const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), elevation = cosine / max(sine, 1e-9);
+    const double scale = orthographic_ ? 1 : view_.near / sqr(place.z); // of 1/d, from depths
+    const auto heights = [&](double of_elevation) {
+        const double t = min(kSteepest, of_elevation * elevation);
+        return Vec2d(t / (cosine - t * sine), kSteepest / (cosine + kSteepest * sine)) * (texel * scale);
+    };
+    const Vec2d rising = heights(kOfElevation), falling = heights(kFalling);
+    if (orthographic_)
+        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, rising, falling};
+    const double at = view_.near / place.z;
+    // 1/d grows by n·dw/(n·w d) for a change dw of w.
+    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards, rounding * scale,
+            rising, falling};
+}
+
+namespace {
+
+/// The quadratic B-spline's weights of four samples, the first at −1.5 + (1 − f) from the middle, f in [0, 1): what
+/// the box of a texel, blurred by a box of a texel twice, leaves of each.
+std::array<double, 4> spline(double f) {
+    const auto b = [](double x) {
+        x = std::abs(x);
+        return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * sqr(1.5 - x) : 0.0;
+    };
+    return {b(1 + f), b(f), b(1 - f), b(2 - f)};
+}
+
+/// What a box of 4 texels takes of five, the first of which it has left by f of its width, f in [0, 1).
+std::array<double, 5> box(double f) { return {(1 - f) / 4, 0.25, 0.25, 0.25, f / 4}; }
+
+} // namespace
+
+float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
+    if (dot(receiver.n, view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y) >= 0) return 1;
+    const double first = layered_ ? kLayeredRadius : 0.5;
+    const double left = std::floor(place.x - first), top = std::floor(place.y - first);
+    const double fx = place.x - first - left, fy = place.y - first - top;
+    const int x0 = static_cast<int>(left), y0 = static_cast<int>(top);
+    return layered_ ? lit_fraction<5>(receiver, place, x0, y0, box(fx), box(fy))
+                    : lit_fraction<4>(receiver, place, x0 - 1, y0 - 1, spline(fx), spline(fy));
+}
+
+/// How high over the receiver, on the light's ray through it, is the plane of what texel (x, y) sees. Nearness of a surface
+/// that rises more and more from the receiver to the texel and on is a convex function f of the texels' coordinates, of which
+/// f(c) − (f(c + e) − f(c)) |r| is at most f(c − r e): taken away from the receiver, differences never put it into the shade
+/// of its own valley, be creases where they may.
+double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const {
+    const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
+    // Slopes away from the receiver over its plane. Of a convex surface three in a row grow; of the middle one in size a
+    // single step from one thing to another is no part.
+    const auto rise = [&](int step_x, int step_y) {
+        const int last = side() - 1;
+        const auto at = [&](int i) { return seen(std::clamp(x + i * step_x, 0, last), std::clamp(y + i * step_y, 0, last)); };
+        const double here = at(0), next = at(1), before = here - at(-1), after = next - here, beyond = at(2) - next;
+        return max(min(before, after), min(max(before, after), beyond)) - (plane.dx * step_x + plane.dy * step_y);
+    };
+    return seen(x, y) - (plane.at + plane.dx * right + plane.dy * below) - rise(right < 0 ? -1 : 1, 0) * std::abs(right) -
+           rise(0, below < 0 ? -1 : 1) * std::abs(below);
+}
+
+/// Whether the four texels about the place all see what is over the receiver: then its ray goes through that, for of what
+/// is convex they are corners of a part. A roof that lies on a steep wall does so where most texels see it under the
+/// wall's plane, as they would see what is beyond a ridge.
+bool ShadowMap::is_covered(const Plane& plane, Vec3d place) const {
+    const int x = static_cast<int>(std::floor(place.x - 0.5)), y = static_cast<int>(std::floor(place.y - 0.5));
+    const auto over = [&](int column, int row) { return height_at_receiver(plane, place, column, row) > kFourDepths * plane.rounding; };
+    return over(x, y) && over(x + 1, y) && over(x, y + 1) && over(x + 1, y + 1);
+}
+
+/// The texels from x0, y0 on, weighed.
+template <std::size_t N>
+float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
+                              const std::array<double, N>& down) const {
+    const Plane plane = this->plane(receiver, place);
+    constexpr int kSide = static_cast<int>(N);
+    double dark = 0, contact = 0, known = 0, under = 0;
+    bool touched = false; // also by a texel of no weight
+    for (int row = 0; row < kSide; ++row)
+        for (int column = 0; column < kSide; ++column) {
+            const int x = x0 + column, y = y0 + row;
+            const double seen = this->seen(x, y);
+            const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
+            const double change = plane.dx * right + plane.dy * below, over = seen - (plane.at + change);
+            const double beside = max(std::abs(right), std::abs(below));
+            const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
+            if (over < -slack(plane.falling)) continue;
+            const bool near = over <= slack(plane.rising);
+            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
+            if (blocks && seen <= plane.at) continue;
+            const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
+            (over < -plane.rounding ? under : known) += weight;
+            if (blocks) (near ? contact : dark) += weight;
+            touched |= blocks && near;
+        }
+    // Where facets are about as fine as the map's texels, its differences mix the slopes of several, and some seem to rise over
+    // the receiver's plane. Of what lies on the receiver's surface most texels tell; of a veil on it those that it stops.
+    if (layered_ || dark + contact > kContactsShade * (known + under)) dark += contact;
+    if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
+    // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
+    if (!touched) known += under;
+    return static_cast<float>(1 - dark / max(known, kLeastKnown));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,306 @@
+#include "raster/shadow/shadows.h"
+
+#include "raster/screen/screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace duet::raster {
+namespace {
+
+constexpr int kSeenWidth = 256;                      ///< pixels
+constexpr double kGuard = 4;                         ///< texels
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20);  ///< over all cubes, at most
+constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< and over all other maps
+constexpr int kLeastSide = 64;                        ///< texels, of any map
+constexpr double kFloor = 1e-4;                       ///< of the scene's size: how far things may dip into a floor
+
+/// A scene's prepared data, with some of its objects: what a shadow map needs of it.
+PreparedData with_objects(const PreparedData& data, const std::vector<bool>& kept) {
+    PreparedData result{.scene = data.scene,
+                        .objects = data.objects,
+                        .polygonal = {},
+                        .spheres = {},
+                        .irradiance = data.irradiance,
+                        .geometries = data.geometries};
+    const auto keep = [&](const std::vector<std::uint32_t>& objects, std::vector<std::uint32_t>& list) {
+        for (const std::uint32_t object : objects)
+            if (kept[object]) list.push_back(object);
+    };
+    keep(data.polygonal, result.polygonal);
+    keep(data.spheres, result.spheres);
+    keep(data.open_polygonal, result.open_polygonal);
+    keep(data.open_spheres, result.open_spheres);
+    return result;
+}
+
+Prepared caster_scene(const PreparedData& data, const std::vector<bool>& kept) {
+    return Prepared(std::make_shared<const PreparedData>(with_objects(data, kept)));
+}
+
+Box3 bounds_of(const PreparedData& data, const std::vector<bool>& kept) {
+    Box3 box;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (kept[i]) box.extend(data.objects[i].bounds);
+    return box;
+}
+
+/// Whether the object is a quad that all the scene lies on one side of, and the sun, too: it shades nothing, so that
+/// views need not reach as far as it does.
+bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_way) {
+    const Object& o = scene.objects[object];
+    const auto* list = std::get_if<QuadList>(&scene.shapes[o.shape]);
+    if (list == nullptr || list->quads.size() != 1 || o.moving) return false;
+    const Quad& quad = list->quads.front();
+    const Vec3d p = transform_point(Mat4d(o.to_world), Vec3d(quad.corner));
+    const Vec3d u = transform_vector(Mat4d(o.to_world), Vec3d(quad.u)), v = transform_vector(Mat4d(o.to_world), Vec3d(quad.v));
+    Vec3d n = normalize(cross(u, v));
+    if (dot(n, Vec3d(sun_way)) > 0) n = -n;
+    const Box3& box = scene.bounds;
+    double lowest = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3 q(corner & 1u ? box.high.x : box.low.x, corner & 2u ? box.high.y : box.low.y,
+                     corner & 4u ? box.high.z : box.low.z);
+        lowest = min(lowest, dot(n, Vec3d(q) - p));
+    }
+    return lowest > -kFloor * length(Vec3d(box.diagonal()));
+}
+
+bool only_shines(const Scene& scene, std::uint32_t object) {
+    const Object& o = scene.objects[object];
+    return std::all_of(o.materials.begin(), o.materials.end(),
+                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+}
+
+/// What the scene's camera sees, through a picture of few pixels.
+std::vector<SeenPoint> seen_points(const PreparedData& data, int threads) {
+    const Scene& scene = data.scene;
+    const double aspect = static_cast<double>(scene.height) / scene.width;
+    const View view{scene.camera, kSeenWidth, static_cast<int>(std::clamp(kSeenWidth * aspect, 1.0, 4.0 * kSeenWidth))};
+    Settings settings;
+    settings.output = Output::kNearness;
+    settings.threads = threads;
+    Control control;
+    const Prepared all = caster_scene(data, std::vector<bool>(scene.objects.size(), true));
+    const Screen screen(CameraModel(view).through(), {}, render(all, view, settings, control).nearness);
+    std::vector<SeenPoint> result;
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x)
+            if (const std::optional<Vec3> p = screen.seen(x, y))
+                result.push_back({Vec3d(screen.absolute(*p)), static_cast<double>(screen.pixel_size(screen.depth(x, y)))});
+    return result;
+}
+
+std::vector<SurfaceLight> surface_lights(const Scene& scene, const std::vector<std::size_t>& lights) {
+    std::vector<SurfaceLight> result;
+    for (const std::size_t i : lights) result.push_back(std::get<SurfaceLight>(scene.lights[i]));
+    return result;
+}
+
+/// The light's plane, rounded: what primitives of one object that lie in one plane have in common.
+std::array<long, 4> plane_key(const SurfaceLight& light, double scene_size) {
+    const Emitter e = Emitter::of(light);
+    const auto rounded = [](double x) { return std::lround(x * 1e3); };
+    return {rounded(e.normal.x), rounded(e.normal.y), rounded(e.normal.z),
+            rounded(dot(e.normal, e.center) / scene_size * 10)};
+}
+
+/// A light cut into n × n of its like; a triangle or a ball stays whole.
+std::vector<Emitter> pieces(const Emitter& emitter, int n) {
+    if (emitter.kind != Emitter::Kind::kParallelogram || n == 1) return {emitter};
+    std::vector<Emitter> result(static_cast<std::size_t>(n * n), emitter);
+    for (int i = 0; i < n * n; ++i) {
+        Emitter& piece = result[static_cast<std::size_t>(i)];
+        piece.center = emitter.center + emitter.u * ((i % n + 0.5) / n - 0.5) + emitter.v * ((i / n + 0.5) / n - 0.5);
+        piece.u = emitter.u / static_cast<double>(n), piece.v = emitter.v / static_cast<double>(n);
+    }
+    return result;
+}
+
+} // namespace
+
+Shadows::Shadows(const PreparedData& data, const Settings& settings)
+    : scene_(data.scene), scene_size_(static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30),
+      side_(settings.shadow_map_side), cube_side_(settings.shadow_map_side / 2) {
+    sources_ = find_sources(scene_, settings.shadow_cells);
+    const Camera& camera = scene_.camera;
+    const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 && camera.shutter_open != camera.shutter_close;
+    for (int i = 0; i < (moving ? kMoments : 1); ++i)
+        moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) * (i + 0.5) / kMoments
+                                  : camera.shutter_open);
+    std::vector<SeenPoint> seen;
+    if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
+        seen = seen_points(data, settings.threads);
+    fit_sides(data, seen);
+    source_of_.assign(scene_.lights.size(), sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
+        sources_[i].moments.resize(moments_.size());
+        const std::vector<Camera> views = views_of(data, seen, sources_[i]);
+        for (std::size_t k = 0; k < moments_.size(); ++k) draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
+    }
+}
+
+/// Of suns, and of spots that are narrow enough: the cameras of their maps, the same at all moments. Other lights have cubes; a
+/// sun over which nothing stands has no maps.
+std::vector<Camera> Shadows::views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const {
+    const Light& light = scene_.lights[source.lights.front()];
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuard);
+    const auto* sun = std::get_if<SunLight>(&light);
+    if (sun == nullptr) return {};
+    std::vector<bool> casts(scene_.objects.size());
+    for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
+    const Box3 bounds = bounds_of(data, casts);
+    if (bounds.empty()) return {};
+    return sun_views(*sun, bounds, scene_.camera, seen, side_, kGuard);
+}
+
+/// Coarser maps where there are so many that they would take more than kViewTexels or kCubeTexels.
+void Shadows::fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen) {
+    std::size_t views = 0, cubes = 0;
+    for (const Source& source : sources_) {
+        const std::size_t its_views = views_of(data, seen, source).size();
+        views += its_views;
+        const bool sun = std::holds_alternative<SunLight>(scene_.lights[source.lights.front()]);
+        if (its_views == 0 && !sun) cubes += std::max<std::size_t>(source.cells.size(), 1);
+    }
+    const auto fit = [&](int& side, std::size_t maps, std::int64_t most) {
+        const auto all = static_cast<std::int64_t>(maps * moments_.size());
+        while (side > kLeastSide && all * side * side > most) side = std::max(side / 2, kLeastSide), coarser_ = true;
+    };
+    fit(side_, views, kViewTexels);
+    fit(cube_side_, 6 * cubes, kCubeTexels);
+}
+
+std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells) {
+    std::vector<Source> sources;
+    std::map<std::pair<std::uint32_t, std::array<long, 4>>, std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&scene.lights[i]);
+        if (surface == nullptr) {
+            sources.push_back({{i}, {}, false, {}});
+        } else {
+            const bool lamp = only_shines(scene, surface->object);
+            groups[{surface->object, lamp ? std::array<long, 4>{} : plane_key(*surface, scene_size_)}].push_back(i);
+        }
+    }
+    for (auto& [key, lights] : groups) {
+        const std::vector<SurfaceLight> surfaces = surface_lights(scene, lights);
+        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_shines(scene, key.first), {}});
+    }
+    if (sources.size() <= kMostSources) return sources;
+    const float radius = static_cast<float>(scene_size_ / 2);
+    const auto power = [&](const Source& source) {
+        float sum = 0;
+        for (const std::size_t i : source.lights) sum += light_power(scene.lights[i], radius);
+        return sum;
+    };
+    std::stable_sort(sources.begin(), sources.end(), [&](const Source& a, const Source& b) { return power(a) > power(b); });
+    for (std::size_t i = kMostSources; i < sources.size(); ++i) unshadowed_ += sources[i].lights.size();
+    sources.resize(kMostSources);
+    return sources;
+}
+
+void Shadows::draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source, double moment,
+                   Maps& maps) {
+    std::vector<bool> kept(scene_.objects.size(), true);
+    const Light& light = scene_.lights[source.lights.front()];
+    if (!views.empty()) {
+        const Prepared casters = caster_scene(data, kept);
+        for (Camera camera : views) {
+            camera.shutter_open = camera.shutter_close = moment;
+            maps.views.emplace_back(casters, camera, side_, settings.threads);
+            memory_bytes_ += std::int64_t{4} * side_ * side_;
+        }
+        return;
+    }
+    if (std::holds_alternative<SunLight>(light)) return;
+    const auto* surface_light = std::get_if<SurfaceLight>(&light);
+    if (surface_light == nullptr) {
+        const auto* spot = std::get_if<SpotLight>(&light);
+        const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
+        maps.cubes.push_back(draw_cube(caster_scene(data, kept), center, nullptr, true, moment, cube_side_, settings.threads));
+        return;
+    }
+
+    const SurfaceLight& surface = *surface_light;
+    if (source.lamp) kept[surface.object] = false;
+    const Prepared casters = caster_scene(data, kept);
+    for (const Emitter& cell : source.cells) {
+        const bool flat = cell.kind != Emitter::Kind::kBall;
+        // Beside it or on it there may be other things in its plane: it looks from just before that.
+        const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
+        maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
+                                          surface.two_sided, moment, cube_side_ / 2, settings.threads),
+                                cell);
+        memory_bytes_ += maps.cells.back().memory_bytes();
+    }
+}
+
+CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+                           int side, int threads) {
+    CubeMap cube;
+    cube.center = Vec3d(Vec3(center)); // as cameras round it
+    if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
+    std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (i == 5 && plane != nullptr && !back) continue;
+        views[i].shutter_open = views[i].shutter_close = moment;
+        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], side, threads);
+        memory_bytes_ += std::int64_t{4} * side * side;
+    }
+    cube.near = static_cast<float>(cube.faces[0]->near());
+    cube.middle = static_cast<float>(side) / 2;
+    cube.scale = cube.middle - static_cast<float>(CubeMap::kGuard);
+    return cube;
+}
+
+float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const {
+    if (source_of_[light] == sources_.size()) return 1;
+    const Source& source = sources_[source_of_[light]];
+    const SurfacePoint& surface = point.surface;
+    // Of a smooth mesh it is the surface that the facets stand for, as a path tracer's shadow rays start there: light comes
+    // over its horizon, to facets, too, that are turned away from it, and would be lit whatever is before them.
+    const double error = static_cast<double>(dot(abs(point.horizon), surface.p_error));
+    Receiver receiver{Vec3d(surface.p) + Vec3d(surface.lift), Vec3d(point.horizon), error};
+    std::size_t moment = 0;
+    if (moments_.size() > 1) {
+        const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
+        const double part = (static_cast<double>(surface.time) - open) / (close - open) * kMoments;
+        moment = static_cast<std::size_t>(std::clamp(part, 0.0, kMoments - 1.0));
+        const Object& object = scene_.objects[surface.object];
+        if (object.moving) {
+            const ObjectTransform now = object_transform(object, surface.time),
+                                  then = object_transform(object, static_cast<float>(moments_[moment]));
+            const Mat4d way = Mat4d(then.to_world) * Mat4d(now.to_object);
+            receiver.p = transform_point(way, receiver.p);
+            receiver.n = normalize(transform_normal(inverse_affine(way), receiver.n));
+            receiver.error *= 4; // the maps' rounding, too
+        }
+    }
+    return visibility(source, source.moments[moment], receiver, taps);
+}
+
+float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
+    if (!source.cells.empty()) {
+        // The samples of a pixel share the pieces among them, too, where there is one for each.
+        const std::size_t count = maps.cells.size();
+        const bool share = taps.count == TapRange::kBlock && count % TapRange::kBlocks == 0;
+        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share ? TapRange::kBlocks : 1;
+        float sum = 0;
+        for (std::size_t i = first; i < count; i += step) sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
+        return sum * static_cast<float>(step) / static_cast<float>(count);
+    }
+    for (const CubeMap& cube : maps.cubes) {
+        const Vec3 way(cube.frame.to_local(receiver.p - cube.center));
+        const ShadowMap& face = *cube.faces[cube_face(way)];
+        const std::optional<Vec3d> place = face.place(receiver.p, ShadowMap::kMargin);
+        return place ? face.lit_fraction(receiver, *place) : 1;
+    }
+    for (const ShadowMap& view : maps.views)
+        if (const std::optional<Vec3d> place = view.place(receiver.p, ShadowMap::kMargin)) return view.lit_fraction(receiver, *place);
+    return 1;
+}
+
+} // namespace duet::raster

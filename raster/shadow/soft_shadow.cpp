@@ -1,0 +1,134 @@
+#include "raster/shadow/soft_shadow.h"
+
+#include "raster/shadow/light_cone.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr int kNarrowings = 4;
+constexpr float kWorthwhile = 0.8f; ///< a narrower cone is worth another look if it is so much narrower
+constexpr double kThinnest = 1e5; ///< length over width: what is thinner has no outline in floats, and counts as a ball
+
+} // namespace
+
+SoftLight::SoftLight(CubeMap cube, const Emitter& emitter) : cube_(std::move(cube)), kind_(emitter.kind) {
+    if (kind_ == Emitter::Kind::kBall) {
+        radius_ = static_cast<float>(emitter.radius);
+    } else {
+        const float part = kind_ == Emitter::Kind::kTriangle ? 1.0f / 3 : 0.5f;
+        u_ = Vec3(cube_.frame.to_local(emitter.u)), v_ = Vec3(cube_.frame.to_local(emitter.v));
+        corner_ = (u_ + v_) * -part;
+        radius_ = std::max({length(corner_), length(corner_ + u_), length(corner_ + v_), length(corner_ + u_ + v_)});
+        // In doubles: the difference of products is all of a sliver's area.
+        const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
+        const double over = 1 / dot(n, n);
+        const Vec3d dual_u = cross(v, n) * over, dual_v = cross(n, u) * over;
+        dual_u_ = Vec3(cube_.frame.to_local(dual_u)), dual_v_ = Vec3(cube_.frame.to_local(dual_v));
+        const double thinness = static_cast<double>(radius_) * max(length(dual_u), length(dual_v));
+        if (!(thinness < kThinnest)) kind_ = Emitter::Kind::kBall; // also where n = 0
+    }
+    for (std::size_t face = 0; face < 6; ++face) {
+        if (kind_ != Emitter::Kind::kBall) flat_[face] = Outline{{}, corner_, u_, v_, dual_u_, dual_v_}.turned(face);
+        if (cube_.faces[face]) nearest_[face] = std::make_unique<NearestPyramid>(before_light(face));
+    }
+    find_closest();
+}
+
+/// What a face sees, but for what stands behind a flat light that shines to one side: a ceiling around it would be nearest
+/// to all.
+ImageFloat SoftLight::before_light(std::size_t face) const {
+    ImageFloat image = cube_.faces[face]->nearness();
+    if (kind_ == Emitter::Kind::kBall || cube_.faces[5] != nullptr) return image;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const float right = static_cast<float>(x) + 0.5f - cube_.middle, up = cube_.middle - static_cast<float>(y) - 0.5f;
+            if (from_face(face, {right, up, cube_.scale}).z < 0) image(x, y) = 0;
+        }
+    return image;
+}
+
+SoftLight::Outline SoftLight::Outline::turned(std::size_t face) const {
+    return {to_face(face, axis), to_face(face, corner), to_face(face, u),
+            to_face(face, v),    to_face(face, dual_u), to_face(face, dual_v)};
+}
+
+SoftLight::Outline SoftLight::turned(const Outline& outline, std::size_t face) const {
+    if (kind_ == Emitter::Kind::kBall) return outline.turned(face);
+    Outline result = flat_[face];
+    result.axis = to_face(face, outline.axis);
+    return result;
+}
+
+std::optional<SoftLight::Outline> SoftLight::outline_from(Vec3 p) const {
+    if (kind_ != Emitter::Kind::kBall) {
+        if (p.z == 0) return std::nullopt; // nothing is before a receiver in the light's own plane
+        return Outline{{0, 0, p.z < 0 ? 1.0f : -1.0f}, corner_, u_, v_, dual_u_, dual_v_};
+    }
+    const float distance = length(p);
+    if (!(distance > radius_)) return std::nullopt; // nor within its ball
+    const Vec3 axis = -p / distance;
+    const Frame disk = frame_from_normal(axis);
+    // The disk through the centre that fills the cone of the lines that touch the ball.
+    const float radius = radius_ / safe_sqrt(1 - sqr(radius_ / distance));
+    return Outline{axis, {}, disk.s * radius, disk.t * radius, disk.s / radius, disk.t / radius};
+}
+
+float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
+    const Vec3 p(cube_.frame.to_local(receiver.p - cube_.center)), n(cube_.frame.to_local(receiver.n));
+    const std::size_t main_face = cube_face(p);
+    const std::optional<Outline> outline = outline_from(p);
+    if (!outline || cube_.faces[main_face] == nullptr) return 1;
+    const float farthest = kind_ == Emitter::Kind::kBall ? length(outline->u) : radius_;
+    float reach = first_reach(p, main_face, farthest);
+    if (!(reach > 0)) return 1;
+    const float slack = 2 * static_cast<float>(receiver.error) + length(p) * 0x1p-19f;
+    const Cone main(kind_, turned(*outline, main_face), to_face(main_face, p), to_face(main_face, n), slack);
+
+    Faces searched = faces(main, main_face, *outline, p, n, reach);
+    for (int i = 0; i < kNarrowings && !searched.small(); ++i) {
+        const float bound = this->bound(searched, farthest);
+        if (bound <= 0) return 1;
+        const bool narrower = bound < kWorthwhile * reach;
+        reach = std::min(reach, bound);
+        if (!narrower) break;
+        searched = faces(main, main_face, *outline, p, n, reach);
+    }
+    Blockers blockers = search(searched);
+    bool again = searched.count > 1; // other faces may see what is close to the light
+    if (!(blockers.weights > 0) && !searched.searched_wholly()) {
+        // What is close to the receiver may lie between the texels that were looked at: is it on the line to the centre?
+        bool whole = true; // the main face sees the receiver itself
+        if (const auto window = this->window(main, 0, whole)) add_blockers(main, main_face, *window, blockers);
+        // And at a shadow's edge what is seen of a blocker is smaller than their steps.
+        if (!(blockers.weights > 0)) blockers = search_closely(searched);
+        again = true;
+    }
+    if (!(blockers.weights > 0)) return 1;
+    const float blocker = blockers.sum / blockers.weights;
+    const Faces seen = again ? faces(main, main_face, *outline, p, n, blocker) : searched;
+    const auto dark = [&](int first, int count) {
+        float sum = 0;
+        for (std::size_t i = 0; i < seen.count; ++i) sum += dark_taps(blocker, seen.parts[i]->cone, seen.parts[i]->face, first, count);
+        return sum;
+    };
+    const float few = dark(taps.first, TapRange::kBlock);
+    // Where all of these are dark so are the rest; where none is, blockers were found all the same: it is the shadow's rim,
+    // and others see them.
+    const bool agree = few >= TapRange::kBlock;
+    const int rest = taps.count - TapRange::kBlock;
+    const float part = agree || rest == 0 ? few / TapRange::kBlock
+                                          : (few + dark(taps.first + TapRange::kBlock, rest)) / static_cast<float>(taps.count);
+    return clamp(1 - part, 0.0f, 1.0f);
+}
+
+std::int64_t SoftLight::memory_bytes() const {
+    std::int64_t sum = 0;
+    for (const auto& pyramid : nearest_)
+        if (pyramid) sum += pyramid->memory_bytes();
+    return sum;
+}
+
+} // namespace duet::raster

@@ -1,0 +1,276 @@
+#include "raster/visibility/depth_tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+
+namespace duet::raster {
+
+/// A triangle's edge functions at the samples of a tile. All samples of a tile have the same place in their pixel, so a
+/// function's values differ by multiples of 256: divided by that and rounded down, their signs stay, and the steps from
+/// pixel to pixel are a and b themselves. Within a block that an edge passes through they fit into 32 bits, whatever the
+/// triangle's size: |a|, |b| < 2^25.2 (kGuardBand), so no sample of the block is as far as 14 · 2^25.2 < 2^30 from one of the
+/// other sign.
+struct DepthTile::Edges {
+    using Values = std::array<std::int64_t, 3>;
+    Values at; ///< at the tile's first sample
+    Values right, down; ///< from block to block
+    /// At a block's first sample, as floats have it: none of its samples is inside below the one, all are well inside from the other
+    /// on. By an error more than floats have: each of six roundings is of at most half a unit in the last place of what a function
+    /// may be in the tile. So a block may be looked at for nothing, but none is missed.
+    std::array<float, 3> none, all;
+    Origin origin; ///< of the triangle's plane
+    std::array<std::int32_t, 3> margin; ///< edge_margins
+    std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
+    std::array<std::int32_t, 3> next_strip;    ///< from a strip to the one below
+
+    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
+        : origin(raster::origin(triangle.corners, viewport)) {
+        const auto& p = triangle.corners;
+        const Values margins = edge_margins(triangle);
+        constexpr std::int64_t kNever = 0x7fffffff, kLast = kBlock - 1, kZero = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const EdgeFunction edge(p[k], p[(k + 1) % 3]);
+            at[k] = edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >> kSubPixelBits;
+            right[k] = edge.a * kBlock;
+            down[k] = edge.b * kBlock;
+            const std::int64_t well = triangle.sound ? (margins[k] + kSubPixels - 1) >> kSubPixelBits : kNever;
+            const std::int64_t most = std::abs(at[k]) + TileGrid::kTileSize * (std::abs(edge.a) + std::abs(edge.b)) + well;
+            const float error = static_cast<float>(most) * 0x1p-20f;
+            none[k] = static_cast<float>(-kLast * (std::max(edge.a, kZero) + std::max(edge.b, kZero))) - error;
+            all[k] = static_cast<float>(well - kLast * (std::min(edge.a, kZero) + std::min(edge.b, kZero))) + error;
+            margin[k] = static_cast<std::int32_t>(well);
+            next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
+            const Ints a(static_cast<std::int32_t>(edge.a)), b(static_cast<std::int32_t>(edge.b));
+            for (std::size_t i = 0; i < kStrip; i += Ints::size)
+                store(step[k], i, a * load(kColumns<std::int32_t>, i) + b * load(kRows<std::int32_t>, i));
+        }
+    }
+    /// At a block's first sample, as far as it matters: exact where the block's edge passes through.
+    std::array<std::int32_t, 3> at_block(int column, int row) const {
+        constexpr std::int64_t kFar = 1 << 30;
+        std::array<std::int32_t, 3> here;
+        for (std::size_t k = 0; k < 3; ++k)
+            here[k] = static_cast<std::int32_t>(std::clamp(at[k] + right[k] * column + down[k] * row, -kFar, kFar));
+        return here;
+    }
+};
+
+/// A row of blocks of a tile, all of them side by side.
+struct DepthTile::BlockRow {
+    std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle may cover some samples; all for certain, well inside
+
+    BlockRow(const Edges& edges, int row) {
+        for (std::size_t i = 0; i < kBlocks; i += Floats::size) {
+            const Floats column = Floats::load_aligned(kLanesAsFloats.at(i));
+            auto some_inside = column >= Floats(0.0f), all_inside = some_inside;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Floats here = fused(Floats(static_cast<float>(edges.right[k])), column,
+                                          Floats(static_cast<float>(edges.at[k] + edges.down[k] * row)));
+                some_inside = some_inside && here >= Floats(edges.none[k]);
+                all_inside = all_inside && here >= Floats(edges.all[k]);
+            }
+            some |= lane_bits(some_inside) << i;
+            all |= lane_bits(all_inside) << i;
+        }
+    }
+};
+
+/// A triangle's samples in a block, a bit each: all, and those that lie well inside.
+struct DepthTile::Covered {
+    std::uint64_t some = 0, well_inside = 0;
+
+    /// By the edges' values at the block's first sample; in the strips of its rows y0 to y1, the others have none.
+    Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) {
+        const Ints zero(0);
+        for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip)
+            for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+                const auto value = [&](std::size_t k) { return Ints(at[k] + strip * edges.next_strip[k]) + load(edges.step[k], i); };
+                const Ints e0 = value(0), e1 = value(1), e2 = value(2);
+                const auto inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
+                const std::size_t first = static_cast<std::size_t>(strip) * kStrip + i;
+                some |= std::uint64_t{lane_bits(min(min(e0, e1), e2) >= zero)} << first;
+                well_inside |= std::uint64_t{lane_bits(inside)} << first;
+            }
+    }
+};
+
+void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport) {
+    rect_ = rect;
+    offset_ = offset;
+    viewport_ = viewport;
+    farthest_.fill(0);
+    partial_.fill(0);
+    drawn_.fill(false);
+}
+
+void DepthTile::empty(std::size_t block) {
+    std::fill_n(nearness_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
+    std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
+                static_cast<std::int32_t>(kNoTriangle));
+    constexpr std::size_t kStrips = kBlockSamples / kStrip;
+    std::fill_n(inside_.begin() + static_cast<std::ptrdiff_t>(block * kStrips), kStrips, std::uint16_t{0});
+}
+
+void DepthTile::empty_undrawn() {
+    for (std::size_t block = 0; block < drawn_.size(); ++block)
+        if (!drawn_[block]) empty(block);
+}
+
+/// A bit for each block of a row whose farthest sample is farther than `nearest`, or as far.
+std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
+    std::uint32_t hidden = 0;
+    for (std::size_t i = 0; i < kBlocks; i += Floats::size)
+        hidden |= lane_bits(Floats(nearest) < Floats::load_aligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+    return ~hidden;
+}
+
+void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
+    const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
+    if (r.empty()) return;
+    const Edges edges(triangle, rect_, offset_, viewport_);
+    // The tile's first sample, from the origin of the triangle's plane.
+    const double left_of_tile = rect_.x0 - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
+                 top_of_tile = rect_.y0 - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels;
+    const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
+    const std::uint32_t touched = (2u << last_column) - (1u << first_column);
+    for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
+        const BlockRow blocks(edges, row);
+        const int top = rect_.y0 + row * kBlock;
+        const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
+        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0; left &= left - 1) {
+            const int column = std::countr_zero(left);
+            const auto c = static_cast<std::size_t>(column), block = static_cast<std::size_t>(row * kBlocks) + c;
+            const bool all = (blocks.all >> c & 1) && triangle.sound;
+            std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
+            if (!all) {
+                const Covered covered(edges, edges.at_block(column, row), y0, y1);
+                if (covered.some == 0) continue;
+                some = covered.some, well_inside = covered.well_inside;
+            }
+            open(block);
+            draw_samples(block, well_inside, triangle.id, triangle.nearness, left_of_tile + column * kBlock, top_of_tile + row * kBlock);
+            if (some != well_inside) draw_edge_samples(triangle, whole, block, some & ~well_inside);
+            constexpr std::uint8_t kOften = 16;
+            if (all || ++partial_[block] >= kOften) find_farthest(block);
+        }
+    }
+}
+
+/// Nearness over a block: of a row of it at a time.
+struct DepthTile::Nearness {
+    const Viewport& viewport;
+    const NearnessPlane& plane;
+    double top;                                   ///< the block's first sample, below the plane's origin
+    alignas(64) std::array<double, kBlock> along; ///< of each column, from a row's start
+
+    /// The block's first sample lies at (x, y) from the plane's origin.
+    Nearness(const NearnessPlane& plane_, const Viewport& viewport_, double x, double y) : viewport(viewport_), plane(plane_), top(y) {
+        for (std::size_t i = 0; i < kBlock; i += Doubles::size)
+            ((Doubles(x) + load(kColumns<double>, i)) * Doubles(plane.x)).store_aligned(&along[i]);
+    }
+    /// Of the samples from the i-th of the block on.
+    Floats at(std::size_t i) const {
+        const auto half = [&](std::size_t first) {
+            const Doubles start = Doubles(plane.constant) + (Doubles(top) + Doubles(kColumns<double>[first / kBlock])) * Doubles(plane.y);
+            const Doubles value = start + Doubles::load_aligned(&along[first % kBlock]);
+            return viewport.orthographic ? Doubles(viewport.near) / value : value;
+        };
+        const Floats nearness = narrowed(half(i), half(i + Doubles::size));
+        return sabotaged(Guard::kReversedDepth) ? Floats(1.0f) - (Floats(1.0f) - nearness) : nearness;
+    }
+};
+
+/// The samples from a place on, as many as there are lanes, of which those given show a triangle, well inside it.
+template <typename Lanes>
+void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
+    const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
+    const Floats before = Floats::load_aligned(&nearness_[place]);
+    // Floats that are not negative compare as their bits do. A lower number wins if it is nearer than the float before, which is to
+    // be at least as near. (Of two conditions joined by «or» the second would wait for the first.)
+    const Ints bits = xsimd::bitwise_cast<Ints>(nearness);
+    Ints to_beat = xsimd::bitwise_cast<Ints>(before);
+    if (!sabotaged(Guard::kDrawOrder)) to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
+    const auto wins = xsimd::bool_cast(xsimd::select(xsimd::bool_cast(lanes), bits, Ints(-1)) > to_beat);
+    xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
+    xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
+    inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
+}
+
+/// Draws those samples of a block, whose first lies at (x, y) from the plane's origin.
+void DepthTile::draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y) {
+    if (samples == 0) return;
+    const Nearness nearness(plane, viewport_, x, y);
+    constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
+    for (auto i = static_cast<std::size_t>(std::countr_zero(samples) / kLanesOfBatch * kLanesOfBatch);
+         i < kBlockSamples && samples >> i != 0; i += Floats::size) {
+        const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
+        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness.at(i), lanes_from<float>(here));
+    }
+}
+
+void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
+                                  std::uint64_t samples) {
+    const WholeTriangle all = whole.whole(triangle.id);
+    const Interpolation at = interpolation(all, triangle.corners, viewport_);
+    const int x0 = rect_.x0 + static_cast<int>(block % kBlocks) * kBlock,
+              y0 = rect_.y0 + static_cast<int>(block / kBlocks) * kBlock;
+    for (; samples != 0; samples &= samples - 1) {
+        const int bit = std::countr_zero(samples), x = x0 + bit % kBlock, y = y0 + bit / kBlock;
+        const Interpolated here = at.at(offset_.position(x, y), all.piece);
+        keep_one(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id, kept_nearness(here.nearness(viewport_.near)), false);
+    }
+}
+
+namespace {
+
+/// Those bits of a box of 8 × 8 that lie in a block, if its first is `x` to the right of the block's and `y` below.
+std::uint64_t moved(std::uint64_t bits, int x, int y) {
+    constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
+    if (x >= 0)
+        bits = (bits & kFirstColumn * (0xffu >> x)) << x;
+    else
+        bits = bits >> -x & kFirstColumn * (0xffu >> -x);
+    return y >= 0 ? bits << 8 * y : bits >> 8 * -y;
+}
+
+} // namespace
+
+// Its box lies over up to four blocks.
+void DepthTile::draw(const Patch& patch) {
+    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
+    for (int row = std::max(y >> 3, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
+        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column) {
+            const std::uint64_t samples = moved(patch.samples, x - column * kBlock, y - row * kBlock);
+            if (samples == 0) continue;
+            const auto block = static_cast<std::size_t>(row * kBlocks + column);
+            open(block);
+            draw_samples(block, samples, patch.id, patch.nearness, column * kBlock - x, row * kBlock - y);
+        }
+}
+
+void DepthTile::draw(std::span<const Fragment> fragments) {
+    for (const Fragment& f : fragments) keep_one(f.place, f.id, f.nearness, f.inside);
+}
+
+void DepthTile::keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside) {
+    open(place / kBlockSamples);
+    const auto number = static_cast<std::int32_t>(id);
+    const bool tie_won = nearness == nearness_[place] && number < ids_[place] && !sabotaged(Guard::kDrawOrder);
+    if (!(nearness > nearness_[place] || tie_won)) return;
+    nearness_[place] = nearness;
+    ids_[place] = number;
+    const auto bit = static_cast<std::uint16_t>(1u << place % kStrip);
+    std::uint16_t& strip = inside_[place / kStrip];
+    strip = static_cast<std::uint16_t>(inside ? strip | bit : strip & ~bit);
+}
+
+void DepthTile::find_farthest(std::size_t block) {
+    Floats least(1.0f);
+    for (std::size_t i = 0; i < kBlock * kBlock; i += Floats::size)
+        least = min(least, Floats::load_aligned(&nearness_[block * kBlock * kBlock + i]));
+    farthest_[block] = lowest(least);
+    partial_[block] = 0;
+}
+
+} // namespace duet::raster

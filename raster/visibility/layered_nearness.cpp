@@ -1,0 +1,49 @@
+#include "raster/visibility/layered_nearness.h"
+
+#include "raster/display.h"
+#include "raster/visibility/hit_lists.h"
+
+#include "common/sampling/hash.h"
+
+namespace duet::raster {
+
+float dither(int x, int y) {
+    const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y), odd = column ^ row;
+    const std::uint32_t rank = (odd & 1) << 3 | (row & 1) << 2 | (odd & 2) | (row & 2) >> 1;
+    return unit_float(rank << 28 | high_bits(hash_combine(column, row)) >> 4);
+}
+
+namespace {
+
+/// A tile's rays, that end where a picture of nearness says: nobody asks what is there.
+HitTile rays_to(const ImageFloat& nearness, const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect) {
+    DepthTile nothing;
+    nothing.reset(rect, offset, view.viewport);
+    nothing.empty_undrawn();
+    HitTile tile(nothing, geometry, view);
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            if (!(nearness(x, y) > 0)) continue;
+            const double depth = view.pinhole.near / static_cast<double>(nearness(x, y));
+            tile.exchange(x, y, {.t = static_cast<float>(depth * tile.distance_per_depth(x, y))});
+        }
+    return tile;
+}
+
+} // namespace
+
+void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers, const PassView& view,
+                           const PixelRect& rect, std::size_t index, ImageFloat& picture) {
+    keep_nearness(geometry, view, rect, index, picture);
+    if (!touches(layers, index)) return;
+    const SampleOffset offset = view.samples.front();
+    HitTile tile = rays_to(picture, geometry, view, offset, rect);
+    HitLists lists(layers, view, offset, index, tile);
+    const auto by_rank = [](int x, int y, float left) { return 1 - left > dither(x, y); };
+    lists.for_each_stop(data.scene, by_rank, [&](int x, int y, const Hit& hit) {
+        tile.exchange(x, y, hit);
+        picture(x, y) = tile.nearness(x, y);
+    });
+}
+
+} // namespace duet::raster
