@@ -1,4 +1,4 @@
-// Stage 8: samples become pixels.
+// Stage 9: samples become pixels.
 #pragma once
 
 #include "common/film/rendering.h"

@@ -1,4 +1,4 @@
-// Stage 7: from a Hit to what the picture shows there, by the shared surface point, materials and lights.
+// Stage 8: from a Hit to what the picture shows there, by the shared surface point, materials and lights.
 #pragma once
 
 #include "raster/prepare.h"

@@ -1,4 +1,4 @@
-// Stage 9: what is drawn over a finished picture: lines, and ink at edges.
+// Stage 10: what is drawn over a finished picture: lines, and ink at edges.
 #pragma once
 
 #include "raster/overlay/edges.h"

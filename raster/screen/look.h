@@ -1,4 +1,4 @@
-// Stage 6: a look at the whole picture, a sample at each pixel's centre, for effects that look around in it.
+// A look at the whole picture ahead of its shading, a sample at each pixel's centre, for effects that look around in it.
 #pragma once
 
 #include "raster/geometry/geometry.h"
