@@ -154,6 +154,41 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a quad is solved side by side, as two triangles, and its diagonal does not show") {
+        using raster::kStrip, raster::NoVaryings, raster::StripSolver;
+        Scene scene;
+        add(scene, QuadList{{Quad{Vec3(-30, -0.5f, 3), Vec3(60, 1, 0), Vec3(0, 0, -90)}, Quad{Vec3(-1, 0, 0), Vec3(1.5f, 0, 1), Vec3(0, 1, 0)}}});
+        finish_scene(scene);
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(scene, view);
+            const NoVaryings nothing;
+            std::array<int, 2> halves{};
+            int together = 0;
+            double worst = 0;
+            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
+                StripSolver<NoVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, nothing, false);
+                solver.solve(places, true, [&](std::size_t s, const auto& strip) {
+                    CHECK(strip.samples->on_mesh == strip.samples->seen);
+                    for (std::size_t i = 0; i < kStrip; ++i) {
+                        if (!(strip.samples->on_mesh >> i & 1)) continue;
+                        const Hit hit = find_hit(picture.geometry, picture.pass, strip.samples->id(i), places[s].position(i));
+                        const std::size_t triangle = strip.samples->index(i), half = triangle % 2;
+                        const float both = strip.b1[i] + strip.b2[i];
+                        ++halves[half];
+                        together += strip.inside >> i & 1;
+                        CHECK(hit.primitive == strip.samples->shape->primitive(triangle));
+                        const Vec2 uv = half == 0 ? Vec2(both, strip.b2[i]) : Vec2(strip.b1[i], both);
+                        worst = std::max(worst, static_cast<double>(length(uv - Vec2(hit.u, hit.v))));
+                    }
+                });
+            });
+            CHECK(halves[0] > 5000);
+            CHECK(halves[1] > 5000);
+            CHECK(together > (halves[0] + halves[1]) * 0.98);
+            CHECK(worst < 0x1p-16);
+        }
+    }
+
     TEST_CASE("directions of normals are those of the exact ray's hit, and taken only where they face the viewer") {
         using raster::kStrip, raster::NormalVaryings, raster::StripSolver;
         const Scene scene = smooth_slivers();
