@@ -194,7 +194,8 @@ template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::find_or_keep(s
 template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::second_halves(const StripOf<std::int32_t>& ids) const {
     std::uint32_t halves = 0;
     if (!shape_->quads()) return halves;
-    for (std::size_t i = 0; i < kStrip; ++i) halves |= ((static_cast<std::uint32_t>(ids[i]) - static_cast<std::uint32_t>(first_id_)) & 1) << i;
+    const Ints first(static_cast<std::int32_t>(first_id_)), one(1);
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) halves |= lane_bits(((load(ids, i) ^ first) & one) == one) << i;
     return halves;
 }
 
