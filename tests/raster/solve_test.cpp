@@ -1,6 +1,7 @@
 // Where samples lie on their triangles, side by side: in float as the error bounds of raster/solve.h say, in double exactly.
 #include "raster/cover.h"
 #include "raster/solve.h"
+#include "raster/sphere_strip.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>
@@ -187,6 +188,46 @@ TEST_SUITE("unit") {
             CHECK(halves[1] > 1500);
             CHECK(together > (halves[0] + halves[1]) * 0.98);
             CHECK(worst < 0x1p-16);
+        }
+    }
+
+    TEST_CASE("points of spheres, side by side, are those of each sample's own ray: of stretched ones and from inside, too") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0.3f, 0.2f, 0.5f), 0.9f});
+        add(scene, Sphere{Vec3(-1, 0.4f, 0), 0.5f}, translation(Vec3(-0.2f, 0.3f, 0.9f)) * scaling(Vec3(-0.7f, 1.8f, 1.1f)));
+        add(scene, Sphere{Vec3(0, 0, 0), 40}); // all else is in it
+        finish_scene(scene);
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(scene, view);
+            std::array<int, 3> seen{};
+            double worst = 0, worst_depth = 0;
+            int wrong_side = 0;
+            picture.for_each_tile([&](const raster::PixelRect&, std::span<const raster::StripPlace> places) {
+                for (const raster::StripPlace& place : places)
+                    for (const raster::DrawSphere& sphere : picture.geometry.spheres) {
+                        const raster::SphereStrip strip(picture.pass, place, sphere, false);
+                        for (std::size_t i = 0; i < raster::kStrip; ++i) {
+                            if (static_cast<std::uint32_t>(place.ids[i]) != sphere.id) continue;
+                            const Vec2d pixel = place.position(i);
+                            const Rayd exact = picture.pinhole.ray(pixel);
+                            const Ray ray = raster::rounded(exact, 0);
+                            const Hit hit = find_hit(picture.geometry, picture.pass, sphere.id, pixel);
+                            const SurfacePoint point = surface_point(picture.scene, ray, hit);
+                            const Vec3 n(strip.n[0][i], strip.n[1][i], strip.n[2][i]);
+                            const Vec3 p = sphere.sphere.center + n * sphere.sphere.radius;
+                            const double grazing = std::abs(static_cast<double>(dot(point.ng, ray.direction)));
+                            ++seen[sphere.object];
+                            worst = std::max(worst, static_cast<double>(length(p - point.p_object)) * grazing);
+                            const double depth = static_cast<double>(hit.t) * picture.pinhole.near / exact.t_min;
+                            worst_depth = std::max(worst_depth, std::abs(static_cast<double>(strip.depth[i]) / depth - 1) * grazing);
+                            wrong_side += (strip.side[i] < 0) != (dot(point.ng, ray.direction) > 0);
+                        }
+                    }
+            });
+            for (const int each : seen) CHECK(each > 1000);
+            CHECK(worst < 1e-5); // of 40
+            CHECK(worst_depth < 1e-5);
+            CHECK(wrong_side <= 2); // seen exactly along it
         }
     }
 
