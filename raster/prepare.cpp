@@ -122,28 +122,13 @@ void prepare_glossy(const Settings& settings, PreparedData& data) {
 
 } // namespace
 
-std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene) {
-    std::vector<std::vector<PackedVertex>> result(scene.shapes.size());
-    for (std::size_t s = 0; s < result.size(); ++s) {
-        const Mesh* mesh = std::get_if<Mesh>(&scene.shapes[s]);
-        if (mesh == nullptr) continue;
-        result[s].resize(mesh->positions.size());
-        for (std::size_t i = 0; i < result[s].size(); ++i) {
-            result[s][i].p = mesh->positions[i];
-            if (!mesh->normals.empty()) result[s][i].n = mesh->normals[i];
-            if (!mesh->uvs.empty()) result[s][i].u = mesh->uvs[i].x, result[s][i].v = mesh->uvs[i].y;
-        }
-    }
-    return result;
-}
-
 Prepared prepare(const Scene& scene, const Settings& settings) {
     PreparedData data{.scene = scene,
                       .objects = {},
                       .polygonal = {},
                       .spheres = {},
                       .irradiance = Irradiance(scene.environment, settings.threads),
-                      .vertices = pack_vertices(scene),
+                      .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
                       .texels = texels_of(scene.textures),
                       .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
@@ -162,10 +147,11 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
             data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
     }
     choose_lamps(data);
-    std::size_t vertices = 0;
-    for (const auto& shape : data.vertices) vertices += shape.size();
+    std::size_t packed = 0;
+    for (const PackedShape& shape : data.shapes)
+        packed += shape.vertices.size() * sizeof(PackedVertex) + shape.halves.size() * sizeof(PackedShape::Triangle);
     data.memory_bytes =
-        static_cast<std::int64_t>(vertices * sizeof(PackedVertex) + sizeof(PreparedData) +
+        static_cast<std::int64_t>(packed + sizeof(PreparedData) +
                                   data.objects.size() * sizeof(PreparedObject) + scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)

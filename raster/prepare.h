@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/scene/scene.h"
+#include "raster/geometry/packed_shape.h"
 #include "raster/light/irradiance.h"
 #include "raster/render.h"
 #include "raster/shader/texels.h"
@@ -22,16 +23,6 @@ struct PreparedObject {
     bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
 };
 
-/// A mesh's vertex as shading wants it: whole in half a line of the cache.
-struct alignas(32) PackedVertex {
-    Vec3 p;
-    float u = 0; ///< with v: texture coordinates; 0 where the mesh has none
-    Vec3 n;      ///< (0, 0, 0) where the mesh has none
-    float v = 0;
-};
-/// Of each shape of the scene; of those that are no meshes: none.
-std::vector<std::vector<PackedVertex>> pack_vertices(const Scene& scene);
-
 class GeometryPool; // raster/geometry/geometry.h
 class Shadows;      // raster/shadow/shadows.h
 class Prefiltered;  // raster/light/prefiltered.h
@@ -48,8 +39,8 @@ struct PreparedData {
     std::size_t unmirrored_lamps = 0;     ///< the others
     std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
     Irradiance irradiance;                ///< from the environment
-    std::vector<std::vector<PackedVertex>> vertices{}; ///< a shape each
-    std::vector<Texels> texels{};                      ///< an image each
+    std::vector<PackedShape> shapes{};    ///< as the scene has them
+    std::vector<Texels> texels{};         ///< an image each
     Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
     bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
     std::int64_t memory_bytes = 0;

@@ -34,7 +34,7 @@ struct MeshScene {
                                   .polygonal = {0},
                                   .spheres = {},
                                   .irradiance = raster::Irradiance(scene.environment, 1),
-                                  .vertices = raster::pack_vertices(scene)} {}
+                                  .shapes = std::vector<raster::PackedShape>(scene.shapes.begin(), scene.shapes.end())} {}
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;
 

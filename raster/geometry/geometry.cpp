@@ -146,7 +146,6 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
     const std::vector<std::uint32_t> polygonal = visible(all_polygonal);
     result.triangles.prepared = &data;
     result.triangles.scene = &data.scene;
-    result.triangles.vertices = &data.vertices;
     transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,
               result.triangles.objects);
     result.transform_seconds = watch.lap();

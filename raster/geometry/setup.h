@@ -4,6 +4,7 @@
 #include "common/system/sabotage.h"
 #include "common/vec/scalar.h"
 #include "raster/geometry/cull.h"
+#include "raster/geometry/packed_shape.h"
 #include "raster/geometry/samples.h"
 #include "raster/geometry/tiles.h"
 #include "raster/geometry/transform.h"
@@ -46,13 +47,6 @@ inline float kept_nearness(double nearness) {
     const auto n = static_cast<float>(nearness);
     return sabotaged(Guard::kReversedDepth) ? 1 - (1 - n) : n; // as the books': 0 near, 1 far
 }
-
-/// What an interpolated barycentric triple means for Hit::u and v.
-enum class Piece : std::uint8_t {
-    kTriangle,   ///< corners a, b, c
-    kQuadFirst,  ///< corner, +u, +u+v
-    kQuadSecond, ///< corner, +u+v, +v
-};
 
 /// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or the quad that it is a half of; a sample
 /// outside is taken to a point inside.

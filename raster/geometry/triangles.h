@@ -34,7 +34,6 @@ public:
 struct Triangles : WholeTriangles {
     const PreparedData* prepared = nullptr;
     const Scene* scene = nullptr; ///< PreparedData::scene
-    const std::vector<std::vector<PackedVertex>>* vertices = nullptr; ///< PreparedData::vertices
     std::vector<TransformedObject> objects; ///< of triangles and quads
     std::vector<Run> runs;
 
@@ -42,12 +41,21 @@ struct Triangles : WholeTriangles {
     const Run& run_of(std::uint32_t id, const Run& hint) const;
     const Run& run_of(std::uint32_t id) const { return run_of(id, runs.front()); }
     const Shape& shape(const Run& run) const { return scene->shapes[scene->objects[objects[run.object].object].shape]; }
+    const PackedShape& packed(const Run& run) const { return prepared->shapes[scene->objects[objects[run.object].object].shape]; }
 
     /// `index`: of the object's triangles, as Run::first counts them.
     WholeTriangle whole(const Run& run, std::uint32_t index) const;
     WholeTriangle whole(std::uint32_t id) const override {
         const Run& run = run_of(id);
         return whole(run, run.first + id - run.first_id);
+    }
+    /// Numbers of all that a run's object is of.
+    struct Numbers {
+        std::uint32_t first, end;
+    };
+    Numbers of_object(const Run& run) const {
+        const std::uint32_t first = run.first_id - run.first;
+        return {first, first + (run.sphere ? 1 : static_cast<std::uint32_t>(packed(run).triangles.size()))};
     }
     static std::uint32_t index(const Run& run, std::uint32_t id) { return run.first + id - run.first_id; }
 };

@@ -1,16 +1,17 @@
-// A shader of raster/shader/shader.h becomes a Program: whole strips of one mesh in batches, all else sample by sample, by the
-// same functions.
+// A shader of raster/shader/shader.h becomes a Program: strips of samples in batches, object by object, and one hit by the same
+// functions.
 #pragma once
 
 #include "raster/shader/linear_in_tile.h"
 #include "raster/shader/one_sample.h"
-#include "raster/shader/solve.h"
+#include "raster/shader/solve_sphere.h"
 #include "raster/shader/strip_surface.h"
 #include "raster/visibility/cover.h"
 
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <vector>
 
 namespace duet::raster {
 
@@ -26,36 +27,98 @@ public:
 
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
+        parts_.clear();
         solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
             const StripSamples& samples = *strip.samples;
             seen[s] = samples.seen;
-            const StripPlace& place = places[s];
-            surface_.move_to(place, samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
-            if (samples.seen == 0) return;
-            if (samples.on_mesh != samples.seen)
-                return shade_one_by_one(place, samples, colors[s]);
-            const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
-            ways_.use(offset);
-            if (eyes_) eyes_->use(offset);
-            if (only_suns_ && strip.object_view->even())
-                shade_as<true>(place, strip, colors[s]);
+            if (samples.on_mesh == samples.seen)
+                shade_solved(places[s], strip, colors[s]);
             else
-                shade_as<false>(place, strip, colors[s]);
+                shade_objects(places[s], samples, colors[s]);
         });
+        shade_parts();
     }
 
 private:
     using Many = VaryingsOf<S, Floats>;
     using Solved = SolvedStrip<S, float>;
 
-    void shade_one_by_one(const StripPlace& place, const StripSamples& strip, StripColors& colors) const {
-        for (std::uint32_t left = strip.seen; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const Vec2d pixel = place.position(i);
-            const Rgb c = shade_one(data_, view_, shader_, find_hit(geometry_, view_, strip.id(i), pixel), pixel,
-                                    samples_per_pixel(place, view_),
-                                    place.nearness != nullptr ? place.nearness + i : nullptr);
-            colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b;
+    /// Those samples of a strip that see one of the objects that are seen in it.
+    struct Part {
+        StripOf<std::int32_t> ids;
+        StripPlace place;
+        StripColors* colors = nullptr;
+    };
+
+    void shade_solved(const StripPlace& place, const Solved& strip, StripColors& colors) {
+        if (strip.samples->seen == 0) return;
+        surface_.move_to(place, *strip.samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
+        const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
+        ways_.use(offset);
+        if (eyes_) eyes_->use(offset);
+        if (only_suns_ && strip.object_view->even())
+            shade_as<true>(place, strip, colors);
+        else
+            shade_as<false>(place, strip, colors);
+    }
+
+    /// Spheres at once, triangles in parts.
+    void shade_objects(const StripPlace& place, const StripSamples& samples, StripColors& colors) {
+        for (std::uint32_t left = samples.seen; left != 0;) {
+            const Run& run = solver_.run_of(samples.id(static_cast<std::size_t>(std::countr_zero(left))));
+            const Triangles::Numbers own = geometry_.triangles.of_object(run);
+            const Ints first(static_cast<std::int32_t>(own.first)), end(static_cast<std::int32_t>(own.end));
+            std::uint32_t here = 0;
+            for (std::size_t i = 0; i < kStrip; i += Ints::size)
+                here |= lane_bits(load(samples.ids, i) >= first && load(samples.ids, i) < end) << i;
+            here &= left;
+            left &= ~here;
+            if (run.sphere)
+                shade_sphere(place, here, samples, geometry_.spheres[run.object], colors);
+            else
+                add_part(place, here, samples, colors);
+        }
+    }
+
+    void add_part(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, StripColors& colors) {
+        Part& part = parts_.emplace_back();
+        part.place = place;
+        part.colors = &colors;
+        const Ints none(static_cast<std::int32_t>(kNoTriangle));
+        for (std::size_t i = 0; i < kStrip; i += Ints::size)
+            store(part.ids, i, xsimd::select(xsimd::bool_cast(lanes_from<float>(lanes >> i)), load(among.ids, i), none));
+    }
+
+    void shade_sphere(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, const DrawSphere& sphere,
+                      StripColors& colors) {
+        StripSamples samples{.ids = among.ids, .seen = lanes};
+        if (!sphere_view_ || sphere_view_->object != sphere.object) sphere_view_.emplace(data_, view_, sphere.object);
+        Solved strip;
+        strip.samples = &samples;
+        solve_sphere(SphereStrip(view_, place, sphere, wants_derivatives<S>()), sphere.sphere, shader_, *sphere_view_, strip);
+        StripColors own;
+        shade_solved(place, strip, own);
+        copy(lanes, own, colors);
+    }
+
+    void shade_parts() {
+        places_of_parts_.clear();
+        for (const Part& part : parts_) {
+            places_of_parts_.push_back(part.place);
+            places_of_parts_.back().ids = part.ids.at(0);
+        }
+        solver_.solve(places_of_parts_, true, [&](std::size_t s, const Solved& strip) {
+            StripColors own;
+            shade_solved(places_of_parts_[s], strip, own);
+            copy(strip.samples->seen, own, *parts_[s].colors);
+        });
+    }
+
+    static void copy(std::uint32_t lanes, const StripColors& from, StripColors& to) {
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+            const auto here = lanes_from<float>(lanes >> i);
+            for (StripOf<float> StripColors::*c : {&StripColors::r, &StripColors::g, &StripColors::b})
+                store(to.*c, i, xsimd::select(here, load(from.*c, i), load(to.*c, i)));
         }
     }
 
@@ -131,6 +194,9 @@ private:
     LinearInTile ways_;                ///< of camera rays
     Vec3 eye_;                         ///< and where they begin: all of them there,
     std::optional<LinearInTile> eyes_; ///< or each at a place of its own
+    std::vector<Part> parts_;
+    std::vector<StripPlace> places_of_parts_;
+    std::optional<ObjectView> sphere_view_; ///< of the last sphere
     bool only_suns_;                   ///< are the scene's lights
 };
 

@@ -38,7 +38,7 @@ template <VertexShader S, typename D> struct SetUp {
     std::uint32_t easy;
 };
 
-/// Set-ups of meshes' triangles under one view of a tile; S's vertex function is asked for what is interpolated.
+/// Set-ups of triangles of meshes and quads under one view of a tile; S's vertex function is asked for what is interpolated.
 template <VertexShader S, typename D> class SetUps {
 public:
     using Sixteen = SetUp<S, D>;
@@ -49,7 +49,7 @@ public:
     }
 
     /// The object whose triangles are asked for from now on; its first triangle's number.
-    void use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id);
+    void use(const TransformedObject& object, const PackedShape& shape, std::size_t first_id);
     /// The object in use; stays where it is.
     const ObjectView& object() const { return *view_of_object_; }
 
@@ -67,14 +67,15 @@ private:
     void keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
     void fill_up();
     void begin_sixteen();
-    void prefetch_triangle(std::int32_t id) const { prefetch(&mesh_->triangles[static_cast<std::size_t>(id) - first_id_]); }
+    void prefetch_triangle(std::int32_t id) const { prefetch(&triangle(id)); }
+    const PackedShape::Triangle& triangle(std::int32_t id) const { return shape_->triangles[static_cast<std::size_t>(id) - first_id_]; }
     void prefetch_vertices(const StripOf<std::int32_t>& ids) const;
     void set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const;
     using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
     void gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const;
-    const PackedVertex* vertices() const { return (*triangles_.vertices)[triangles_.scene->objects[object_->object].shape].data(); }
+    std::uint32_t second_halves(const StripOf<std::int32_t>& ids) const;
     std::uint32_t set_up_planes(const Corners& corners, Sixteen& to) const;
-    void set_up_varyings(std::size_t i, const Corners& corners, Floats side, Sixteen& to) const;
+    void set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves, Sixteen& to) const;
     void set_up_directions(std::size_t i, Sixteen& to) const;
     std::uint32_t facing(std::size_t i, const Corners& corners, const Sixteen& of) const;
 
@@ -83,7 +84,7 @@ private:
     const S& shader_;
     int origin_x_, origin_y_;
     const TransformedObject* object_ = nullptr;
-    const Mesh* mesh_ = nullptr;
+    const PackedShape* shape_ = nullptr;
     std::size_t first_id_ = 0;
     const ObjectView* view_of_object_ = nullptr;
     std::map<std::uint32_t, ObjectView> views_of_objects_;
@@ -105,12 +106,12 @@ private:
 };
 
 template <VertexShader S, typename D>
-void SetUps<S, D>::use(const TransformedObject& object, const Mesh& mesh, std::size_t first_id) {
+void SetUps<S, D>::use(const TransformedObject& object, const PackedShape& shape, std::size_t first_id) {
     if (object_ == &object) return;
     finish();
     begin_sixteen(); // each are of one object
     object_ = &object;
-    mesh_ = &mesh;
+    shape_ = &shape;
     first_id_ = first_id;
     view_of_object_ = &views_of_objects_.try_emplace(object.object, *triangles_.prepared, view_, object.object).first->second;
 }
@@ -186,21 +187,36 @@ template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(st
     return place.kept;
 }
 
+/// A bit for each that is a quad's second half.
+template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::second_halves(const StripOf<std::int32_t>& ids) const {
+    std::uint32_t halves = 0;
+    if (!shape_->quads()) return halves;
+    const Ints first(static_cast<std::int32_t>(first_id_)), one(1);
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) halves |= lane_bits(((load(ids, i) ^ first) & one) == one) << i;
+    return halves;
+}
+
 /// The vertex function's numbers of the triangles from the i-th on, a batch of them; `side`: 1 in front, -1 behind.
 template <VertexShader S, typename D>
-void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats side, Sixteen& to) const {
+void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves, Sixteen& to) const {
     const auto vector = [&](std::size_t k, std::size_t first) {
         return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
     };
     const std::array<Vec3T<Floats>, 3> p{vector(0, 0), vector(1, 0), vector(2, 0)};
-    const Vec3T<Floats> ng = cross(p[1] - p[0], p[2] - p[0]) * side, middle = (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
+    const Vec3T<Floats> ng = cross(p[1] - p[0], p[2] - p[0]) * side;
+    // A quad's diagonal, opposite to the second corner of its first half and the third of the other, is no edge.
+    const auto second = lanes_from<float>(second_halves >> i);
+    const bool quads = shape_->quads();
+    const Vec3T<Floats> middle = quads ? (p[0] + select(second, p[1], p[2])) * Floats(0.5f) : (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
+    const Floats zero(0.0f), one(1.0f), no_edge1 = quads ? xsimd::select(second, zero, one) : zero,
+                 no_edge2 = quads ? xsimd::select(second, one, zero) : zero;
     std::array<std::array<Floats, kVaryings<S>>, 3> v;
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto edge = [k](std::size_t of) { return Floats(of == k ? 1.0f : 0.0f); };
+        const Vec3T<Floats> edges(k == 0 ? one : zero, k == 1 ? one : no_edge1, k == 2 ? one : no_edge2);
         Vec2T<Floats> uv(Floats(0.0f), Floats(0.0f));
         if constexpr (wants_texture_coordinates<S>()) uv = {load(corners[k][3], i), load(corners[k][7], i)};
         v[k] = numbers<S, Floats>(shader_.vertex(VertexInput<Floats>{
-            p[k], vector(k, 4), uv, ng, middle, {edge(0), edge(1), edge(2)}, *view_of_object_}));
+            p[k], vector(k, 4), uv, ng, middle, edges, *view_of_object_}));
     }
     for (std::size_t c = 0; c < kVaryings<S>; ++c) {
         store(to.n[c], i, v[0][c]);
@@ -247,9 +263,9 @@ std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const 
 /// Of each of three corners eight numbers: position and u, normal and v.
 template <VertexShader S, typename D>
 void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const {
-    const PackedVertex* all = vertices();
+    const PackedVertex* all = shape_->vertices.data();
     std::array<std::array<std::uint32_t, 3>, kStrip> triangles;
-    for (std::size_t i = 0; i < kStrip; ++i) triangles[i] = mesh_->triangles[static_cast<std::size_t>(ids[i]) - first_id_];
+    for (std::size_t i = 0; i < kStrip; ++i) triangles[i] = triangle(ids[i]);
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kStrip; i += Quads::size)
             for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
@@ -320,9 +336,9 @@ std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) c
 }
 
 template <VertexShader S, typename D> void SetUps<S, D>::prefetch_vertices(const StripOf<std::int32_t>& ids) const {
-    const PackedVertex* all = vertices();
+    const PackedVertex* all = shape_->vertices.data();
     for (const std::int32_t id : ids.v)
-        for (const std::uint32_t corner : mesh_->triangles[static_cast<std::size_t>(id) - first_id_]) prefetch(&all[corner]);
+        for (const std::uint32_t corner : triangle(id)) prefetch(&all[corner]);
 }
 
 /// All the waiting for memory at once.
@@ -343,9 +359,10 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up(const StripOf<st
     // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
     std::uint32_t front = set_up_planes(corners, to);
     if (object_->mirrored) front = ~front;
+    const std::uint32_t halves = second_halves(ids);
     std::uint32_t facing_ones = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), to);
+        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), halves, to);
         if (Sixteen::kDirections && view_of_object_->smooth && view_of_object_->even()) facing_ones |= facing(i, corners, to);
     }
     to.easy &= facing_ones;

@@ -255,7 +255,7 @@ template <VertexShader S, typename D>
 void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend) {
     strip.samples = &samples;
     if (samples.on_mesh == 0) return;
-    set_ups_.use(*samples.object, *samples.mesh, samples.first_id);
+    set_ups_.use(*samples.object, *samples.shape, samples.first_id);
     strip.object_view = &set_ups_.object();
     strip.directions = may_solve_directions(place, samples);
     if (place.offsets == nullptr) {
@@ -294,7 +294,7 @@ template <VertexShader S, typename D> std::size_t StripSolver<S, D>::read(std::s
         ReadStrip& strip = read_[count];
         reader_.read(places[count].ids, strip);
         if (strip.on_mesh == 0) continue;
-        set_ups_.use(*strip.object, *strip.mesh, strip.first_id);
+        set_ups_.use(*strip.object, *strip.shape, strip.first_id);
         set_ups_.keep(strip.ids, strip.kept);
     }
     set_ups_.finish();

@@ -24,10 +24,13 @@ template <typename T> struct TriangleUv {
 struct UvTriangle : TriangleUv<float> {
     bool has_area = true; ///< in the texture
 
-    UvTriangle(const Mesh& mesh, std::size_t triangle) {
-        if (mesh.uvs.empty()) return;
-        const auto& corners = mesh.triangles[triangle];
-        const Vec2 a = mesh.uvs[corners[0]], b = mesh.uvs[corners[1]], c = mesh.uvs[corners[2]];
+    UvTriangle(const PackedShape& shape, std::size_t triangle) {
+        if (!shape.has_uvs) return;
+        const auto uv = [&](std::size_t k) {
+            const PackedVertex& corner = shape.vertices[shape.triangles[triangle][k]];
+            return Vec2(corner.u, corner.v);
+        };
+        const Vec2 a = uv(0), b = uv(1), c = uv(2);
         first = a, along_u = b - a, along_v = c - a;
         has_area = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x) != 0;
     }
@@ -70,18 +73,23 @@ Rgb StripSurface::emitted(std::size_t sample) const {
 /// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
 Rgb StripSurface::base_color(std::size_t sample) const {
     if (!(samples_->seen >> sample & 1)) return {};
-    const Mesh& mesh = *samples_->mesh;
+    if (samples_->shape == nullptr) {
+        const Vec2d pixel = place_->position(sample);
+        return hit_color(data_.scene, view_, rounded(view_.pinhole.ray(pixel), view_.time),
+                         find_hit(geometry_, view_, samples_->id(sample), pixel), samples_per_pixel(*place_, view_));
+    }
+    const PackedShape& shape = *samples_->shape;
     const std::size_t triangle = samples_->index(sample);
     const float u = (*at_.b1)[sample], v = (*at_.b2)[sample];
     SurfacePoint point;
     point.object = samples_->object->object;
-    point.primitive = static_cast<std::uint32_t>(triangle);
+    point.primitive = static_cast<std::uint32_t>(shape.primitive(triangle));
     point.material = material_index(data_.scene, point.object, point.primitive);
     point.time = view_.time;
-    const auto& corners = mesh.triangles[triangle];
-    const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
+    const auto corner = [&](std::size_t k) { return Vec3d(shape.vertices[shape.triangles[triangle][k]].p); };
+    const Vec3d a = corner(0), b = corner(1), c = corner(2);
     point.p_object = Vec3(a + (b - a) * static_cast<double>(u) + (c - a) * static_cast<double>(v));
-    const UvTriangle uv(mesh, triangle);
+    const UvTriangle uv(shape, triangle);
     point.uv = uv.at(u, v);
     if (data_.scene.needs.footprints && uv.has_area) {
         const auto step = [&](std::size_t axis) {
@@ -95,6 +103,7 @@ Rgb StripSurface::base_color(std::size_t sample) const {
 
 /// The same side by side, of an object that one texture colours.
 RgbT<Floats> StripSurface::base_colors(std::size_t first) const {
+    if (samples_->shape == nullptr) return ColorSource::base_colors(first);
     const std::optional<RgbSlot>& slot = data_.objects[samples_->object->object].one_texture;
     if (!slot) return ColorSource::base_colors(first);
     const auto& texture = std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
@@ -112,7 +121,7 @@ TexturePlaces StripSurface::texture_places(std::size_t first) const {
     for (std::uint32_t left = places.lanes; left != 0;) {
         const std::size_t sample = first + static_cast<std::size_t>(std::countr_zero(left));
         const std::uint32_t lanes = lanes_of_number(samples_->ids, samples_->ids[sample]) >> first & kAll;
-        uv.set(lanes, UvTriangle(*samples_->mesh, samples_->index(sample)));
+        uv.set(lanes, UvTriangle(*samples_->shape, samples_->index(sample)));
         left &= ~lanes;
     }
     places.uv = uv.at(load(*at_.b1, first), load(*at_.b2, first));

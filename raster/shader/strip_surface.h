@@ -13,13 +13,13 @@ struct StripBarycentrics {
     const std::array<StripOf<float>, 2>*b1_steps = nullptr, *b2_steps = nullptr;
 };
 
-/// The surface that the samples of a strip see: triangles of one mesh. Goes from strip to strip.
+/// The surface that the samples of a strip see: triangles of one object, or a sphere. Goes from strip to strip.
 class StripSurface final : public ColorSource {
 public:
     StripSurface(const PreparedData& data, const Geometry& geometry, const PassView& view)
         : data_(data), geometry_(geometry), view_(view) {}
 
-    /// All three must outlive the questions.
+    /// All three must outlive the questions. Of a sphere barycentrics may be any.
     void move_to(const StripPlace& place, const StripSamples& samples, const StripBarycentrics& at) {
         place_ = &place;
         samples_ = &samples;

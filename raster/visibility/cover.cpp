@@ -149,7 +149,9 @@ private:
         if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
         const Run& run = solver_.run_of(id);
         const double depth = std::max(strip.depth[i], view_.pinhole.near);
-        return make_hit(triangles.objects[run.object].object, Triangles::index(run, id), Piece::kTriangle,
+        const std::uint32_t index = Triangles::index(run, id);
+        const PackedShape& shape = *strip.samples->shape;
+        return make_hit(triangles.objects[run.object].object, static_cast<std::uint32_t>(shape.primitive(index)), shape.piece(index),
                         static_cast<double>(strip.b1[i]), static_cast<double>(strip.b2[i]), depth * tile_.distance_per_depth_[at]);
     }
 

@@ -23,12 +23,12 @@ void StripReader::find_object(const StripSamples& samples) {
     const Run& last = triangles_.run_of(static_cast<std::uint32_t>(*high), *last_run_);
     // Numbers are in the order of objects: between two of one object there is no other's.
     if (last_run_->sphere || last.sphere || last.object != last_run_->object) return;
-    mesh_ = std::get_if<Mesh>(&triangles_.shape(last));
-    if (mesh_ == nullptr) return;
+    shape_ = &triangles_.packed(last);
     object_ = &triangles_.objects[last.object];
-    first_id_ = last.first_id - last.first;
-    low_id_ = static_cast<std::int32_t>(first_id_);
-    end_id_ = low_id_ + static_cast<std::int32_t>(mesh_->triangles.size());
+    const Triangles::Numbers numbers = triangles_.of_object(last);
+    first_id_ = numbers.first;
+    low_id_ = static_cast<std::int32_t>(numbers.first);
+    end_id_ = static_cast<std::int32_t>(numbers.end);
 }
 
 void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
@@ -45,7 +45,7 @@ void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
     samples.object = object_;
     if (object_ == nullptr) return;
     samples.on_mesh = samples.seen;
-    samples.mesh = mesh_;
+    samples.shape = shape_;
     samples.first_id = first_id_;
 }
 

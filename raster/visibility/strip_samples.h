@@ -31,13 +31,13 @@ inline StripPlace strip_place(const DepthTile& tile, int x, int y) { return stri
 struct StripSamples {
     StripOf<std::int32_t> ids; ///< where nothing is seen: another's
     std::uint32_t seen = 0;    ///< a bit for each sample that sees something
-    std::uint32_t on_mesh = 0; ///< and for each that sees a mesh's triangle, where only one object's are seen
+    std::uint32_t on_mesh = 0; ///< and for each that sees a mesh's triangle or a quad's half, where only one object's are seen
     const TransformedObject* object = nullptr; ///< that one, or null
-    const Mesh* mesh = nullptr;
-    std::size_t first_id = 0; ///< number of the mesh's first triangle
+    const PackedShape* shape = nullptr;        ///< its triangles; of a sphere: null
+    std::size_t first_id = 0;                  ///< number of the first of them
 
     std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids[i]); }
-    /// Triangle of the one mesh.
+    /// Triangle of the one object.
     std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids[i]) - first_id; }
 };
 
@@ -56,10 +56,10 @@ private:
 
     const Triangles& triangles_;
     const Run* last_run_ = nullptr;
-    const TransformedObject* object_ = nullptr; ///< null: of the last samples' meshes there was not just one
-    const Mesh* mesh_ = nullptr;
+    const TransformedObject* object_ = nullptr; ///< null: the last samples did not see the triangles of just one
+    const PackedShape* shape_ = nullptr;
     std::size_t first_id_ = 0;
-    std::int32_t low_id_ = 0, end_id_ = 0; ///< numbers of the mesh's triangles
+    std::int32_t low_id_ = 0, end_id_ = 0; ///< numbers of its triangles
 };
 
 } // namespace duet::raster

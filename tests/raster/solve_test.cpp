@@ -1,5 +1,6 @@
 // Where samples lie on their triangles, side by side: in float as the error bounds of raster/shader/solve.h say, in double exactly.
 #include "raster/shader/solve.h"
+#include "raster/shader/sphere_strip.h"
 #include "raster/visibility/cover.h"
 #include "tests/raster/varied_scene.h"
 
@@ -203,6 +204,82 @@ TEST_SUITE("unit") {
             CHECK(vouched > 20'000);
             CHECK(vouched > inside * 0.9);
             CHECK(vouched < inside); // at the edges it can't tell
+        }
+    }
+
+    TEST_CASE("a quad is solved side by side, as two triangles, and its diagonal does not show") {
+        using raster::kStrip, raster::NoVaryings, raster::StripSolver;
+        Scene scene;
+        add(scene, QuadList{{Quad{Vec3(-30, -0.5f, 3), Vec3(60, 1, 0), Vec3(0, 0, -90)},
+                             Quad{Vec3(-1, 0, 0), Vec3(1.5f, 0, 1), Vec3(0, 1, 0)}}});
+        finish_scene(scene);
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(scene, view);
+            const NoVaryings nothing;
+            std::array<int, 2> halves{};
+            int together = 0;
+            double worst = 0;
+            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
+                StripSolver<NoVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, nothing, false);
+                solver.solve(places, true, [&](std::size_t s, const auto& strip) {
+                    CHECK(strip.samples->on_mesh == strip.samples->seen);
+                    for (std::size_t i = 0; i < kStrip; ++i) {
+                        if (!(strip.samples->on_mesh >> i & 1)) continue;
+                        const Hit hit = find_hit(picture.geometry, picture.pass, strip.samples->id(i), places[s].position(i));
+                        const std::size_t triangle = strip.samples->index(i), half = triangle % 2;
+                        const float both = strip.b1[i] + strip.b2[i];
+                        ++halves[half];
+                        together += strip.inside >> i & 1;
+                        CHECK(hit.primitive == strip.samples->shape->primitive(triangle));
+                        const Vec2 uv = half == 0 ? Vec2(both, strip.b2[i]) : Vec2(strip.b1[i], both);
+                        worst = std::max({worst, std::abs(static_cast<double>(uv.x - hit.u)), std::abs(static_cast<double>(uv.y - hit.v))});
+                    }
+                });
+            });
+            CHECK(halves[0] > 1500);
+            CHECK(halves[1] > 1500);
+            CHECK(together > (halves[0] + halves[1]) * 0.98);
+            CHECK(worst < 0x1p-16);
+        }
+    }
+
+    TEST_CASE("points of spheres, side by side, are those of each sample's own ray: of stretched ones and from inside, too") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0.3f, 0.2f, 0.5f), 0.9f});
+        add(scene, Sphere{Vec3(-1, 0.4f, 0), 0.5f}, translation(Vec3(-0.2f, 0.3f, 0.9f)) * scaling(Vec3(-0.7f, 1.8f, 1.1f)));
+        add(scene, Sphere{Vec3(0, 0, 0), 40}); // all else is in it
+        finish_scene(scene);
+        for (const View& view : {perspective(), orthographic()}) {
+            const Strips picture(scene, view);
+            std::array<int, 3> seen{};
+            double worst = 0, worst_depth = 0;
+            int wrong_side = 0;
+            picture.for_each_tile([&](const raster::PixelRect&, std::span<const raster::StripPlace> places) {
+                for (const raster::StripPlace& place : places)
+                    for (const raster::DrawSphere& sphere : picture.geometry.spheres) {
+                        const raster::SphereStrip strip(picture.pass, place, sphere, false);
+                        for (std::size_t i = 0; i < raster::kStrip; ++i) {
+                            if (static_cast<std::uint32_t>(place.ids[i]) != sphere.id) continue;
+                            const Vec2d pixel = place.position(i);
+                            const Rayd exact = picture.pinhole.ray(pixel);
+                            const Ray ray = raster::rounded(exact, 0);
+                            const Hit hit = find_hit(picture.geometry, picture.pass, sphere.id, pixel);
+                            const SurfacePoint point = surface_point(picture.scene, ray, hit);
+                            const Vec3 n(strip.n[0][i], strip.n[1][i], strip.n[2][i]);
+                            const Vec3 p = sphere.sphere.center + n * sphere.sphere.radius;
+                            const double grazing = std::abs(static_cast<double>(dot(point.ng, ray.direction)));
+                            ++seen[sphere.object];
+                            worst = std::max(worst, static_cast<double>(length(p - point.p_object)) * grazing);
+                            const double depth = static_cast<double>(hit.t) * picture.pinhole.near / exact.t_min;
+                            worst_depth = std::max(worst_depth, std::abs(static_cast<double>(strip.depth[i]) / depth - 1) * grazing);
+                            wrong_side += (strip.side[i] < 0) != (dot(point.ng, ray.direction) > 0);
+                        }
+                    }
+            });
+            for (const int each : seen) CHECK(each > 1000);
+            CHECK(worst < 1e-5); // of 40
+            CHECK(worst_depth < 1e-5);
+            CHECK(wrong_side <= 2); // seen exactly along it
         }
     }
 
