@@ -40,7 +40,6 @@ struct ScreenHit {
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what that pixel sees to what is met, where that is but guessed to be alike; of the hidden more
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
-    bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),

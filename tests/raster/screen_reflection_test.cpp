@@ -176,6 +176,54 @@ TEST_SUITE("unit") {
         }
     }
 
+    // The first look shows a mirror as if the environment were all it mirrors.
+    TEST_CASE("a metal ball on a black floor shows the floor up to its edge: nothing of itself, however wide its curve makes a look") {
+        Scene scene;
+        const Vec3d center(0, 0.7, 0);
+        constexpr double kRadius = 0.7;
+        add(scene, QuadList{{{Vec3(-9, 0, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 1.6f, 5}, {0, 0.4f, 0}, 30), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int within = 0;
+        float worst = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 1) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d way = normalize(ray.direction), n = (ray.at(found.hit(x, y).t / length(ray.direction)) - center) / kRadius;
+                if ((way - n * (2 * dot(way, n))).y > -0.3) continue;
+                worst = std::max(worst, found.radiance(x, y).g);
+                ++within;
+            }
+        CHECK(within > 2000);
+        CHECK(worst < 0.02f);
+    }
+
+    TEST_CASE("a ray hidden up to its end meets the floor it goes down to past what hides it, or else what is behind all") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}});
+        add(scene, Sphere{Vec3(0, 1, 0), 1});
+        add(scene, Sphere{Vec3(3, 1, 0), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Settings settings = plain();
+        const View view{look({0, 1, 8}, {0, 1, 0}, 30), 160, 120};
+        const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
+        const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
+        const auto trace = [&](Vec3 way) {
+            return raster::trace_screen({*screen}, bounds, screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false);
+        };
+        CHECK_FALSE(trace({0.02f, 0.05f, -1}));
+        const auto floor = trace({0.02f, -0.05f, -1});
+        REQUIRE(floor);
+        CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
+    }
+
     TEST_CASE("a ray that begins beside the picture is followed through it") {
         const Scene scene = before_wall(0);
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
