@@ -174,10 +174,31 @@ private:
             return ends_far_off() ? past_what_hides(end) : at_end(end);
         }
         const Screen& screen = scenery_.at(end.x, end.y);
-        if (scenery_.is_own(end.x, end.y) || !screen.seen(end.x, end.y)) return std::nullopt;
+        if (scenery_.is_own(end.x, end.y)) return beside_own(end);
+        if (!screen.seen(end.x, end.y)) return std::nullopt;
         const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
         return goes_on(flat ? end : last_flat(line_.last()), 0);
     }
+
+    /// Of a ray that leaves the picture where the edge cuts the mirror itself: what goes on there of what is seen at the edge beside
+    /// that, the nearest first.
+    std::optional<ScreenHit> beside_own(Pixel end) const {
+        const Screen& all = scenery_.all;
+        const bool at_side = end.x == 0 || end.x + 1 == all.width();
+        if (!at_side && end.y != 0 && end.y + 1 != all.height()) return std::nullopt;
+        for (int i = 1; i <= most_aside(); ++i)
+            for (const int step : {-i, i}) {
+                const Pixel at = at_side ? Pixel{end.x, end.y + step} : Pixel{end.x + step, end.y};
+                if (!all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) continue;
+                const Screen& screen = scenery_.at(at.x, at.y);
+                if (!screen.seen(at.x, at.y)) return std::nullopt;
+                if (!is_flat(screen, at.x, at.y)) continue;
+                if (const auto hit = goes_on(at, 0)) return hit;
+            }
+        return std::nullopt;
+    }
+    /// Pixels that are near a place.
+    int most_aside() const { return scenery_.all.width() / 10; }
 
     /// Whether the picture shows where the ray goes to: no edge of it cuts it off.
     bool ends_far_off() const { return line_.part(line_.last() + 1) > 1 && !line_.comes_nearer(); }
@@ -231,8 +252,7 @@ private:
     }
     /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
     ScreenHit beside_edge(ScreenHit hit, float depth) const {
-        const float most = 0.1f * static_cast<float>(scenery_.all.width());
-        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), most);
+        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), static_cast<float>(most_aside()));
         const float x = hit.x + aside * line_.step_x(), y = hit.y + aside * line_.step_y();
         if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
         return hit;
