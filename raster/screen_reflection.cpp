@@ -186,7 +186,7 @@ private:
         const Screen& all = scenery_.all;
         const bool at_side = end.x == 0 || end.x + 1 == all.width();
         if (!at_side && end.y != 0 && end.y + 1 != all.height()) return std::nullopt;
-        for (int i = 1; i <= most_aside(); ++i)
+        for (int i = 1; i <= std::max(all.width(), all.height()) / 2; ++i)
             for (const int step : {-i, i}) {
                 const Pixel at = at_side ? Pixel{end.x, end.y + step} : Pixel{end.x + step, end.y};
                 if (!all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) continue;
@@ -197,9 +197,6 @@ private:
             }
         return std::nullopt;
     }
-    /// Pixels that are near a place.
-    int most_aside() const { return scenery_.all.width() / 10; }
-
     /// Whether the picture shows where the ray goes to: no edge of it cuts it off.
     bool ends_far_off() const { return line_.part(line_.last() + 1) > 1 && !line_.comes_nearer(); }
     /// Hidden up to its end, it meets the first flat surface past what hides it whose plane it crosses, or what is behind all.
@@ -252,7 +249,8 @@ private:
     }
     /// What hides the ray ends before this place: its colour is none of what is met, however blurred that is.
     ScreenHit beside_edge(ScreenHit hit, float depth) const {
-        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), static_cast<float>(most_aside()));
+        const float most = 0.1f * static_cast<float>(scenery_.all.width());
+        const float aside = std::min(0.5f * kGuessBlur * hit.gap / scenery_.all.pixel_size(depth), most);
         const float x = hit.x + aside * line_.step_x(), y = hit.y + aside * line_.step_y();
         if (scenery_.all.contains(x, y)) hit.x = x, hit.y = y;
         return hit;
@@ -283,6 +281,23 @@ bool Scenery::one_object(float x, float y, float reach) const {
     const std::uint32_t seen = object_at(x, y);
     const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
     return same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1);
+}
+
+bool Scenery::own_within(float x, float y, float reach) const {
+    if (without != nullptr) return false; // what the look does not see
+    for (const float dx : {-reach, reach})
+        for (const float dy : {-reach, reach}) {
+            const auto [column, row] = all.pixel_at({x + dx, y + dy, 0});
+            if (is_own(column, row)) return true;
+        }
+    return false;
+}
+
+float Scenery::width_beside_own(float x, float y, float width) const {
+    if (own_within(x, y, 0)) return width;
+    for (; width > 1; width *= 0.7f)
+        if (!own_within(x, y, 2 * width)) return width;
+    return 1;
 }
 
 float Scenery::width_within(float x, float y, float width) const {

@@ -22,6 +22,10 @@ struct Scenery {
     float width_within(float x, float y, float width) const;
     /// Whether a place's pixel and four about it, so far along each axis, show one object.
     bool one_object(float x, float y, float reach) const;
+    /// Whether a look so far about a place sees, in a mirror, the mirror itself: the first look does not know what that shows.
+    bool own_within(float x, float y, float reach) const;
+    /// Of a look at `width` pixels about a place how many do not, one at least; all where the place itself is on it.
+    float width_beside_own(float x, float y, float width) const;
     /// The one for a look at some pixels about a place, in which it must not see itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);
