@@ -197,6 +197,7 @@ private:
             }
         return std::nullopt;
     }
+
     /// Whether the picture shows where the ray goes to: no edge of it cuts it off.
     bool ends_far_off() const { return line_.part(line_.last() + 1) > 1 && !line_.comes_nearer(); }
     /// Hidden up to its end, it meets the first flat surface past what hides it whose plane it crosses, or what is behind all.

@@ -131,8 +131,9 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
     const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
     // What is met is of one object: no look at it is as wide as to see another beside it. But no narrower than a rough surface
-    // blurs: what that sees beside is not a guess.
-    const float wide = hit.hidden ? size : max(scenery_.width_within(hit.x, hit.y, size), scenery_.width_beside_own(hit.x, hit.y, hit.distance * look.spread / pixel));
+    // blurs: what that sees beside is not a guess, but for the mirror itself.
+    const float blur = hit.distance * look.spread / pixel;
+    const float wide = hit.hidden ? size : max(scenery_.width_within(hit.x, hit.y, size), scenery_.width_beside_own(hit.x, hit.y, blur));
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
