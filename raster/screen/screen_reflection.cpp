@@ -136,22 +136,10 @@ private:
         const bool inside = closed && near > depth; // it has come from behind or beside
         if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
-        if (inside) return of_alone(guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t))));
+        if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
         if (closed && dot(screen.normal(x, y), way_) >= 0) return std::nullopt; // it comes past its edge
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
-        const float fx = line_.x(met), fy = line_.y(met);
-        return touches_own(fx, fy) ? of_alone({middle(x), middle(y), length(step)}) : ScreenHit{fx, fy, length(step)};
-    }
-
-    /// Whether a look between pixels sees the mirror that the ray has left: there it has met something in its first steps.
-    bool touches_own(float fx, float fy) const {
-        if (scenery_.without != nullptr) return false; // what the look does not see
-        for (const float dx : {-0.5f, 0.5f})
-            for (const float dy : {-0.5f, 0.5f}) {
-                const auto [x, y] = scenery_.all.pixel_at({fx + dx, fy + dy, 0});
-                if (scenery_.is_own(x, y)) return true;
-            }
-        return false;
+        return ScreenHit{in_pixel(line_.x(met), x), in_pixel(line_.y(met), y), length(step)};
     }
 
     /// The last pixel that it has come to.
@@ -191,12 +179,48 @@ private:
         const Pixel end = last();
         if (hidden_from_ >= 0) {
             if (const auto hit = goes_on(last_flat(line_.last()), hidden_from_)) return hit;
-            return of_hidden(guess(scenery_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_from_));
+            return ends_far_off() ? past_what_hides(end) : at_end(end);
         }
         const Screen& screen = scenery_.at(end.x, end.y);
-        if (scenery_.is_own(end.x, end.y) || !screen.seen(end.x, end.y)) return std::nullopt;
+        if (scenery_.is_own(end.x, end.y)) return beside_own(end);
+        if (!screen.seen(end.x, end.y)) return std::nullopt;
         const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
         return goes_on(flat ? end : last_flat(line_.last()), 0);
+    }
+
+    /// Of a ray that leaves the picture where the edge cuts the mirror itself: what goes on there of what is seen at the edge beside
+    /// that, the nearest first.
+    std::optional<ScreenHit> beside_own(Pixel end) const {
+        const Screen& all = scenery_.all;
+        const bool at_side = end.x == 0 || end.x + 1 == all.width();
+        if (!at_side && end.y != 0 && end.y + 1 != all.height()) return std::nullopt;
+        for (int i = 1; i <= std::max(all.width(), all.height()) / 2; ++i)
+            for (const int step : {-i, i}) {
+                const Pixel at = at_side ? Pixel{end.x, end.y + step} : Pixel{end.x + step, end.y};
+                if (!all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) continue;
+                const Screen& screen = scenery_.at(at.x, at.y);
+                if (!screen.seen(at.x, at.y)) return std::nullopt;
+                if (!is_flat(screen, at.x, at.y)) continue;
+                if (const auto hit = goes_on(at, 0)) return hit;
+            }
+        return std::nullopt;
+    }
+
+    /// Whether the picture shows where the ray goes to: no edge of it cuts it off.
+    bool ends_far_off() const { return line_.part(line_.last() + 1) > 1 && !line_.comes_nearer(); }
+    /// Hidden up to its end, it meets the first flat surface past what hides it whose plane it crosses, or what is behind all.
+    std::optional<ScreenHit> past_what_hides(Pixel end) const {
+        for (int i = line_.last() + 1;; ++i) {
+            const Pixel at = pixel(i);
+            if (!at.valid()) return at_end(end);
+            const Screen& screen = scenery_.at(at.x, at.y);
+            if (!screen.seen(at.x, at.y)) return std::nullopt;
+            if (scenery_.is_own(at.x, at.y) || !is_flat(screen, at.x, at.y)) continue;
+            if (const auto hit = goes_on(at, hidden_from_)) return hit;
+        }
+    }
+    ScreenHit at_end(Pixel end) const {
+        return of_hidden(guess(scenery_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_from_));
     }
 
     /// What a pixel shows stands for what is met at a distance.
@@ -244,10 +268,8 @@ private:
         hit.hidden = true;
         return hit;
     }
-    static ScreenHit of_alone(ScreenHit hit) {
-        hit.alone = true;
-        return hit;
-    }
+    /// What is met is what that pixel shows, not the one before.
+    static float in_pixel(float at, int pixel) { return clamp(at, static_cast<float>(pixel), static_cast<float>(pixel) + 0.99f); }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;
@@ -269,6 +291,23 @@ bool Scenery::one_object(float x, float y, float reach) const {
     const std::uint32_t seen = object_at(x, y);
     const auto same = [&](float dx, float dy) { return object_at(x + dx * reach, y + dy * reach) == seen; };
     return same(-1, -1) && same(1, -1) && same(-1, 1) && same(1, 1);
+}
+
+bool Scenery::own_within(float x, float y, float reach) const {
+    if (without != nullptr) return false; // what the look does not see
+    for (const float dx : {-reach, reach})
+        for (const float dy : {-reach, reach}) {
+            const auto [column, row] = all.pixel_at({x + dx, y + dy, 0});
+            if (is_own(column, row)) return true;
+        }
+    return false;
+}
+
+float Scenery::width_beside_own(float x, float y, float width) const {
+    if (own_within(x, y, 0)) return width;
+    for (; width > 1; width *= 0.7f)
+        if (!own_within(x, y, 2 * width)) return width;
+    return 1;
 }
 
 float Scenery::width_within(float x, float y, float width) const {

@@ -22,6 +22,10 @@ struct Scenery {
     float width_within(float x, float y, float width) const;
     /// Whether a place's pixel and four about it, so far along each axis, show one object.
     bool one_object(float x, float y, float reach) const;
+    /// Whether a look so far about a place sees, in a mirror, the mirror itself: the first look does not know what that shows.
+    bool own_within(float x, float y, float reach) const;
+    /// Of a look at `width` pixels about a place how many do not, one at least; all where the place itself is on it.
+    float width_beside_own(float x, float y, float width) const;
     /// The one for a look at some pixels about a place, in which it must not see itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);
@@ -40,7 +44,6 @@ struct ScreenHit {
     float distance; ///< from the point, metres
     float gap = 0;  ///< metres from what that pixel sees to what is met, where that is but guessed to be alike; of the hidden more
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
-    bool alone = false;  ///< what is met is of the object that is seen there: no look at it is as wide as to see another beside it
 };
 
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),

@@ -129,8 +129,10 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
     const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
     const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
-    // No narrower than a rough surface blurs: what it sees beside is not a guess.
-    const float wide = hit.alone ? max(scenery_.width_within(hit.x, hit.y, size), hit.distance * look.spread / pixel) : size;
+    // What is met is of one object: no look at it is as wide as to see another beside it. But no narrower than a rough surface
+    // blurs: what that sees beside is not a guess, but for the mirror itself.
+    const float blur = hit.distance * look.spread / pixel;
+    const float wide = hit.hidden ? size : max(scenery_.width_within(hit.x, hit.y, size), scenery_.width_beside_own(hit.x, hit.y, blur));
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
@@ -141,7 +143,7 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
-    const bool sees_another = hit.alone && wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f); // between pixels
+    const bool sees_another = wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f); // between pixels
     return sees_another ? radiance_seen.finest()(x, y) : radiance_seen.at(hit.x, hit.y, wide);
 }
 

@@ -22,6 +22,7 @@
 #include <bit>
 #include <concepts>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -39,7 +40,8 @@ template <typename T> struct Direction {
     Vec3T<T> v;
     T scale; ///< 1/|v|, or −1/|v| where v points the other way
 
-    static Direction of(Vec3T<T> v) { return {v, inverse_sqrt(dot(v, v))}; }
+    /// Of nothing, as between normals that point away from each other: no direction at all, which no light meets.
+    static Direction of(Vec3T<T> v) { return {v, inverse_sqrt(max(dot(v, v), T(std::numeric_limits<float>::min())))}; }
     Vec3T<T> unit() const { return v * scale; }
 };
 /// a where the condition holds, else b.

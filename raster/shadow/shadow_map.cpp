@@ -34,6 +34,8 @@ double ShadowMap::texel(double depth) const {
 struct ShadowMap::Plane {
     double at, dx, dy;     ///< at the receiver's place; its change from texel to texel
     double rounding;       ///< everywhere
+    double of_depths;      ///< its part of what light meets squarely,
+    double texel;          ///< the width of which is one texel
     /// More, per texel beside the place: over the plane, and under it; each on the light's side of the receiver, and on the other.
     Vec2d rising, falling;
 };
@@ -44,7 +46,8 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const Vec3d n = receiver.n;
     const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
-    const double rounding = (2 * receiver.error + place.z * 0x1p-22) / towards, texel = this->texel(place.z) / towards;
+    const double of_depths = 2 * receiver.error + place.z * 0x1p-22, rounding = of_depths / towards;
+    const double width = this->texel(place.z), texel = width / towards;
     // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
     // light's ray through the receiver, at which light of the elevation asin(cosine) meets them, before and behind it.
     const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), elevation = cosine / max(sine, 1e-9);
@@ -55,11 +58,12 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     };
     const Vec2d rising = heights(kOfElevation), falling = heights(kFalling);
     if (orthographic_)
-        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards, rounding, rising, falling};
+        return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards,
+                rounding, of_depths, width, rising, falling};
     const double at = view_.near / place.z;
     // 1/d grows by n·dw/(n·w d) for a change dw of w.
-    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards, rounding * scale,
-            rising, falling};
+    return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards,
+            rounding * scale, of_depths * scale, width * scale, rising, falling};
 }
 
 namespace {
@@ -89,22 +93,24 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
                     : lit_fraction<4>(receiver, place, x0 - 1, y0 - 1, spline(fx), spline(fy));
 }
 
-/// How high over the receiver, on the light's ray through it, is the plane of what texel (x, y) sees. Nearness of a surface
+/// How high over the receiver, on the light's ray through it, is the plane of what texel (x, y) sees, in roundings of that: they
+/// are as large as it is steep, and none of the receiver's own plane, but no larger than that's. Nearness of a surface
 /// that rises more and more from the receiver to the texel and on is a convex function f of the texels' coordinates, of which
 /// f(c) − (f(c + e) − f(c)) |r| is at most f(c − r e): taken away from the receiver, differences never put it into the shade
 /// of its own valley, be creases where they may.
 double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const {
     const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
-    // Slopes away from the receiver over its plane. Of a convex surface three in a row grow; of the middle one in size a
-    // single step from one thing to another is no part.
-    const auto rise = [&](int step_x, int step_y) {
+    // Slopes away from the receiver. Of a convex surface three in a row grow; of the middle one in size a single step
+    // from one thing to another is no part.
+    const auto slope = [&](int step_x, int step_y) {
         const int last = side() - 1;
         const auto at = [&](int i) { return seen(std::clamp(x + i * step_x, 0, last), std::clamp(y + i * step_y, 0, last)); };
         const double here = at(0), next = at(1), before = here - at(-1), after = next - here, beyond = at(2) - next;
-        return max(min(before, after), min(max(before, after), beyond)) - (plane.dx * step_x + plane.dy * step_y);
+        return max(min(before, after), min(max(before, after), beyond));
     };
-    return seen(x, y) - (plane.at + plane.dx * right + plane.dy * below) - rise(right < 0 ? -1 : 1, 0) * std::abs(right) -
-           rise(0, below < 0 ? -1 : 1) * std::abs(below);
+    const double across = slope(right < 0 ? -1 : 1, 0), down = slope(0, below < 0 ? -1 : 1);
+    const double height = seen(x, y) - plane.at - across * std::abs(right) - down * std::abs(below);
+    return height / min(plane.of_depths * std::sqrt(1 + (sqr(across) + sqr(down)) / sqr(plane.texel)), plane.rounding);
 }
 
 /// Whether the four texels about the place all see what is over the receiver: then its ray goes through that, for of what
@@ -112,7 +118,7 @@ double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int
 /// wall's plane, as they would see what is beyond a ridge.
 bool ShadowMap::is_covered(const Plane& plane, Vec3d place) const {
     const int x = static_cast<int>(std::floor(place.x - 0.5)), y = static_cast<int>(std::floor(place.y - 0.5));
-    const auto over = [&](int column, int row) { return height_at_receiver(plane, place, column, row) > kFourDepths * plane.rounding; };
+    const auto over = [&](int column, int row) { return height_at_receiver(plane, place, column, row) > kFourDepths; };
     return over(x, y) && over(x + 1, y) && over(x, y + 1) && over(x + 1, y + 1);
 }
 
@@ -134,7 +140,7 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
             if (over < -slack(plane.falling)) continue;
             const bool near = over <= slack(plane.rising);
-            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths * plane.rounding);
+            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths);
             if (blocks && seen <= plane.at) continue;
             const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
             (over < -plane.rounding ? under : known) += weight;

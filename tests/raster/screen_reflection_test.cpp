@@ -37,6 +37,12 @@ bool mirrored(int x, int y, Vec3d& hit) {
     return std::abs(hit.x) < 3.9;
 }
 
+/// Of a ray that hits a ball: the mirrored one.
+Rayd mirrored_ray(const Rayd& ray, const Hit& hit, Vec3d center) {
+    const Vec3d way = normalize(ray.direction), p = ray.at(static_cast<double>(hit.t) / length(ray.direction)), n = normalize(p - center);
+    return {p, way - n * (2 * dot(way, n))};
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -174,6 +180,83 @@ TEST_SUITE("unit") {
             CHECK(pixels == 3 * 80);
             CHECK(worst < 0.1f); // looks are a little wider than a pixel
         }
+    }
+
+    // The first look shows a mirror as if the environment were all it mirrors. In the second view the edge cuts the ball.
+    TEST_CASE("a metal ball on a black floor shows the floor up to its edge, and where the picture ends: nothing of itself or the sky") {
+        const Vec3d center(0, 0.7, 0);
+        constexpr double kRadius = 0.7;
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-9, 0, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        for (const double middle : {0.4, 1.6}) {
+            const View view{look({0, 1.6f, 5}, {0, middle, 0}, 30), 320, 240};
+            raster::Settings settings = plain();
+            settings.aovs.hit = true;
+            const Rendering found = render(scene, view, settings);
+            int within = 0;
+            float worst = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    if (found.hit(x, y).object != 1) continue;
+                    const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                    if (mirrored_ray(ray, found.hit(x, y), center).direction.y > -0.3) continue;
+                    worst = std::max(worst, found.radiance(x, y).g);
+                    ++within;
+                }
+            CAPTURE(middle);
+            CHECK(within > 500);
+            CHECK(worst < (middle < 1 ? 0.02f : 0.2f)); // what the picture does not show is guessed, and blurred
+        }
+    }
+
+    TEST_CASE("a rough metal ball shows a black ball beside it black, and nothing of itself in that") {
+        const Vec3d center(0.52, 0, 0), black(-0.52, 0, 0);
+        constexpr double kRadius = 0.5;
+        Scene scene;
+        add(scene, Sphere{Vec3(black), static_cast<float>(kRadius)}, Mat4(), Diffuse{{Rgb()}});
+        add(scene, Sphere{Vec3(center), static_cast<float>(kRadius)}, Mat4(), Metal{{Rgb(1.0f)}, 0.35f});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const View view{look({0, 0, 5}, {0, 0, 0}, 30), 640, 480};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int within = 0;
+        double sum = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 1) continue;
+                const Rayd ray = mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
+                const Vec3d to = black - ray.origin;
+                if (length(to - ray.direction * dot(to, ray.direction)) > 0.3 * kRadius || dot(to, ray.direction) < 0) continue;
+                sum += static_cast<double>(found.radiance(x, y).g);
+                ++within;
+            }
+        CHECK(within > 100);
+        CHECK(sum < 0.16 * within);
+    }
+
+    TEST_CASE("a ray hidden up to its end meets the floor it goes down to past what hides it, or else what is behind all") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}});
+        add(scene, Sphere{Vec3(0, 1, 0), 1});
+        add(scene, Sphere{Vec3(3, 1, 0), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Settings settings = plain();
+        const View view{look({0, 1, 8}, {0, 1, 0}, 30), 160, 120};
+        const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
+        const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
+        const auto trace = [&](Vec3 way) {
+            return raster::trace_screen({*screen}, bounds, screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false);
+        };
+        CHECK_FALSE(trace({0.02f, 0.05f, -1}));
+        const auto floor = trace({0.02f, -0.05f, -1});
+        REQUIRE(floor);
+        CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {

@@ -241,6 +241,33 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("normals that cancel each other out, and those that are none, are no direction in any shading, nor invalid") {
+        for (const bool cancel : {false, true}) {
+            Mesh mesh;
+            mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+            mesh.normals = cancel ? std::vector<Vec3>{{0, 0, 1}, {0, 0, -1}, {0, 0, -1}, {0, 0, 1}} : std::vector<Vec3>(4);
+            mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+            Scene scene;
+            add(scene, mesh);
+            scene.lights.push_back(SunLight{normalize(Vec3(0, -1, -1)), Rgb(2)});
+            scene.environment = ConstantEnvironment{Rgb(1.0f)};
+            finish_scene(scene);
+            Camera camera = look({0, 0, 4}, {0, 0, 0});
+            camera.projection = Camera::Projection::kOrthographic;
+            camera.height = 4;
+            for (const raster::Shading shading : {raster::Shading::kLit, raster::Shading::kPhong, raster::Shading::kGouraud,
+                                                  raster::Shading::kToon, raster::Shading::kNormal}) {
+                raster::Settings settings;
+                settings.shading = shading;
+                const Rendering seen = render(scene, {camera, 65, 65}, settings); // the middle column is where normals cancel
+                CAPTURE(cancel);
+                CAPTURE(static_cast<int>(shading));
+                CHECK(seen.statistics.invalid_samples == 0);
+                if (shading == raster::Shading::kNormal) CHECK(seen.radiance(32, 32) == Rgb(0.5f)); // of no direction
+            }
+        }
+    }
+
     TEST_CASE("lamps shine in every shading that shows light, in strips and alone, as materials and lights have them") {
         Scene scene = varied_scene(60);
         scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});

@@ -153,6 +153,28 @@ TEST_SUITE("unit") {
         }
     }
 
+    // Half of the filter sees past the wall. What the other half sees is known better than the wall's own depths are.
+    TEST_CASE("a wall that the sun all but passes by is dark under a roof that ends just behind it") {
+        for (const int side : {256, 400, 512})
+            for (const float grazing : {0.0005f, 0.0015f}) {
+                Scene scene = with_sun({-grazing, -1, 0.4f});
+                std::get<SunLight>(scene.lights.front()).irradiance = Rgb(500);
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(-0.008f, 1.02f, 2), Vec3(1, 0.5f, 0), Vec3(0, 0, -4)}}});
+                finish_scene(scene);
+                raster::Settings settings;
+                settings.shadow_map_side = side;
+                Camera camera = look({0.5, 0.975, 0}, {0, 0.975, 0});
+                camera.projection = Camera::Projection::kOrthographic;
+                camera.height = 0.05;
+                double lit = 0; // part of the wall
+                for (const float part : arriving(scene, {camera, 100, 100}, settings)) lit += static_cast<double>(part) / sqr(100.0);
+                CAPTURE(side);
+                CAPTURE(grazing);
+                CHECK(lit < 1e-3);
+            }
+    }
+
     TEST_CASE("no acne in a hollow: facets that meet at 3 to 9 degrees and face the light do not shade each other") {
         for (const int facets : {10, 30})
             for (const Vec3 way : {Vec3(0, -1, 0), Vec3(-0.2f, -1, 0.1f), Vec3(0, -1, 0.7f)}) {
