@@ -115,17 +115,18 @@ void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depth
         }
 }
 
-/// Whether samples are shaded one by one, with surfaces before them that may be seen through: all of Shading::kLit, and
-/// of any scene that has such surfaces.
-bool all_one_by_one(const Frame& frame) { return frame.program == nullptr || frame.layers != nullptr; }
+/// Whether a tile has surfaces that may be seen through.
+bool layered(const Frame& frame, std::size_t tile) { return frame.layers != nullptr && touches(*frame.layers, tile); }
+/// Whether its samples are shaded one by one: all of Shading::kLit, and with layers before them of any shading.
+bool all_one_by_one(const Frame& frame, std::size_t tile) { return frame.program == nullptr || layered(frame, tile); }
 /// The same, or auxiliary pictures of any shading.
-bool one_by_one(const Frame& frame) { return all_one_by_one(frame) || frame.settings.aovs.any(); }
+bool one_by_one(const Frame& frame, std::size_t tile) { return all_one_by_one(frame, tile) || frame.settings.aovs.any(); }
 
 /// Samples of a tile one by one.
 void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths, Picture& picture) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
-    if (frame.layers != nullptr)
+    if (layered(frame, index))
         layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
     const bool central = view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
@@ -143,7 +144,7 @@ void shade_samples(const Frame& frame, const PassView& view, std::size_t index, 
                 shaded = layers->over(x, y, shaded);
             }
             if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
-            if (all_one_by_one(frame)) picture.add(x, y, shaded.radiance);
+            if (all_one_by_one(frame, index)) picture.add(x, y, shaded.radiance);
         }
 }
 
@@ -209,8 +210,8 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
         Stopwatch watch;
         cover(frame.geometry, view, offset, rect, index, depths);
         frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (one_by_one(frame)) shade_samples(frame, view, index, depths, picture);
-        if (!all_one_by_one(frame)) shade_tile(frame, view, depths, picture);
+        if (one_by_one(frame, index)) shade_samples(frame, view, index, depths, picture);
+        if (!all_one_by_one(frame, index)) shade_tile(frame, view, depths, picture);
         frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
@@ -226,7 +227,7 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
         DepthTile depths;
         cover(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
-        if (frame.layers != nullptr && touches(*frame.layers, i))
+        if (layered(frame, i))
             seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view), *normals);
     });
     if (!frame.control.stopped()) overlay.add_edges(seen);

@@ -67,6 +67,31 @@ TEST_SUITE("unit") {
         CHECK(render(scene, {scene.camera, 9, 9}, albedo()).radiance(4, 4).g == doctest::Approx(0.5));
     }
 
+    TEST_CASE("a veil leaves the bits of tiles that it does not touch as they are, in every shading that has a program") {
+        const auto picture = [](bool veiled, raster::Shading shading) {
+            Scene scene;
+            scene.camera = look({0, 1, 5}, {0, 0, 0});
+            add(scene, QuadList{{Quad{{-30, -1, 3}, {60, 0.5f, 0}, {0, 0, -60}}}}, Mat4(), Diffuse{{Rgb(0.3f, 0.5f, 0.7f)}});
+            scene.lights.push_back(PointLight{Vec3(1, 4, 2), Rgb(30.0f)});
+            add(scene, QuadList{{Quad{{-1.2f, -0.5f, 0}, {0.4f, 0, 0}, {0, 0.4f, 0}}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
+            if (veiled) make_veil(scene, 0.5f);
+            finish_scene(scene);
+            raster::Settings settings;
+            settings.shading = shading;
+            return render(scene, {scene.camera, 256, 128}, settings);
+        };
+        for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon}) {
+            const Rendering whole = picture(false, shading), veiled = picture(true, shading);
+            int apart = 0;
+            for (int y = 0; y < 128; ++y)
+                for (int x = 128; x < 256; ++x) {
+                    const Rgb a = whole.radiance(x, y), b = veiled.radiance(x, y);
+                    apart += a.r != b.r || a.g != b.g || a.b != b.b;
+                }
+            CHECK(apart == 0);
+        }
+    }
+
     TEST_CASE("holes show what exact rays see: halves of a square, a ball's inside") {
         Scene scene;
         scene.camera = look({0.3, 0.4, 5}, {0, 0, 0}, 30);

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <functional>
+#include <optional>
 
 using namespace duet;
 using namespace duet::test;
@@ -201,7 +202,7 @@ TEST_SUITE("unit") {
                   raster::Shading::kWireframe, raster::Shading::kNormal, raster::Shading::kAlbedo, raster::Shading::kDepth}) {
                 const auto program = raster::program(shading, view.camera);
                 REQUIRE(program != nullptr);
-                int compared = 0, of_quads = 0, of_spheres = 0, apart = 0;
+                int compared = 0, of_quads = 0, of_spheres = 0, of_several = 0, apart = 0;
                 for (std::size_t t = 0; t < grid.size(); ++t) {
                     raster::DepthTile depths;
                     cover(geometry, pass, samples[0], grid.tile(t), t, depths);
@@ -212,6 +213,8 @@ TEST_SUITE("unit") {
                             const raster::StripPlace place = raster::strip_place(depths, x, y);
                             raster::StripColors together;
                             shader->shade(place, together);
+                            std::optional<std::uint32_t> first_object;
+                            bool several = false;
                             for (std::size_t i = 0; i < raster::kStrip; ++i) {
                                 const auto id = static_cast<std::uint32_t>(place.ids[i]);
                                 if (id == raster::kNoTriangle) continue;
@@ -219,6 +222,8 @@ TEST_SUITE("unit") {
                                 const Hit hit = find_hit(geometry, pass, id, pixel);
                                 const Rgb alone = program->shade_hit(prepared.data(), pass, hit, pixel);
                                 ++compared;
+                                several = several || first_object.value_or(hit.object) != hit.object;
+                                first_object = hit.object;
                                 const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
                                 of_quads += std::holds_alternative<QuadList>(shape);
                                 of_spheres += std::holds_alternative<Sphere>(shape);
@@ -229,11 +234,13 @@ TEST_SUITE("unit") {
                                     same = same && std::abs(shown[c] - wanted[c]) <= 2e-4f * (1 + std::abs(wanted[c]));
                                 apart += !same;
                             }
+                            of_several += several;
                         }
                 }
                 CAPTURE(static_cast<int>(shading));
                 CHECK(compared > 30'000);
                 CHECK(of_quads > 10'000);
+                CHECK(of_several > 200);
                 CHECK(of_spheres > 500);
                 // Toon's bands and wires change within a pixel: a derivative's rounding shows there.
                 CHECK(apart <= compared / 2000);
