@@ -192,8 +192,10 @@ private:
     /// that, the nearest first.
     std::optional<ScreenHit> beside_own(Pixel end) const {
         const Screen& all = scenery_.all;
-        const bool at_side = end.x == 0 || end.x + 1 == all.width();
-        if (!at_side && end.y != 0 && end.y + 1 != all.height()) return std::nullopt;
+        const float out = line_.part(line_.last() + 2); // by rounding the next step may still be in the picture
+        const Vec2 beyond(line_.x(out), line_.y(out));
+        if (line_.part(line_.last() + 1) > 1 || all.contains(beyond.x, beyond.y)) return std::nullopt;
+        const bool at_side = !(beyond.x >= 0 && beyond.x < static_cast<float>(all.width()));
         for (int i = 1; i <= std::max(all.width(), all.height()) / 2; ++i)
             for (const int step : {-i, i}) {
                 const Pixel at = at_side ? Pixel{end.x, end.y + step} : Pixel{end.x + step, end.y};
