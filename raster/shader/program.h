@@ -28,15 +28,8 @@ public:
     using StripShader::shade;
     void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
         parts_.clear();
-        solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
-            const StripSamples& samples = *strip.samples;
-            seen[s] = samples.seen;
-            if (samples.on_mesh == samples.seen)
-                shade_solved(places[s], strip, colors[s]);
-            else
-                shade_objects(places[s], samples, colors[s]);
-        });
-        shade_parts();
+        shade_strips(places, colors, seen);
+        if (!parts_.empty()) shade_parts();
     }
 
 private:
@@ -49,6 +42,17 @@ private:
         StripPlace place;
         StripColors* colors = nullptr;
     };
+
+    void shade_strips(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) {
+        solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
+            const StripSamples& samples = *strip.samples;
+            seen[s] = samples.seen;
+            if (samples.on_mesh == samples.seen)
+                shade_solved(places[s], strip, colors[s]);
+            else
+                shade_objects(places[s], samples, colors[s]);
+        });
+    }
 
     void shade_solved(const StripPlace& place, const Solved& strip, StripColors& colors) {
         if (strip.samples->seen == 0) return;
@@ -101,17 +105,17 @@ private:
         copy(lanes, own, colors);
     }
 
+    /// Each sees one object, so no more parts come of them.
     void shade_parts() {
         places_of_parts_.clear();
         for (const Part& part : parts_) {
             places_of_parts_.push_back(part.place);
             places_of_parts_.back().ids = part.ids.at(0);
         }
-        solver_.solve(places_of_parts_, true, [&](std::size_t s, const Solved& strip) {
-            StripColors own;
-            shade_solved(places_of_parts_[s], strip, own);
-            copy(strip.samples->seen, own, *parts_[s].colors);
-        });
+        colors_of_parts_.resize(parts_.size());
+        seen_of_parts_.resize(parts_.size());
+        shade_strips(places_of_parts_, colors_of_parts_.data(), seen_of_parts_.data());
+        for (std::size_t i = 0; i < parts_.size(); ++i) copy(seen_of_parts_[i], colors_of_parts_[i], *parts_[i].colors);
     }
 
     static void copy(std::uint32_t lanes, const StripColors& from, StripColors& to) {
@@ -196,6 +200,8 @@ private:
     std::optional<LinearInTile> eyes_; ///< or each at a place of its own
     std::vector<Part> parts_;
     std::vector<StripPlace> places_of_parts_;
+    std::vector<StripColors> colors_of_parts_;
+    std::vector<std::uint32_t> seen_of_parts_;
     std::optional<ObjectView> sphere_view_; ///< of the last sphere
     bool only_suns_;                   ///< are the scene's lights
 };
