@@ -112,7 +112,7 @@ private:
         if (shader_ == nullptr)
             return shade_one_by_one(intersect(tile_.rect(), {x, y, x + kBlock, y + kStripRows}), codes_[slot]);
         const std::size_t next = count_++;
-        slots_[next] = slot;
+        codes_of_[next] = &codes_[slot];
         places_[next] = strip_place(tile_, x, y, place);
     }
 
@@ -120,8 +120,7 @@ private:
     void shade_together() {
         if (count_ == 0) return;
         shader_->shade(std::span(places_).first(count_), colors_.data(), seen_.data());
-        for (std::size_t i = 0; i < count_; ++i)
-            encode_strip(colors_[i], seen_[i], *background_, codes_[slots_[i]]); // a program has one
+        encode_strips(std::span(colors_).first(count_), seen_.data(), *background_, codes_of_.data()); // a program has one
         count_ = 0;
     }
 
@@ -143,7 +142,7 @@ private:
     static constexpr std::size_t kMost = DepthTile::kBlocks * kStrips;
     std::array<StripCodes, kMost> codes_;  ///< of a row of blocks
     std::array<StripPlace, kMost> places_; ///< strips to be shaded
-    std::array<std::size_t, kMost> slots_{}; ///< and where their codes go
+    std::array<StripCodes*, kMost> codes_of_{}; ///< and where their codes go
     std::array<StripColors, kMost> colors_;
     std::array<std::uint32_t, kMost> seen_{};
     std::size_t count_ = 0;

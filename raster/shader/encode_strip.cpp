@@ -2,6 +2,7 @@
 
 #include "common/image/srgb.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -47,12 +48,12 @@ Floats moved_code(const Floats& value) {
     return xsimd::select(x <= Floats(kStraight), straight, curved_code(x));
 }
 
-/// Whether the curve is all that is asked for of those lanes whose bits are given, as it mostly is.
-bool all_curved(const RgbT<Floats>& c, std::uint32_t lanes) {
+/// A bit for each lane with a number that the curve is not for, which few have.
+std::uint32_t not_curved(const RgbT<Floats>& c) {
     // As whole numbers: so NaN is too large, and what is negative too small.
     const auto bits = [](const Floats& x) { return xsimd::bitwise_cast<Ints>(x); };
     const Ints least = min(min(bits(c.r), bits(c.g)), bits(c.b)), most = max(max(bits(c.r), bits(c.g)), bits(c.b));
-    return (lanes & ~(lane_bits(least > bits(Floats(kStraight))) & lane_bits(most <= bits(Floats(1.0f))))) == 0;
+    return lane_bits(least <= bits(Floats(kStraight))) | lane_bits(most > bits(Floats(1.0f)));
 }
 
 // A moved code to the place that a channel has in memory: the bytes r, g, b, a.
@@ -75,24 +76,70 @@ Ints packed(const RgbT<Floats>& moved, std::uint32_t& doubtful) {
     return in_place<0>(r) | in_place<1>(g) | in_place<2>(b) | Ints(kOpaque);
 }
 
+constexpr std::uint32_t kAllLanes = (1u << Floats::size) - 1;
+
+RgbT<Floats> batch(const StripColors& colors, std::size_t i) { return {load(colors.r, i), load(colors.g, i), load(colors.b, i)}; }
+
+/// Pixels of the samples from the i-th on, as many as there are lanes; of those that see nothing: `behind`.
+void put(const Ints& pixels, const Ints& behind, std::uint32_t seen, std::size_t i, StripCodes& codes) {
+    alignas(64) std::array<std::int32_t, Ints::size> words;
+    xsimd::select(xsimd::bool_cast(lanes_from<float>(seen >> i)), pixels, behind).store_aligned(words.data());
+    std::memcpy(static_cast<void*>(codes.at(i)), words.data(), sizeof(words));
+}
+
+/// What encode() leaves to be done of a strip: a bit for each sample that the polynomial can't tell, or that has a number which the
+/// curve is not for.
+struct Left {
+    std::uint32_t doubtful, other;
+};
+
+/// A strip as if the curve were all there is.
+Left encode(const StripColors& colors, std::uint32_t seen, const Ints& behind, StripCodes& codes) {
+    Left left{0, 0};
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+        const RgbT<Floats> c = batch(colors, i);
+        std::uint32_t doubtful = 0;
+        put(packed({curved_code(c.r), curved_code(c.g), curved_code(c.b)}, doubtful), behind, seen, i, codes);
+        left.doubtful |= doubtful << i;
+        left.other |= not_curved(c) << i;
+    }
+    return {left.doubtful & seen, left.other & seen};
+}
+
+/// The same of any numbers. Returns a bit for each sample that is doubtful.
+std::uint32_t encode_any(const StripColors& colors, std::uint32_t seen, const Ints& behind, StripCodes& codes) {
+    std::uint32_t all_doubtful = 0;
+    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+        const RgbT<Floats> c = batch(colors, i);
+        std::uint32_t doubtful = 0;
+        put(packed({moved_code(c.r), moved_code(c.g), moved_code(c.b)}, doubtful), behind, seen, i, codes);
+        all_doubtful |= doubtful << i;
+    }
+    return all_doubtful & seen;
+}
+
+void encode_one_by_one(const StripColors& colors, std::uint32_t samples, StripCodes& codes) {
+    const SrgbEncoder& encode = srgb_encoder();
+    for (; samples != 0; samples &= samples - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(samples));
+        codes[i] = {encode(colors.r[i]), encode(colors.g[i]), encode(colors.b[i]), 255};
+    }
+}
+
 } // namespace
 
-void encode_strip(const StripColors& colors, std::uint32_t seen, Rgba8 background, StripCodes& codes) {
+void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background, StripCodes* const* codes) {
     const Ints behind(std::bit_cast<std::int32_t>(background));
-    constexpr std::uint32_t kAllLanes = (1u << Floats::size) - 1;
-    for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        const std::uint32_t here = seen >> i & kAllLanes;
-        const RgbT<Floats> c(load(colors.r, i), load(colors.g, i), load(colors.b, i));
-        std::uint32_t doubtful = 0;
-        const Ints pixels = all_curved(c, here) ? packed({curved_code(c.r), curved_code(c.g), curved_code(c.b)}, doubtful)
-                                                : packed({moved_code(c.r), moved_code(c.g), moved_code(c.b)}, doubtful);
-        alignas(64) std::array<std::int32_t, Ints::size> words;
-        xsimd::select(xsimd::bool_cast(lanes_from<float>(here)), pixels, behind).store_aligned(words.data());
-        std::memcpy(static_cast<void*>(codes.at(i)), words.data(), sizeof(words));
-        for (std::uint32_t left = doubtful & here; left != 0; left &= left - 1) {
-            const SrgbEncoder& encode = srgb_encoder();
-            const std::size_t k = i + static_cast<std::size_t>(std::countr_zero(left));
-            codes[k] = {encode(colors.r[k]), encode(colors.g[k]), encode(colors.b[k]), 255};
+    constexpr std::size_t kTogether = 64; // the polynomial's numbers stay in registers
+    std::array<Left, kTogether> left;
+    for (std::size_t first = 0; first < colors.size(); first += kTogether) {
+        const std::size_t count = std::min(kTogether, colors.size() - first);
+        for (std::size_t s = 0; s < count; ++s) left[s] = encode(colors[first + s], seen[first + s], behind, *codes[first + s]);
+        for (std::size_t s = 0; s < count; ++s) {
+            if ((left[s].doubtful | left[s].other) == 0) continue;
+            const StripColors& of = colors[first + s];
+            StripCodes& to = *codes[first + s];
+            encode_one_by_one(of, left[s].other == 0 ? left[s].doubtful : encode_any(of, seen[first + s], behind, to), to);
         }
     }
 }

@@ -1,9 +1,11 @@
-// A strip of pixels to 8-bit sRGB.
+// Strips of pixels to 8-bit sRGB.
 #pragma once
 
 #include "raster/lanes.h"
 
 #include "common/image/rgb.h"
+
+#include <span>
 
 namespace duet::raster {
 
@@ -13,7 +15,8 @@ using StripColors = RgbT<StripOf<float>>;
 /// Codes, sixteen of them, in one row of the cache.
 using StripCodes = StripOf<Rgba8>;
 
-/// Codes as SrgbEncoder gives them, for every float; opaque. The background's where `seen` has no bit for a sample.
-void encode_strip(const StripColors& colors, std::uint32_t seen, Rgba8 background, StripCodes& codes);
+/// Of each strip its codes as SrgbEncoder gives them, for every float; opaque. The background's where the strip's `seen` has no bit
+/// for a sample. As many of both as there are colours; any number at a time: many are faster than one by one.
+void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background, StripCodes* const* codes);
 
 } // namespace duet::raster

@@ -45,7 +45,7 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     }
 }
 
-template <typename T> IncidentT<T> incident(const SunLight& sun) { return {spread<T>(-sun.direction), spread<T>(sun.irradiance)}; }
+template <typename T> IncidentT<T> incident(const SunLight& sun) { return {-spread<T>(sun.direction), spread<T>(sun.irradiance)}; }
 
 /// use(IncidentT<T>) for each light, at the point of the world that place() returns; suns, which shine everywhere alike,
 /// don't ask for it.

@@ -22,19 +22,19 @@ public:
                 const Vec3T<Floats> here = spread<Floats>(first) + moved(x, load(kRows<float>, i));
                 for (std::size_t axis = 0; axis < 3; ++axis) store(columns_[k][axis], i, here[axis]);
             }
-        for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = step_y_ * static_cast<float>(k * kStripHeight);
+        set_rows();
     }
 
     /// So the samples of the strips that follow lie in their pixels.
     void use(SampleOffset offset) {
         if (offset == offset_) return;
         offset_ = offset;
-        shift_ = moved(static_cast<float>(offset.x) / kSubPixels, static_cast<float>(offset.y) / kSubPixels);
+        set_rows();
     }
     /// Of the strip that begins at pixel (x, y): its samples from the i-th on, as many as there are lanes.
     Vec3T<Floats> at(int x, int y, std::size_t i) const {
         const auto& column = columns_[static_cast<std::size_t>(x - x0_) / kStripWidth];
-        const Vec3 row = rows_[static_cast<std::size_t>(y - y0_) / kStripHeight] + shift_;
+        const Vec3& row = rows_[static_cast<std::size_t>(y - y0_) / kStripHeight];
         return {load(column[0], i) + Floats(row.x), load(column[1], i) + Floats(row.y), load(column[2], i) + Floats(row.z)};
     }
     /// What as many pixels to the right and down add.
@@ -44,13 +44,17 @@ public:
     }
 
 private:
+    void set_rows() {
+        const Vec3 shift = moved(static_cast<float>(offset_.x) / kSubPixels, static_cast<float>(offset_.y) / kSubPixels);
+        for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = step_y_ * static_cast<float>(k * kStripHeight) + shift;
+    }
+
     static constexpr std::size_t kStripHeight = DepthTile::kStripRows;
     Vec3 step_x_, step_y_;
     int x0_, y0_;
     std::array<std::array<StripOf<float>, 3>, TileGrid::kTileSize / kStripWidth> columns_;
-    std::array<Vec3, TileGrid::kTileSize / kStripHeight> rows_;
+    std::array<Vec3, TileGrid::kTileSize / kStripHeight> rows_; ///< their samples' places in their pixels, too
     SampleOffset offset_{0, 0};
-    Vec3 shift_;
 };
 
 } // namespace duet::raster

@@ -23,9 +23,9 @@ template <typename T> struct PhongFactors {
         const T arriving = dot(n.v, wi) * n.scale;
         cosine = max(arriving, T(0));
         // The mirror direction's cosine with wo; three products that need not wait for each other.
-        lobe = max(fused(T(2) * arriving, dot(n.v, wo.v) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
+        const T leaving = dot(n.v, wo.v);
+        lobe = max(fused(arriving, (leaving + leaving) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
-        lobe = lobe * T(kPhongSpecular);
     }
     bool behind() const { return none_of_lanes(cosine > T(0)); } ///< gives no light at all
 };
@@ -40,8 +40,9 @@ RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& plac
         const PhongFactors<T> f(n, wo, light.wi);
         if (f.behind()) return;
         const RgbT<T> arriving = light.irradiance * f.cosine;
-        sum = {fused(arriving.r, diffuse.r + f.lobe, sum.r), fused(arriving.g, diffuse.g + f.lobe, sum.g),
-               fused(arriving.b, diffuse.b + f.lobe, sum.b)};
+        const T specular(kPhongSpecular);
+        sum = {fused(arriving.r, fused(f.lobe, specular, diffuse.r), sum.r), fused(arriving.g, fused(f.lobe, specular, diffuse.g), sum.g),
+               fused(arriving.b, fused(f.lobe, specular, diffuse.b), sum.b)};
     });
     return sum;
 }
@@ -59,7 +60,7 @@ PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direct
         if (f.behind()) return;
         const RgbT<T> arriving = light.irradiance * f.cosine;
         sum.irradiance += arriving;
-        sum.highlights += arriving * f.lobe;
+        sum.highlights += arriving * (f.lobe * T(kPhongSpecular));
     });
     return sum;
 }

@@ -44,26 +44,37 @@ private:
     };
 
     void shade_strips(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) {
-        solver_.solve(places, true, [&](std::size_t s, const Solved& strip) {
-            const StripSamples& samples = *strip.samples;
-            seen[s] = samples.seen;
-            if (samples.on_mesh == samples.seen)
-                shade_solved(places[s], strip, colors[s]);
-            else
-                shade_objects(places[s], samples, colors[s]);
+        solver_.solve(places, true, [&](std::size_t first, std::span<const Solved> strips) {
+            for (std::size_t s = 0; s < strips.size(); ++s) seen[first + s] = strips[s].samples->seen;
+            for (std::size_t s = 0, end; s < strips.size(); s = end) {
+                end = s + 1;
+                if (strips[s].object_view != nullptr) {
+                    if (plain(*strips[s].object_view))
+                        while (end < strips.size() && alike(&places[first], strips, s, end)) ++end;
+                    shade_solved(&places[first + s], strips.subspan(s, end - s), &colors[first + s]);
+                } else if (strips[s].samples->seen != 0) {
+                    shade_objects(places[first + s], *strips[s].samples, colors[first + s]);
+                }
+            }
         });
     }
 
-    void shade_solved(const StripPlace& place, const Solved& strip, StripColors& colors) {
-        if (strip.samples->seen == 0) return;
-        surface_.move_to(place, *strip.samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
-        const SampleOffset offset = place.offsets != nullptr ? SampleOffset{0, 0} : place.offset;
+    bool plain(const ObjectView& object) const { return only_suns_ && object.even(); }
+    /// What all samples of a strip have in common two have so: the object, and where in their pixels they lie.
+    static bool alike(const StripPlace* places, std::span<const Solved> strips, std::size_t a, std::size_t b) {
+        return strips[a].object_view == strips[b].object_view && strips[a].directions == strips[b].directions &&
+               places[a].offsets == nullptr && places[b].offsets == nullptr && places[a].offset == places[b].offset;
+    }
+
+    /// One strip, or several that are alike.
+    void shade_solved(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) {
+        const Solved& strip = strips.front();
+        const SampleOffset offset = places->offsets != nullptr ? SampleOffset{0, 0} : places->offset;
         ways_.use(offset);
         if (eyes_) eyes_->use(offset);
-        if (only_suns_ && strip.object_view->even())
-            shade_as<true>(place, strip, colors);
-        else
-            shade_as<false>(place, strip, colors);
+        if (plain(*strip.object_view)) return shade_as<true>(places, strips, colors);
+        surface_.move_to(*places, *strip.samples, {&strip.b1, &strip.b2, &strip.b1_steps, &strip.b2_steps});
+        shade_as<false>(places, strips, colors);
     }
 
     /// Spheres at once, triangles in parts.
@@ -101,7 +112,7 @@ private:
         strip.samples = &samples;
         solve_sphere(SphereStrip(view_, place, sphere, wants_derivatives<S>()), sphere.sphere, shader_, *sphere_view_, strip);
         StripColors own;
-        shade_solved(place, strip, own);
+        shade_solved(&place, std::span(&strip, 1), &own);
         copy(lanes, own, colors);
     }
 
@@ -126,36 +137,44 @@ private:
         }
     }
 
-    template <bool kPlain> void shade_as(const StripPlace& place, const Solved& strip, StripColors& colors) const {
+    template <bool kPlain> void shade_as(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) const {
         if constexpr (wants_directions<S>())
-            if (strip.directions) return shade_together<kPlain, true>(place, strip, colors);
-        shade_together<kPlain, false>(place, strip, colors);
+            if (strips.front().directions) return shade_together<kPlain, true>(places, strips, colors);
+        shade_together<kPlain, false>(places, strips, colors);
+    }
+
+    /// (Nothing that is read here is a colour: so what strips have in common is worked out once.)
+    template <bool kPlain, bool kFacing>
+    void shade_together(const StripPlace* places, std::span<const Solved> strips, StripColors* __restrict colors) const {
+        const ObjectView& object = *strips.front().object_view;
+        for (std::size_t s = 0; s < strips.size(); ++s)
+            for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+                const RgbT<Floats> c = shader_.template fragment<Floats>(fragment<kPlain, kFacing>(places[s], strips[s], object, i));
+                store(colors[s].r, i, c.r);
+                store(colors[s].g, i, c.g);
+                store(colors[s].b, i, c.b);
+            }
     }
 
     template <bool kPlain, bool kFacing>
-    void shade_together(const StripPlace& place, const Solved& strip, StripColors& colors) const {
-        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const Floats near(static_cast<float>(view_.pinhole.near));
-            const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
-                                                              : min(near / load(strip.depth, i), Floats(1.0f));
-            assert(!kFacing || place.nearness != nullptr);
-            // A strip of directions has no depths. (Where nothing is seen nearness is 0.)
-            const Floats depth = kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
-            const FragmentOf<S, Floats, kPlain, kFacing> fragment{derivatives(strip, i),
-                                                 seen_side<kFacing>(strip, i),
-                                                 varyings_at(strip.at, i),
-                                                 eyes_ ? vector(*eyes_, place, i) : spread<Floats>(eye_),
-                                                 vector(ways_, place, i),
-                                                 depth,
-                                                 nearness,
-                                                 *strip.object_view,
-                                                 surface_,
-                                                 i};
-            const RgbT<Floats> c = shader_.template fragment<Floats>(fragment);
-            store(colors.r, i, c.r);
-            store(colors.g, i, c.g);
-            store(colors.b, i, c.b);
-        }
+    FragmentOf<S, Floats, kPlain, kFacing> fragment(const StripPlace& place, const Solved& strip, const ObjectView& object,
+                                                    std::size_t i) const {
+        const Floats near(static_cast<float>(view_.pinhole.near));
+        const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
+                                                          : min(near / load(strip.depth, i), Floats(1.0f));
+        assert(!kFacing || place.nearness != nullptr);
+        // A strip of directions has no depths. (Where nothing is seen nearness is 0.)
+        const Floats depth = kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
+        return {derivatives(strip, i),
+                seen_side<kFacing>(strip, i),
+                varyings_at(strip.at, i),
+                eyes_ ? vector(*eyes_, place, i) : spread<Floats>(eye_),
+                vector(ways_, place, i),
+                depth,
+                nearness,
+                object,
+                surface_,
+                i};
     }
 
     static Vec3T<Floats> vector(const LinearInTile& of, const StripPlace& place, std::size_t i) {

@@ -15,7 +15,7 @@ template <VertexShader S, typename D> struct SolvedStrip {
     static constexpr bool kDerivatives = wants_derivatives<S>();
 
     const StripSamples* samples = nullptr;
-    const ObjectView* object_view = nullptr;
+    const ObjectView* object_view = nullptr; ///< null where no mesh is seen, or not just one
     std::array<StripOf<float>, kCount> at;                        ///< varyings
     std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
     std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
@@ -40,8 +40,8 @@ public:
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
-    /// use(i, strip) for each of the strips; `strip` is there until use() returns, solved if it sees a mesh. `mend`: solve
-    /// otherwise where the solution does not hold as it is.
+    /// use(first, strips), a few at a time: those from places[first] on, solved where they see a mesh, are there until use()
+    /// returns. `mend`: solve otherwise where the solution does not hold as it is.
     template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
@@ -219,8 +219,8 @@ void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positi
 /// Whether that is all there is to it: the samples lie where they seem to, and nothing of them is looked up.
 template <VertexShader S, typename D>
 bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
-    return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && set_ups_.object().even() &&
-           samples.all_easy() && !sabotaged(Guard::kPerspective);
+    return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && samples.all_easy() &&
+           !sabotaged(Guard::kPerspective);
 }
 
 template <VertexShader S, typename D>
@@ -254,6 +254,7 @@ void StripSolver<S, D>::mend_strip(const StripPlace& place, const ReadStrip& sam
 template <VertexShader S, typename D>
 void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend) {
     strip.samples = &samples;
+    strip.object_view = nullptr;
     if (samples.on_mesh == 0) return;
     set_ups_.use(*samples.object, *samples.shape, samples.first_id);
     strip.object_view = &set_ups_.object();
@@ -311,7 +312,7 @@ void StripSolver<S, D>::solve(std::span<const StripPlace> places, bool mend, con
         for (std::size_t i = 0; i < count; i += kTogether) {
             const std::size_t end = std::min(i + kTogether, count);
             for (std::size_t s = i; s < end; ++s) solve_one(places[first + s], read_[s], solved_[s - i], mend);
-            for (std::size_t s = i; s < end; ++s) use(first + s, solved_[s - i]);
+            use(first + i, std::span<const Solved>(solved_).first(end - i));
         }
         first += count;
     }

@@ -123,7 +123,7 @@ public:
         : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
-        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const SolvedStrip<NoVaryings, double>& strip) { fill(place, strip); });
+        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const auto& strips) { fill(place, strips.front()); });
     }
 
 private:
