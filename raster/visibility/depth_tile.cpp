@@ -198,7 +198,7 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
 }
 
 /// Draws those samples of a block, whose first lies at (x, y) from the plane's origin.
-void DepthTile::draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y) {
+[[gnu::always_inline]] inline void DepthTile::draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y) {
     if (samples == 0) return;
     const Nearness nearness(plane, viewport_, x, y);
     constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
