@@ -45,7 +45,7 @@ public:
 
     SetUps(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader)
         : triangles_(triangles), view_(view), shader_(shader), origin_x_(tile.x0), origin_y_(tile.y0) {
-        for (Recent& part : recent_) part.ids.fill(kNoTriangle);
+        forget();
     }
 
     /// The object whose triangles are asked for from now on; its first triangle's number.
@@ -91,10 +91,9 @@ private:
 
     static constexpr float kLeastCosine = 0.125f;
     static constexpr std::size_t kRoom = 1024, kMost = kRoom / kStrip, kPlaces = kRoom;
-    struct Place {
-        std::int32_t id = kNoTriangle, kept = 0;
-    };
-    std::array<Place, kPlaces> places_; ///< by the lower bits of numbers: whose place another took is set up once more
+    static constexpr std::uint64_t kNoPlace = std::uint64_t{kNoTriangle} << 32;
+    /// A triangle's number, and where it is kept, by the number's lower bits: whose place another took is set up once more.
+    std::array<std::uint64_t, kPlaces> places_;
     /// The last that were asked for, by the lower six bits of their numbers: sixteen samples are looked up side by side.
     struct Recent {
         StripOf<std::int32_t> ids, kept;
@@ -118,7 +117,7 @@ void SetUps<S, D>::use(const TransformedObject& object, const PackedShape& shape
 
 template <VertexShader S, typename D> void SetUps<S, D>::forget() {
     count_ = finished_ = 0;
-    places_.fill({});
+    places_.fill(kNoPlace);
     for (Recent& part : recent_) part.ids.fill(kNoTriangle);
 }
 
@@ -138,7 +137,8 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
         found |= lane_bits(recent(&Recent::ids) == id) << i;
         places[b] = recent(&Recent::kept);
     }
-    std::uint32_t left = ((1u << kStrip) - 1) & ~found;
+    constexpr std::uint32_t kAll = (1u << kStrip) - 1;
+    std::uint32_t left = kAll & ~found;
     constexpr int kMany = 8; // new ones: cheaper all at once than one by one
     if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
     while (left != 0) {
@@ -175,16 +175,18 @@ template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
 
 /// Without a branch: which of them are kept is anyone's guess.
 template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(std::int32_t id) {
-    Place& place = places_[static_cast<std::size_t>(id) % kPlaces];
-    const bool found = place.id == id;
-    place = {id, found ? place.kept : static_cast<std::int32_t>(count_)};
-    count_ += found ? 0 : 1;
-    const auto kept = static_cast<std::size_t>(place.kept), recent = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
+    std::uint64_t& place = places_[static_cast<std::size_t>(id) % kPlaces];
+    const auto number = static_cast<std::uint32_t>(id);
+    const std::uint64_t is_new = (place >> 32) != number, new_bits = -is_new;
+    const auto kept = static_cast<std::uint32_t>((place & ~new_bits) | (count_ & new_bits));
+    place = std::uint64_t{number} << 32 | kept;
+    count_ += is_new;
+    const std::size_t recent = static_cast<std::size_t>(id) % (recent_.size() * kStrip);
     wanted_[kept / kStrip][kept % kStrip] = id;
     recent_[recent / kStrip].ids[recent % kStrip] = id;
-    recent_[recent / kStrip].kept[recent % kStrip] = place.kept;
+    recent_[recent / kStrip].kept[recent % kStrip] = static_cast<std::int32_t>(kept);
     prefetch_triangle(id);
-    return place.kept;
+    return static_cast<std::int32_t>(kept);
 }
 
 /// A bit for each that is a quad's second half.
