@@ -5,16 +5,6 @@
 
 namespace duet::raster {
 
-bool StripReader::all_of_last_object(const StripSamples& samples) const {
-    if (object_ == nullptr) return false;
-    bool all = true;
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const Ints id = load(samples.ids, i);
-        all = all && xsimd::all(id >= Ints(low_id_) && id < Ints(end_id_));
-    }
-    return all;
-}
-
 void StripReader::find_object(const StripSamples& samples) {
     object_ = nullptr;
     const auto [low, high] = std::minmax_element(samples.ids.v.begin(), samples.ids.v.end());
@@ -29,24 +19,6 @@ void StripReader::find_object(const StripSamples& samples) {
     first_id_ = numbers.first;
     low_id_ = static_cast<std::int32_t>(numbers.first);
     end_id_ = static_cast<std::int32_t>(numbers.end);
-}
-
-void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
-    const Ints none(static_cast<std::int32_t>(kNoTriangle));
-    samples.seen = samples_seen(ids);
-    samples.on_mesh = 0;
-    if (samples.seen == 0) return;
-    const Ints first(ids[std::countr_zero(samples.seen)]);
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-        const Ints read = Ints::load_aligned(ids + i);
-        store(samples.ids, i, xsimd::select(read == none, first, read));
-    }
-    if (!all_of_last_object(samples)) find_object(samples);
-    samples.object = object_;
-    if (object_ == nullptr) return;
-    samples.on_mesh = samples.seen;
-    samples.shape = shape_;
-    samples.first_id = first_id_;
 }
 
 } // namespace duet::raster

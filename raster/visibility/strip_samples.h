@@ -62,4 +62,32 @@ private:
     std::int32_t low_id_ = 0, end_id_ = 0; ///< numbers of its triangles
 };
 
+inline bool StripReader::all_of_last_object(const StripSamples& samples) const {
+    if (object_ == nullptr) return false;
+    bool all = true;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const Ints id = load(samples.ids, i);
+        all = all && xsimd::all(id >= Ints(low_id_) && id < Ints(end_id_));
+    }
+    return all;
+}
+
+inline void StripReader::read(const std::int32_t* ids, StripSamples& samples) {
+    const Ints none(static_cast<std::int32_t>(kNoTriangle));
+    samples.seen = samples_seen(ids);
+    samples.on_mesh = 0;
+    if (samples.seen == 0) return;
+    const Ints first(ids[std::countr_zero(samples.seen)]);
+    for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        const Ints read = Ints::load_aligned(ids + i);
+        store(samples.ids, i, xsimd::select(read == none, first, read));
+    }
+    if (!all_of_last_object(samples)) find_object(samples);
+    samples.object = object_;
+    if (object_ == nullptr) return;
+    samples.on_mesh = samples.seen;
+    samples.shape = shape_;
+    samples.first_id = first_id_;
+}
+
 } // namespace duet::raster
