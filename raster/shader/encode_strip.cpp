@@ -76,8 +76,6 @@ Ints packed(const RgbT<Floats>& moved, std::uint32_t& doubtful) {
     return in_place<0>(r) | in_place<1>(g) | in_place<2>(b) | Ints(kOpaque);
 }
 
-constexpr std::uint32_t kAllLanes = (1u << Floats::size) - 1;
-
 RgbT<Floats> batch(const StripColors& colors, std::size_t i) { return {load(colors.r, i), load(colors.g, i), load(colors.b, i)}; }
 
 /// Pixels of the samples from the i-th on, as many as there are lanes; of those that see nothing: `behind`.

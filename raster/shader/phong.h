@@ -14,16 +14,16 @@ inline constexpr int kPhongSquarings = 5;
 inline constexpr float kPhongDiffuse = kInvPi;
 inline constexpr float kPhongSpecular = 0.04f * ((1 << kPhongSquarings) + 2) * kInvPi / 2;
 
-/// What becomes of light from wi: the cosine at which it arrives, and the part of the rest that the highlight sends on
-/// towards wo, by solid angle. wi is unit; light from behind (n·wi <= 0) gives none.
+/// What becomes of light from wi: the cosine at which it arrives, and what of the highlight's middle wo has, of which
+/// kPhongSpecular by solid angle is sent on. wi is unit; light from behind (n·wi <= 0) gives none.
 template <typename T> struct PhongFactors {
     T cosine, lobe;
 
     PhongFactors(const Direction<T>& n, const Direction<T>& wo, Vec3T<T> wi) {
         const T arriving = dot(n.v, wi) * n.scale;
         cosine = max(arriving, T(0));
-        // The mirror direction's cosine with wo; three products that need not wait for each other.
         const T leaving = dot(n.v, wo.v);
+        // The mirror direction's cosine with wo; three products that need not wait for each other.
         lobe = max(fused(arriving, (leaving + leaving) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
     }
@@ -40,9 +40,9 @@ RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& plac
         const PhongFactors<T> f(n, wo, light.wi);
         if (f.behind()) return;
         const RgbT<T> arriving = light.irradiance * f.cosine;
-        const T specular(kPhongSpecular);
-        sum = {fused(arriving.r, fused(f.lobe, specular, diffuse.r), sum.r), fused(arriving.g, fused(f.lobe, specular, diffuse.g), sum.g),
-               fused(arriving.b, fused(f.lobe, specular, diffuse.b), sum.b)};
+        const auto reflected = [&](const T& base_over_pi) { return fused(f.lobe, T(kPhongSpecular), base_over_pi); };
+        sum = {fused(arriving.r, reflected(diffuse.r), sum.r), fused(arriving.g, reflected(diffuse.g), sum.g),
+               fused(arriving.b, reflected(diffuse.b), sum.b)};
     });
     return sum;
 }

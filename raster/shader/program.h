@@ -218,7 +218,7 @@ private:
     Vec3 eye_;                         ///< and where they begin: all of them there,
     std::optional<LinearInTile> eyes_; ///< or each at a place of its own
     std::vector<Part> parts_;
-    std::vector<StripPlace> places_of_parts_;
+    std::vector<StripPlace> places_of_parts_; ///< and what shade_strips() needs of them
     std::vector<StripColors> colors_of_parts_;
     std::vector<std::uint32_t> seen_of_parts_;
     std::optional<ObjectView> sphere_view_; ///< of the last sphere

@@ -55,8 +55,8 @@ raster::StripCodes encode_all(float value) {
     colors.r.fill(value);
     colors.g.fill(value);
     colors.b.fill(value);
-    raster::StripCodes codes;
-    raster::encode_strip(colors, kAll, {}, codes);
+    raster::StripCodes codes, *to = &codes;
+    raster::encode_strips(std::span(&colors, 1), &kAll, {}, &to);
     return codes;
 }
 
@@ -80,23 +80,30 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 200'000; ++i) values.push_back(uniform(engine));
         for (std::uint32_t bits = 0; bits < 0x3f800000u; bits += 7919) values.push_back(std::bit_cast<float>(bits));
         const auto wrong_codes = [&](const std::vector<float>& of) {
-            int wrong = 0;
-            for (std::size_t i = 0; i + raster::kStrip <= of.size(); i += raster::kStrip) {
-                raster::StripColors colors;
+            const std::size_t count = of.size() / raster::kStrip;
+            std::vector<raster::StripColors> colors(count);
+            std::vector<raster::StripCodes> codes(count);
+            std::vector<raster::StripCodes*> to;
+            std::vector<std::uint32_t> seen;
+            for (std::size_t s = 0; s < count; ++s) {
                 for (std::size_t k = 0; k < raster::kStrip; ++k) {
-                    colors.r[k] = of[i + k];
-                    colors.g[k] = of[of.size() - 1 - i - k];
-                    colors.b[k] = of[(i * 7 + k) % of.size()];
+                    const std::size_t i = s * raster::kStrip + k;
+                    colors[s].r[k] = of[i];
+                    colors[s].g[k] = of[of.size() - 1 - i];
+                    colors[s].b[k] = of[(i * 7 - k * 6) % of.size()];
                 }
-                raster::StripCodes codes;
-                const Rgba8 background{1, 2, 3, 4};
-                const auto seen = static_cast<std::uint32_t>(engine()) | static_cast<std::uint32_t>(engine());
-                raster::encode_strip(colors, seen & kAll, background, codes);
-                for (std::size_t k = 0; k < raster::kStrip; ++k)
-                    wrong += codes[k] != (seen >> k & 1 ? Rgba8{srgb_encode_8bit(colors.r[k]), srgb_encode_8bit(colors.g[k]),
-                                                                srgb_encode_8bit(colors.b[k]), 255}
-                                                        : background);
+                to.push_back(&codes[s]);
+                seen.push_back((static_cast<std::uint32_t>(engine()) | static_cast<std::uint32_t>(engine())) & kAll);
             }
+            const Rgba8 background{1, 2, 3, 4};
+            raster::encode_strips(colors, seen.data(), background, to.data());
+            int wrong = 0;
+            for (std::size_t s = 0; s < count; ++s)
+                for (std::size_t k = 0; k < raster::kStrip; ++k) {
+                    const Rgba8 own{srgb_encode_8bit(colors[s].r[k]), srgb_encode_8bit(colors[s].g[k]),
+                                    srgb_encode_8bit(colors[s].b[k]), 255};
+                    wrong += codes[s][k] != (seen[s] >> k & 1 ? own : background);
+                }
             return wrong;
         };
         CHECK(wrong_codes(values) == 0);
@@ -248,7 +255,8 @@ TEST_SUITE("unit") {
                 const double middle = number(1, 10);
                 const auto vertex = [&] {
                     const double depth = middle * number(0.9, 1.1);
-                    return raster::PixelVertex{.xw = number(-120, 240) * depth, .yw = number(-120, 240) * depth, .w = depth, .depth = depth};
+                    const double xw = number(-120, 240) * depth, yw = number(-120, 240) * depth;
+                    return raster::PixelVertex{.xw = xw, .yw = yw, .w = depth, .depth = depth};
                 };
                 pile.wholes.push_back({vertex(), vertex(), vertex()});
                 const raster::WholeTriangle& t = pile.wholes.back();

@@ -363,7 +363,8 @@ TEST_SUITE("unit") {
         for (const float roughness : {0.0f, 0.2f}) {
             Scene scene;
             add(scene, QuadList{{{Vec3(-1, 0, 2), Vec3(2, 0, 0), Vec3(0, 0, -1)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
-            add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(), Metal{{Rgb(0.8f, 0.8f, 0.4f)}, roughness});
+            add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(),
+                Metal{{Rgb(0.8f, 0.8f, 0.4f)}, roughness});
             add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb(0.2f)}});
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
             finish_scene(scene);

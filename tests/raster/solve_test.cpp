@@ -15,6 +15,13 @@ using namespace duet::test;
 
 namespace {
 
+/// For a solver: use(i, strip) for each of the strips that it has at a time.
+template <typename Use> auto each(Use use) {
+    return [use](std::size_t first, const auto& strips) {
+        for (std::size_t s = 0; s < strips.size(); ++s) use(first + s, strips[s]);
+    };
+}
+
 /// Triangles of all shapes, down to slivers whose length is a million times their height; under them a ground to the horizon.
 Scene slivers() {
     std::mt19937 random(1);
@@ -128,8 +135,8 @@ TEST_SUITE("unit") {
                 StripSolver<NoVaryings, float> in_float(geometry.triangles, picture.pass, rect, nothing, false);
                 StripSolver<NoVaryings, double> in_double(geometry.triangles, picture.pass, rect, nothing, false);
                 std::vector<std::uint32_t> inside(places.size());
-                in_double.solve(places, false, [&](std::size_t s, const auto& strip) { inside[s] = strip.inside; });
-                in_float.solve(places, true, [&](std::size_t s, const auto& strip) {
+                in_double.solve(places, false, each([&](std::size_t s, const auto& strip) { inside[s] = strip.inside; }));
+                in_float.solve(places, true, each([&](std::size_t s, const auto& strip) {
                     CHECK((strip.inside & ~inside[s]) == 0);
                     for (std::size_t i = 0; i < kStrip; ++i) {
                         if (!(strip.samples->on_mesh >> i & 1)) continue;
@@ -145,7 +152,7 @@ TEST_SUITE("unit") {
                         mended += !holds && (inside[s] >> i & 1);
                         (holds ? worst : worst_mended) = std::max(holds ? worst : worst_mended, error);
                     }
-                });
+                }));
             });
             CHECK(seen > 20'000);
             CHECK(close > seen * 0.9);
@@ -168,7 +175,7 @@ TEST_SUITE("unit") {
                 StripSolver<NoVaryings, double> solver(triangles, picture.pass, rect, nothing, false);
                 for (std::size_t first = 0; first < places.size(); first += together) {
                     const auto some = places.subspan(first, std::min(together, places.size() - first));
-                    solver.solve(some, false, [&](std::size_t s, const auto& strip) {
+                    solver.solve(some, false, each([&](std::size_t s, const auto& strip) {
                         for (std::size_t i = 0; i < raster::kStrip; ++i) {
                             if (!(strip.samples->on_mesh >> i & 1)) continue;
                             const raster::Interpolated wanted =
@@ -177,7 +184,7 @@ TEST_SUITE("unit") {
                                               std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum)});
                             ++seen;
                         }
-                    });
+                    }));
                 }
             });
             CHECK(seen > 5'000);
@@ -221,7 +228,7 @@ TEST_SUITE("unit") {
             double worst = 0;
             picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
                 StripSolver<NoVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, nothing, false);
-                solver.solve(places, true, [&](std::size_t s, const auto& strip) {
+                solver.solve(places, true, each([&](std::size_t s, const auto& strip) {
                     CHECK(strip.samples->on_mesh == strip.samples->seen);
                     for (std::size_t i = 0; i < kStrip; ++i) {
                         if (!(strip.samples->on_mesh >> i & 1)) continue;
@@ -234,7 +241,7 @@ TEST_SUITE("unit") {
                         const Vec2 uv = half == 0 ? Vec2(both, strip.b2[i]) : Vec2(strip.b1[i], both);
                         worst = std::max({worst, std::abs(static_cast<double>(uv.x - hit.u)), std::abs(static_cast<double>(uv.y - hit.v))});
                     }
-                });
+                }));
             });
             CHECK(halves[0] > 1500);
             CHECK(halves[1] > 1500);
@@ -294,7 +301,7 @@ TEST_SUITE("unit") {
             double worst = 0;
             picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
                 StripSolver<NormalVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, normals, false);
-                solver.solve(places, true, [&](std::size_t s, const auto& strip) {
+                solver.solve(places, true, each([&](std::size_t s, const auto& strip) {
                     strips += strip.samples->on_mesh != 0;
                     if (strip.samples->on_mesh == 0 || !strip.directions) return;
                     ++of_directions;
@@ -311,7 +318,7 @@ TEST_SUITE("unit") {
                         const Vec3d way = picture.pinhole.ray(places[s].position(i)).direction, ng = cross(p(1) - p(0), p(2) - p(0));
                         turned += dot(ng, way) * dot(ng, n) > 0; // the face is seen from one side, and n is on the other
                     }
-                });
+                }));
             });
             CHECK(strips > 1000);
             CHECK(of_directions > strips / 20);
