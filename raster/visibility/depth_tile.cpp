@@ -19,13 +19,11 @@ struct DepthTile::Edges {
     /// on. By an error more than floats have: each of six roundings is of at most half a unit in the last place of what a function
     /// may be in the tile. So a block may be looked at for nothing, but none is missed.
     std::array<float, 3> none, all;
-    Origin origin; ///< of the triangle's plane
     std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
     std::array<std::int32_t, 3> next_strip;    ///< from a strip to the one below
 
-    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset, const Viewport& viewport)
-        : origin(raster::origin(triangle.corners, viewport)) {
+    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset) {
         const auto& p = triangle.corners;
         const Values margins = edge_margins(triangle);
         constexpr std::int64_t kNever = 0x7fffffff, kLast = kBlock - 1, kZero = 0;
@@ -78,10 +76,12 @@ struct DepthTile::BlockRow {
 
 /// A triangle's samples in a block, a bit each: all, and those that lie well inside.
 struct DepthTile::Covered {
-    std::uint64_t some = 0, well_inside = 0;
+    std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
 
+    Covered() = default; ///< all of them
+    bool all_well_inside() const { return well_inside == ~std::uint64_t{0}; }
     /// By the edges' values at the block's first sample; in the strips of its rows y0 to y1, the others have none.
-    Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) {
+    Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) : some(0), well_inside(0) {
         const Ints zero(0);
         for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip)
             for (std::size_t i = 0; i < kStrip; i += Ints::size) {
@@ -125,55 +125,23 @@ std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
     return ~hidden;
 }
 
-void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
-    const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
-    if (r.empty()) return;
-    const Edges edges(triangle, rect_, offset_, viewport_);
-    // The tile's first sample, from the origin of the triangle's plane.
-    const double left_of_tile = rect_.x0 - edges.origin.x + static_cast<double>(offset_.x) / kSubPixels,
-                 top_of_tile = rect_.y0 - edges.origin.y + static_cast<double>(offset_.y) / kSubPixels;
-    const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
-    const std::uint32_t touched = (2u << last_column) - (1u << first_column);
-    for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
-        const BlockRow blocks(edges, row);
-        const int top = rect_.y0 + row * kBlock;
-        const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
-        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0; left &= left - 1) {
-            const int column = std::countr_zero(left);
-            const auto c = static_cast<std::size_t>(column), block = static_cast<std::size_t>(row * kBlocks) + c;
-            const bool all = (blocks.all >> c & 1) && triangle.sound;
-            std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
-            if (!all) {
-                const Covered covered(edges, edges.at_block(column, row), y0, y1);
-                if (covered.some == 0) continue;
-                some = covered.some, well_inside = covered.well_inside;
-            }
-            open(block);
-            draw_samples(block, well_inside, triangle.id, triangle.nearness, left_of_tile + column * kBlock, top_of_tile + row * kBlock);
-            if (some != well_inside) draw_edge_samples(triangle, whole, block, some & ~well_inside);
-            constexpr std::uint8_t kOften = 16;
-            if (all || ++partial_[block] >= kOften) find_farthest(block);
-        }
-    }
-}
-
-/// Nearness over a block: of a row of it at a time.
+/// Nearness over a block, or its inverse in an orthographic view: the sum of what a sample's column and its row have of it.
 struct DepthTile::Nearness {
     const Viewport& viewport;
-    const NearnessPlane& plane;
-    double top;                                   ///< the block's first sample, below the plane's origin
-    alignas(64) std::array<double, kBlock> along; ///< of each column, from a row's start
+    alignas(64) std::array<double, kBlock> columns, rows;
 
     /// The block's first sample lies at (x, y) from the plane's origin.
-    Nearness(const NearnessPlane& plane_, const Viewport& viewport_, double x, double y) : viewport(viewport_), plane(plane_), top(y) {
-        for (std::size_t i = 0; i < kBlock; i += Doubles::size)
-            ((Doubles(x) + load(kColumns<double>, i)) * Doubles(plane.x)).store_aligned(&along[i]);
+    Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
+        for (std::size_t i = 0; i < kBlock; i += Doubles::size) {
+            const Doubles number = load(kColumns<double>, i);
+            ((Doubles(x) + number) * Doubles(plane.x)).store_aligned(&columns[i]);
+            (Doubles(plane.constant) + (Doubles(y) + number) * Doubles(plane.y)).store_aligned(&rows[i]);
+        }
     }
     /// Of the samples from the i-th of the block on.
     Floats at(std::size_t i) const {
         const auto half = [&](std::size_t first) {
-            const Doubles start = Doubles(plane.constant) + (Doubles(top) + Doubles(kColumns<double>[first / kBlock])) * Doubles(plane.y);
-            const Doubles value = start + Doubles::load_aligned(&along[first % kBlock]);
+            const Doubles value = Doubles(rows[first / kBlock]) + Doubles::load_aligned(&columns[first % kBlock]);
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
         const Floats nearness = narrowed(half(i), half(i + Doubles::size));
@@ -197,18 +165,48 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
     inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
 }
 
-/// Draws those samples of a block, whose first lies at (x, y) from the plane's origin. (Twice in line, in draw() of either kind: a
-/// hundredth of a frame.)
-[[gnu::always_inline]] inline void DepthTile::draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id,
-                                                           const NearnessPlane& plane, double x, double y) {
-    if (samples == 0) return;
-    const Nearness nearness(plane, viewport_, x, y);
-    constexpr auto kLanesOfBatch = static_cast<int>(Floats::size);
-    for (auto i = static_cast<std::size_t>(std::countr_zero(samples) / kLanesOfBatch * kLanesOfBatch);
-         i < kBlockSamples && samples >> i != 0; i += Floats::size) {
+/// Draws those samples of a block that lie in the strip from `first` on. (In line, as draw_block(): calls take a tenth of a frame.)
+[[gnu::always_inline]] inline void DepthTile::draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id,
+                                                         const Nearness& nearness) {
+    for (std::size_t i = first; i < first + kStrip; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
         keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness.at(i), lanes_from<float>(here));
     }
+}
+
+void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
+    const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
+    if (r.empty()) return;
+    const Edges edges(triangle, rect_, offset_);
+    const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
+    const std::uint32_t touched = (2u << last_column) - (1u << first_column);
+    const Origin from = origin(triangle.corners, viewport_);
+    const Vec2d first = offset_.position(rect_.x0 - from.x, rect_.y0 - from.y); // the tile's first sample, from the plane's origin
+    for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
+        const BlockRow blocks(edges, row);
+        const int top = rect_.y0 + row * kBlock;
+        const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
+        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0; left &= left - 1) {
+            const int column = std::countr_zero(left);
+            const bool all = (blocks.all >> column & 1) && triangle.sound;
+            const Covered covered = all ? Covered() : Covered(edges, edges.at_block(column, row), y0, y1);
+            if (covered.some != 0)
+                draw_block(triangle, whole, static_cast<std::size_t>(row * kBlocks + column), covered,
+                           first + Vec2d(column, row) * double{kBlock});
+        }
+    }
+}
+
+/// Those samples of a block, whose first lies there from the plane's origin.
+[[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
+                                                         const Covered& covered, Vec2d first) {
+    open(block);
+    const Nearness nearness(triangle.nearness, viewport_, first.x, first.y);
+    for (std::size_t i = 0; i < kBlockSamples; i += kStrip) // all strips: no machine guesses which of them it covers
+        draw_strip(block, i, covered.well_inside, triangle.id, nearness);
+    if (covered.some != covered.well_inside) draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
+    constexpr std::uint8_t kOften = 16;
+    if (covered.all_well_inside() || ++partial_[block] >= kOften) find_farthest(block);
 }
 
 void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
@@ -247,7 +245,10 @@ void DepthTile::draw(const Patch& patch) {
             if (samples == 0) continue;
             const auto block = static_cast<std::size_t>(row * kBlocks + column);
             open(block);
-            draw_samples(block, samples, patch.id, patch.nearness, column * kBlock - x, row * kBlock - y);
+            const Nearness nearness(patch.nearness, viewport_, column * kBlock - x, row * kBlock - y);
+            for (auto i = static_cast<std::size_t>(std::countr_zero(samples)) / kStrip * kStrip; i < kBlockSamples && samples >> i != 0;
+                 i += kStrip)
+                draw_strip(block, i, samples, patch.id, nearness);
         }
 }
 

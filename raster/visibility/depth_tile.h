@@ -68,7 +68,8 @@ private:
     struct Nearness;
     struct Covered;
     std::uint32_t not_hidden(int row, float nearest) const;
-    void draw_samples(std::size_t block, std::uint64_t samples, std::uint32_t id, const NearnessPlane& plane, double x, double y);
+    void draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block, const Covered& covered, Vec2d first);
+    void draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id, const Nearness& nearness);
     template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
