@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -205,7 +206,10 @@ void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats
         return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
     };
     const std::array<Vec3T<Floats>, 3> p{vector(0, 0), vector(1, 0), vector(2, 0)};
-    const Vec3T<Floats> ng = cross(p[1] - p[0], p[2] - p[0]) * side;
+    // By its largest component, so that no square of it vanishes, however small the triangle.
+    const Vec3T<Floats> across = cross(p[1] - p[0], p[2] - p[0]);
+    const Floats largest = max(max(abs(across.x), abs(across.y)), abs(across.z));
+    const Vec3T<Floats> ng = across * (side / max(largest, Floats(std::numeric_limits<float>::min())));
     // A quad's diagonal, opposite to the second corner of its first half and the third of the other, is no edge.
     const auto second = lanes_from<float>(second_halves >> i);
     const bool quads = shape_->quads();
