@@ -2,7 +2,7 @@
 
 #include "raster/light/environment_light.h"
 #include "raster/shade.h"
-#include "raster/shader/encode_strip.h"
+#include "raster/shader/strip_shader.h"
 #include "raster/visibility/strip_samples.h"
 
 #include "common/image/srgb.h"

@@ -8,7 +8,7 @@
 
 namespace duet::raster {
 
-/// A strip whose samples see a mesh, and where the set-ups of its triangles are kept.
+/// A strip whose samples see triangles of one object, and where the set-ups of its triangles are kept.
 template <VertexShader S, typename D> struct ReadStrip : StripSamples {
     using Sixteen = SetUp<S, D>;
 

@@ -10,7 +10,7 @@
 //     Rendering picture = draw(prepared, view, settings, Stripes{}, control);   // raster/draw.h
 //
 // Visibility comes first (an image of triangle numbers), so a fragment function runs once a visible sample, and a
-// vertex function only for the corners of triangles that are seen. Both inline into the loop over strips of samples.
+// vertex function only for the corners of triangles that are seen, and for each sample of a sphere. Both inline into the loop over strips of samples.
 // Where a vertex lies in the picture is not theirs to say: that is exact (raster/geometry/transform.h).
 #pragma once
 
@@ -98,7 +98,7 @@ struct ObjectView {
     }
 };
 
-/// What a vertex function is given: a corner of a triangle that is seen. In the object's space, but for world_….
+/// What a vertex function is given: a corner of a triangle that is seen, or a point of a sphere. In the object's space, but for world_….
 template <typename T> struct VertexInput {
     Vec3T<T> p;
     Vec3T<T> n; ///< as the mesh has it, or (0, 0, 0)

@@ -9,13 +9,13 @@
 
 namespace duet::raster {
 
-/// Where the samples of a strip that see a mesh's triangle lie on it.
+/// Where the samples of a strip lie on the triangles, or the sphere, of the one object that they see.
 template <VertexShader S, typename D> struct SolvedStrip {
     static constexpr std::size_t kCount = kVaryings<S>;
     static constexpr bool kDerivatives = wants_derivatives<S>();
 
     const StripSamples* samples = nullptr;
-    const ObjectView* object_view = nullptr; ///< null where no mesh is seen, or not just one
+    const ObjectView* object_view = nullptr; ///< null where the triangles of one object are not all that is seen
     std::array<StripOf<float>, kCount> at;                        ///< varyings
     std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
     std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
@@ -29,7 +29,7 @@ template <VertexShader S, typename D> struct SolvedStrip {
     bool directions = false;
 };
 
-/// Solves for the samples that see a mesh's triangle; S's vertex function is asked for what is interpolated. D says how exactly:
+/// Solves for the samples that see triangles, where they are one object's; S's vertex function is asked for what is interpolated. D says how exactly:
 /// in double, or in float, to within 2^-13 of a barycentric and of a depth, and mostly within 2^-20 (kSteepest).
 template <VertexShader S, typename D> class StripSolver {
 public:
@@ -40,7 +40,7 @@ public:
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
-    /// use(first, strips), a few at a time: those from places[first] on, solved where they see a mesh, are there until use()
+    /// use(first, strips), a few at a time: those from places[first] on, solved where they see triangles of one object, are there until use()
     /// returns. `mend`: solve otherwise where the solution does not hold as it is.
     template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }

@@ -28,8 +28,7 @@ struct ToonShader {
         constexpr float kSpot = 0.97f;                           // cosine to the mirror direction
         const Vec3T<T> n = f.normal(f.at.n).unit(), wo = f.wo().unit();
         // Change of the unit normal: what is across it of the change of the interpolated one, over that one's length.
-        const Vec3T<T> raw = f.object.normal(f.at.n);
-        const T scale = inverse_sqrt(dot(raw, raw));
+        const T scale = Direction<T>::of(f.object.normal(f.at.n)).scale;
         const auto turn = [&](Vec3T<T> change) {
             const Vec3T<T> d = f.object.normal(change) * scale;
             return d - n * dot(d, n);

@@ -2,7 +2,7 @@
 // (Akeley 1993, «RealityEngine Graphics», §3.3).
 #pragma once
 
-#include "raster/shader/strip_shader.h"
+#include "raster/visibility/strip_place.h"
 #include "raster/visibility/depth_tile.h"
 
 #include <vector>

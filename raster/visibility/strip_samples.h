@@ -1,7 +1,7 @@
 // Sixteen samples of a tile, and what they see.
 #pragma once
 
-#include "raster/shader/strip_shader.h"
+#include "raster/visibility/strip_place.h"
 #include "raster/visibility/depth_tile.h"
 
 #include <cstdint>

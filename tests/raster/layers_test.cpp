@@ -82,13 +82,16 @@ TEST_SUITE("unit") {
         };
         for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon}) {
             const Rendering whole = picture(false, shading), veiled = picture(true, shading);
-            int apart = 0;
+            int apart_beside = 0, apart_under = 0, lit = 0;
             for (int y = 0; y < 128; ++y)
-                for (int x = 128; x < 256; ++x) {
+                for (int x = 0; x < 256; ++x) {
                     const Rgb a = whole.radiance(x, y), b = veiled.radiance(x, y);
-                    apart += a.r != b.r || a.g != b.g || a.b != b.b;
+                    (x < 128 ? apart_under : apart_beside) += a.r != b.r || a.g != b.g || a.b != b.b;
+                    lit += x >= 128 && max_component(a) > 1e-4f; // of Gouraud: the light of far corners
                 }
-            CHECK(apart == 0);
+            CHECK(apart_beside == 0);
+            CHECK(apart_under > 100);
+            CHECK(lit > 5'000);
         }
     }
 
