@@ -123,7 +123,7 @@ void Assembler::judge(Outlines& out) const {
         const auto between = last_x < first_x || last_y < first_y;
         const auto beside = last_x < Ints(region.x0) || first_x >= Ints(region.x1) || last_y < Ints(region.y0) ||
                             first_y >= Ints(region.y1);
-        const auto box_small = last_x - first_x < Ints(kSmallSide) && last_y - first_y < Ints(kSmallSide);
+        const auto box_small = last_x - first_x < Ints(kSmallSide) && last_y - first_y < Ints(kSmallRows);
 
         Ints verdict(kDraw);
         if (one_sample) verdict = xsimd::select(box_small, Ints(kSmall), verdict);

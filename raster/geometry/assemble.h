@@ -20,9 +20,9 @@ struct AssemblyPlan {
     bool patches = true; ///< small triangles of several samples in one piece each; else all of them as fragments
 };
 
-/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 8 × 8 samples, where there
-/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become a patch, or fragments
-/// where they are few. The others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no
+/// Takes runs of triangles to batches; one a thread. A triangle whose box holds at most 8 × 16 samples, where there
+/// is one sample a pixel, is decided at once, many of them side by side: its covered samples become a patch or two, or
+/// fragments where they are few. The others are set up. Each triangle of a mesh is one, each quad two (the diagonal is shared, so no
 /// sample falls through or counts twice), a clipped one a fan.
 class Assembler {
 public:
@@ -31,13 +31,14 @@ public:
                   Batch& batch);
 
 private:
-    /// Boxes of at most so many samples along a side are small.
-    static constexpr std::int32_t kSmallSide = 8;
+    /// Boxes of at most so many samples across and down are small: two of 8 × 8, one below the other. (Of a mesh of small triangles
+    /// in rows most are a bit too tall for one; to look at every box's further columns, too, takes longer than it saves.)
+    static constexpr std::int32_t kSmallSide = 8, kSmallRows = 2 * kSmallSide;
 
     struct Outlines;
-    struct Small {            ///< a triangle whose samples are known
+    struct Small {            ///< a triangle whose samples in a box of 8 × 8 are known
         std::uint32_t index;  ///< of the run's object's triangles
-        std::int32_t x, y;    ///< the first pixel of its box
+        std::int32_t x, y;    ///< the first pixel of the box
         std::uint64_t covered, well_inside; ///< a bit for each sample, row by row
     };
 
@@ -50,7 +51,7 @@ private:
     void set_up_outlines();
     void add_candidate(const Outlines& outlines, std::uint32_t i);
     void cover_candidates();
-    void add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside);
+    void add_small(std::size_t i, std::int32_t top, std::uint64_t covered, std::uint64_t well_inside);
     void find_nearness();
     struct PlaneStrip {
         std::array<StripOf<double>, 3> plane; ///< NearnessPlane's coefficients

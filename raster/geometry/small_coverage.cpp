@@ -33,7 +33,7 @@ std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const I
 /// samples as the largest of their boxes has.
 void Assembler::cover_candidates() {
     Candidates& c = candidates_;
-    constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallSide / kWordRows;
+    constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallRows / kWordRows;
     std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
     const Ints zero(0);
     for (std::size_t i = 0; i < c.count; i += Ints::size) {
@@ -68,22 +68,25 @@ void Assembler::cover_candidates() {
         }
     }
     for (std::size_t i = 0; i < c.count; ++i) {
-        const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
-            return std::uint64_t{static_cast<std::uint32_t>(words[0][i])} |
-                   std::uint64_t{static_cast<std::uint32_t>(words[1][i])} << 32;
-        };
-        add_small(i, bits(covered), bits(well_inside));
+        std::uint64_t any = 0;
+        for (std::size_t box = 0; box < 2; ++box) {
+            const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
+                return std::uint64_t{static_cast<std::uint32_t>(words[2 * box][i])} |
+                       std::uint64_t{static_cast<std::uint32_t>(words[2 * box + 1][i])} << 32;
+            };
+            any |= bits(covered);
+            add_small(i, c.sample_y[i] + static_cast<std::int32_t>(box) * kSmallSide, bits(covered), bits(well_inside));
+        }
+        if (any == 0) batch_->culled.subpixel += plan_->skips.subpixel;
     }
     c.count = 0;
 }
 
-void Assembler::add_small(std::size_t i, std::uint64_t covered, std::uint64_t well_inside) {
+/// Of the i-th candidate the samples in the box whose first row is `top`.
+void Assembler::add_small(std::size_t i, std::int32_t top, std::uint64_t covered, std::uint64_t well_inside) {
+    if (covered == 0) return;
     const Candidates& c = candidates_;
-    if (covered == 0) {
-        batch_->culled.subpixel += plan_->skips.subpixel;
-        return;
-    }
-    Small small{c.index[i], c.sample_x[i], c.sample_y[i], covered, well_inside};
+    Small small{c.index[i], c.sample_x[i], top, covered, well_inside};
     const PixelRect& r = plan_->grid.region;
     if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
         for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
