@@ -125,23 +125,25 @@ std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
     return ~hidden;
 }
 
-/// Nearness over a block, or its inverse in an orthographic view: the sum of what a sample's column and its row have of it.
-struct DepthTile::Nearness {
+/// Nearness over so many blocks along a side, or its inverse in an orthographic view: the sum of what a sample's column and its row
+/// have of it.
+template <std::size_t kSide> struct DepthTile::Nearness {
     const Viewport& viewport;
-    alignas(64) std::array<double, kBlock> columns, rows;
+    alignas(64) std::array<double, kSide * kBlock> columns, rows;
 
-    /// The block's first sample lies at (x, y) from the plane's origin.
+    /// The first block's first sample lies at (x, y) from the plane's origin.
     Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
-        for (std::size_t i = 0; i < kBlock; i += Doubles::size) {
-            const Doubles number = load(kColumns<double>, i);
+        for (std::size_t i = 0; i < columns.size(); i += Doubles::size) {
+            const Doubles number = Doubles(static_cast<double>(i / kBlock * kBlock)) + load(kColumns<double>, i % kBlock);
             ((Doubles(x) + number) * Doubles(plane.x)).store_aligned(&columns[i]);
             (Doubles(plane.constant) + (Doubles(y) + number) * Doubles(plane.y)).store_aligned(&rows[i]);
         }
     }
-    /// Of the samples from the i-th of the block on.
-    Floats at(std::size_t i) const {
+    /// Of a block's samples from the i-th on.
+    Floats at(std::size_t block, std::size_t i) const {
         const auto half = [&](std::size_t first) {
-            const Doubles value = Doubles(rows[first / kBlock]) + Doubles::load_aligned(&columns[first % kBlock]);
+            const Doubles value = Doubles(rows[block / kSide * kBlock + first / kBlock]) +
+                                  Doubles::load_aligned(&columns[block % kSide * kBlock + first % kBlock]);
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
         const Floats nearness = narrowed(half(i), half(i + Doubles::size));
@@ -165,12 +167,14 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
     inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
 }
 
-/// Draws those samples of a block that lie in the strip from `first` on. (In line, as draw_block(): calls take a tenth of a frame.)
+/// Draws those samples of a block that lie in its strip from `first` on; nearness_at(i): of the samples from the i-th on. (In line, as
+/// draw_block(): calls take a tenth of a frame.)
+template <typename NearnessAt>
 [[gnu::always_inline]] inline void DepthTile::draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id,
-                                                         const Nearness& nearness) {
+                                                         const NearnessAt& nearness_at) {
     for (std::size_t i = first; i < first + kStrip; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
-        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness.at(i), lanes_from<float>(here));
+        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness_at(i), lanes_from<float>(here));
     }
 }
 
@@ -201,9 +205,9 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
 [[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                                                          const Covered& covered, Vec2d first) {
     open(block);
-    const Nearness nearness(triangle.nearness, viewport_, first.x, first.y);
-    for (std::size_t i = 0; i < kBlockSamples; i += kStrip) // all strips: no machine guesses which of them it covers
-        draw_strip(block, i, covered.well_inside, triangle.id, nearness);
+    const Nearness<1> nearness(triangle.nearness, viewport_, first.x, first.y);
+    for (std::size_t strip = 0; strip < kBlockSamples; strip += kStrip) // all: no machine guesses which of them it covers
+        draw_strip(block, strip, covered.well_inside, triangle.id, [&](std::size_t i) { return nearness.at(0, i); });
     if (covered.some != covered.well_inside) draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
     constexpr std::uint8_t kOften = 16;
     if (covered.all_well_inside() || ++partial_[block] >= kOften) find_farthest(block);
@@ -224,32 +228,44 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTrian
 
 namespace {
 
-/// Those bits of a box of 8 × 8 that lie in a block, if its first is `x` to the right of the block's and `y` below.
-std::uint64_t moved(std::uint64_t bits, int x, int y) {
+/// A box of 8 × 8 samples lies over up to four blocks, two of them below the others: its samples in each, if its first is `left` to the
+/// right and `top` below of the first block's.
+std::array<std::uint64_t, 4> over_blocks(std::uint64_t samples, int left, int top) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
-    if (x >= 0)
-        bits = (bits & kFirstColumn * (0xffu >> x)) << x;
-    else
-        bits = bits >> -x & kFirstColumn * (0xffu >> -x);
-    return y >= 0 ? bits << 8 * y : bits >> 8 * -y;
+    const std::uint64_t in_left = (samples & kFirstColumn * (0xffu >> left)) << left,
+                        in_right = samples >> (8 - left) & kFirstColumn * (0xffu >> (8 - left));
+    const auto above = [&](std::uint64_t bits) { return bits << 8 * top; };
+    const auto below = [&](std::uint64_t bits) { return bits >> 8 >> (56 - 8 * top); };
+    return {above(in_left), above(in_right), below(in_left), below(in_right)};
+}
+
+/// A bit for each strip of the blocks that has one of the samples.
+std::uint32_t strips_of(const std::array<std::uint64_t, 4>& samples) {
+    std::uint32_t strips = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        constexpr std::uint64_t kAllButLast = 0x7fff7fff7fff7fff;
+        const std::uint64_t any = (((samples[k] & kAllButLast) + kAllButLast) | samples[k]) & ~kAllButLast;
+        strips |= static_cast<std::uint32_t>((any >> 15) * 0x0001000200040008 >> 48 & 0xf) << 4 * k; // bits 15, 31, 47, 63 to four in a row
+    }
+    return strips;
 }
 
 } // namespace
 
-// Its box lies over up to four blocks.
+// Strips one after the other, whichever block they are of: so how many there are is all that a machine may guess wrong.
 void DepthTile::draw(const Patch& patch) {
-    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0;
-    for (int row = std::max(y >> 3, 0); row <= std::min((y + 7) >> 3, kBlocks - 1); ++row)
-        for (int column = std::max(x >> 3, 0); column <= std::min((x + 7) >> 3, kBlocks - 1); ++column) {
-            const std::uint64_t samples = moved(patch.samples, x - column * kBlock, y - row * kBlock);
-            if (samples == 0) continue;
-            const auto block = static_cast<std::size_t>(row * kBlocks + column);
-            open(block);
-            const Nearness nearness(patch.nearness, viewport_, column * kBlock - x, row * kBlock - y);
-            for (auto i = static_cast<std::size_t>(std::countr_zero(samples)) / kStrip * kStrip; i < kBlockSamples && samples >> i != 0;
-                 i += kStrip)
-                draw_strip(block, i, samples, patch.id, nearness);
-        }
+    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0, left = x & 7, top = y & 7;
+    const int column = x >> 3, row = y >> 3; // of the first block: maybe just before the tile's
+    const std::array<std::uint64_t, 4> samples = over_blocks(patch.samples, left, top);
+    const std::uint32_t in_tile = ((column >= 0 ? 0x0f0fu : 0) | (column + 1 < kBlocks ? 0xf0f0u : 0)) &
+                                  ((row >= 0 ? 0x00ffu : 0) | (row + 1 < kBlocks ? 0xff00u : 0));
+    const Nearness<2> nearness(patch.nearness, viewport_, -left, -top);
+    for (std::uint32_t strips = strips_of(samples) & in_tile; strips != 0; strips &= strips - 1) {
+        const auto strip = static_cast<std::size_t>(std::countr_zero(strips)), part = strip / 4;
+        const auto block = static_cast<std::size_t>((row + static_cast<int>(part / 2)) * kBlocks + column + static_cast<int>(part % 2));
+        open(block);
+        draw_strip(block, strip % 4 * kStrip, samples[part], patch.id, [&](std::size_t i) { return nearness.at(part, i); });
+    }
 }
 
 void DepthTile::draw(std::span<const Fragment> fragments) {

@@ -65,11 +65,12 @@ public:
 private:
     struct Edges;
     struct BlockRow;
-    struct Nearness;
+    template <std::size_t kSide> struct Nearness;
     struct Covered;
     std::uint32_t not_hidden(int row, float nearest) const;
     void draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block, const Covered& covered, Vec2d first);
-    void draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id, const Nearness& nearness);
+    template <typename NearnessAt>
+    void draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id, const NearnessAt& nearness_at);
     template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
