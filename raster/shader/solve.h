@@ -29,8 +29,8 @@ template <VertexShader S, typename D> struct SolvedStrip {
     bool directions = false;
 };
 
-/// Solves for the samples that see triangles, where they are one object's; S's vertex function is asked for what is interpolated. D says how exactly:
-/// in double, or in float, to within 2^-13 of a barycentric and of a depth, and mostly within 2^-20 (kSteepest).
+/// Solves for the samples that see triangles, where they are one object's; S's vertex function is asked for what is interpolated.
+/// D says how exactly: in double, or in float, to within 2^-13 of a barycentric and of a depth, and mostly within 2^-20 (kSteepest).
 template <VertexShader S, typename D> class StripSolver {
 public:
     using Solved = SolvedStrip<S, D>;
@@ -40,8 +40,8 @@ public:
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
-    /// use(first, strips), a few at a time: those from places[first] on, solved where they see triangles of one object, are there until use()
-    /// returns. `mend`: solve otherwise where the solution does not hold as it is.
+    /// use(first, strips), a few at a time: those from places[first] on, solved where they see triangles of one object, are there
+    /// until use() returns. `mend`: solve otherwise where the solution does not hold as it is.
     template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
