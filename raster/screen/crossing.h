@@ -15,8 +15,10 @@ public:
     Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
         if (!(from_.z > 0)) return;
         const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
-        // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
-        reach_ = std::min(deeper < 0 ? 0.5f * from_.z / -deeper : kInfinity, 1e3f * from_.z);
+        // Up to the near plane, or a good deal nearer or farther than anything that moves a pixel.
+        const float nearest = std::min(from_.z, std::max(screen.near(), 1e-4f * from_.z));
+        const float to_nearest = deeper < 0 ? (from_.z - nearest) / -deeper : kInfinity, farthest = 1e3f * from_.z;
+        reach_ = std::min(to_nearest, farthest);
         to_ = screen.project(p + way * reach_);
         pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
         if (!moves()) return;

@@ -127,6 +127,45 @@ TEST_SUITE("unit") {
         CHECK(wrong * 50 < red);
     }
 
+    TEST_CASE("a mirror shows a ball before it, however much nearer to the viewer that is") {
+        constexpr double kDeep = 5;
+        for (const auto projection : {Camera::Projection::kPerspective, Camera::Projection::kOrthographic})
+            for (const double part : {0.1, 0.3, 0.45, 0.55, 0.7, 0.9}) {
+                const bool perspective = projection == Camera::Projection::kPerspective;
+                const double depth = part * kDeep, radius = 0.08 * (perspective ? depth : 0.5 * kDeep);
+                const Vec3d center = perspective ? Vec3d(0.25, 0.1, -1) * depth : Vec3d(0.5, 0.2, -depth);
+                Scene scene;
+                add(scene, QuadList{{{Vec3(-3, -3, -kDeep), Vec3(6, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+                add(scene, Sphere{Vec3(center), static_cast<float>(radius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+                scene.environment = ConstantEnvironment{Rgb(1.0f)};
+                finish_scene(scene);
+                Camera camera = look({0, 0, 0}, {perspective ? 0.0 : 1.5, 0, -kDeep}, 40); // the ball is seen beside its mirror image
+                camera.projection = projection;
+                camera.height = 3.5;
+                const View view{camera, 320, 240};
+                raster::Settings settings = plain();
+                settings.aovs.hit = true;
+                const Rendering found = render(scene, view, settings);
+                int red = 0, white = 0, wrong = 0;
+                for (int y = 0; y < view.height; ++y)
+                    for (int x = 0; x < view.width; ++x) {
+                        if (found.hit(x, y).object != 0) continue;
+                        const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                        const Vec3d p = ray.at((-kDeep - ray.origin.z) / ray.direction.z);
+                        const Vec3d way = normalize(Vec3d(ray.direction.x, ray.direction.y, -ray.direction.z)), to = center - p;
+                        const double beside = length(to - way * dot(to, way));
+                        if (std::abs(beside / radius - 1) < 0.3) continue;
+                        ++(beside < radius ? red : white);
+                        wrong += std::abs(found.radiance(x, y).g - (beside < radius ? 0.0f : 1.0f)) > 0.1f;
+                    }
+                CAPTURE(perspective);
+                CAPTURE(part);
+                CHECK(red > 2);
+                CHECK(white > 20000);
+                CHECK(wrong == 0);
+            }
+    }
+
     // From below, where only its back is met, and about the place where it touches the mirror.
     TEST_CASE("a ball that lies on a mirror shows its own colour there, and nothing of the mirror and the sky beside it") {
         Scene scene;
