@@ -85,8 +85,7 @@ Rgb Surroundings::seen(const Look& look) const {
         const LampSeen found = std::visit(finder, light.shape);
         if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
     }
-    // What the picture shows a little before the lamp is the lamp.
-    if (lamp == nullptr || distance < 0.98f * nearest.distance) return sum;
+    if (lamp == nullptr || distance < nearest.distance) return sum;
     if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
     const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, *lamp, p, look.way, nearest.distance)
                                                       : lamp->radiance;
@@ -139,7 +138,10 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     // wherever what is met is guessed.
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
     const bool is_lamp = shown.lamps(x, y) != 0;
-    if (is_lamp) distance = kInfinity; // it hides none
+    if (is_lamp) // it hides none
+        distance = kInfinity;
+    else // what is met within the pixel may be as much farther than its middle: beside a lamp, the lamp
+        distance = hit.distance + pixel / max(std::abs(dot(screen.normal(x, y), look.way)), 0.1f);
     if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;

@@ -99,6 +99,32 @@ TEST_SUITE("unit") {
         CHECK(within > 3);
     }
 
+    TEST_CASE("a mirror shows a board that stands a little before a lamp, down to its lower edge, and beside it the lamp") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-9, 0, 15), Vec3(18, 0, 0), Vec3(0, 0, -60)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-6, 1, -40), Vec3(12, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
+        add(scene, QuadList{{{Vec3(-2, 1, -39.5f), Vec3(4, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Diffuse{{Rgb()}});
+        finish_scene(scene);
+        const View view{look({0, 3, 20}, {0, 1, -20}, 30), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int dark = 0, bright = 0, wrong = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at(-ray.origin.y / ray.direction.y);
+                const Vec3d way(ray.direction.x, -ray.direction.y, ray.direction.z), at = p + way * ((-39.5 - p.z) / way.z);
+                const double aside = std::abs(at.x);
+                if (p.z < -39 || at.y < 1.5 || at.y > 6.5 || std::abs(aside - 2) < 0.5 || aside > 5.5) continue;
+                ++(aside < 2 ? dark : bright);
+                wrong += std::abs(found.radiance(x, y).g - (aside < 2 ? 0.0f : 4.0f)) > 0.1f;
+            }
+        CHECK(std::min(dark, bright) > 500);
+        CHECK(wrong == 0);
+    }
+
     TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
         Scene scene;
         const Vec3 center(0.8f, 0.7f, -0.2f);
