@@ -126,7 +126,10 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
-    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const float shown_depth = scenery_.at(x, y).depth(x, y); // of what is met nearer than the picture shows it
+    const float least = shown_depth < kInfinity ? shown_depth : scenery_.all.near();
+    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], least);
     const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
     // What is met is of one object: no look at it is as wide as to see another beside it. But no narrower than a rough surface
     // blurs: what that sees beside is not a guess, but for the mirror itself.
@@ -136,7 +139,6 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
     // wherever what is met is guessed.
-    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
     const bool is_lamp = shown.lamps(x, y) != 0;
     if (is_lamp) // it hides none
         distance = kInfinity;

@@ -277,6 +277,44 @@ TEST_SUITE("unit") {
         }
     }
 
+    // Beside the ball stand bright boxes, which the edge cuts too. The sky is seen above alone.
+    TEST_CASE("a metal ball that the picture's edge cuts shows the black floor below: a little of what else stands there, no sky") {
+        const Vec3d center(0, 0.7, 0);
+        for (const bool boxes : {false, true}) {
+            Scene scene;
+            add(scene, QuadList{{{Vec3(-9, 0, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+            add(scene, Sphere{Vec3(center), 0.7f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+            for (const float x : {-1.0f, 0.8f})
+                if (boxes) {
+                    const Vec3 right(0.2f, 0, 0), up(0, 0.6f, 0), back(0, 0, -0.6f), corner(x, 0, 0.3f);
+                    add(scene, QuadList{{{corner, right, up}, {corner, up, back}, {corner + right, back, up}, {corner + up, right, back}}},
+                        Mat4(), Emissive{{Rgb(0, 0.8f, 0)}});
+                }
+            scene.environment = ConstantEnvironment{Rgb(1.0f)};
+            finish_scene(scene);
+            const View view{look({0, 1.6, 5}, {0, 1.6, 0}, 30), 320, 240};
+            raster::Settings settings = plain();
+            settings.aovs.hit = true;
+            const Rendering found = render(scene, view, settings);
+            const Oracle oracle(scene);
+            int within = 0;
+            double sum = 0, sky = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    if (found.hit(x, y).object != 1) continue;
+                    const Rayd ray = mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
+                    if (ray.direction.y > -0.1 || oracle.trace({ray.at(1e-3), ray.direction}).object != 0) continue;
+                    sum += static_cast<double>(found.radiance(x, y).g);
+                    sky += static_cast<double>(found.radiance(x, y).r);
+                    ++within;
+                }
+            CAPTURE(boxes);
+            CHECK(within > 1500);
+            CHECK(sum < (boxes ? 0.065 : 0.05) * within); // what the picture does not show is guessed, and blurred
+            CHECK(sky < (boxes ? 0.065 : 0.05) * within);
+        }
+    }
+
     TEST_CASE("a rough metal ball shows a black ball beside it black, and nothing of itself in that") {
         const Vec3d center(0.52, 0, 0), black(-0.52, 0, 0);
         constexpr double kRadius = 0.5;
