@@ -38,6 +38,14 @@ bool block_is_beyond(const Screen& screen, float x, float y, int block, float de
     return depth < screen.least_depth(x0, y0, std::min(x0 + block, screen.width()) - 1, std::min(y0 + block, screen.height()) - 1);
 }
 
+/// The greatest width that fits, of those that fall by a fixed part from `width` on; one, where none does or it is not finite.
+template <typename F> float widest(float width, const F& fits) {
+    if (!(width < kInfinity)) return 1;
+    for (; width > 1; width *= 0.7f)
+        if (fits(width)) return width;
+    return 1;
+}
+
 /// One ray on its way.
 class ScreenTrace {
 public:
@@ -329,16 +337,11 @@ bool Scenery::own_within(float x, float y, float reach) const {
 }
 
 float Scenery::width_beside_own(float x, float y, float width) const {
-    if (own_within(x, y, 0)) return width;
-    for (; width > 1; width *= 0.7f)
-        if (!own_within(x, y, 2 * width)) return width;
-    return 1;
+    return own_within(x, y, 0) ? width : widest(width, [&](float wide) { return !own_within(x, y, 2 * wide); });
 }
 
 float Scenery::width_within(float x, float y, float width) const {
-    for (; width > 1; width *= 0.7f)
-        if (one_object(x, y, 2 * width)) return width; // of the coarser level, between its pixels
-    return 1;
+    return widest(width, [&](float wide) { return one_object(x, y, 2 * wide); }); // of the coarser level, between its pixels
 }
 
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
