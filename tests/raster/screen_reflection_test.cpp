@@ -7,6 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <random>
+
 using namespace duet;
 using namespace duet::test;
 
@@ -360,6 +363,47 @@ TEST_SUITE("unit") {
         const auto floor = trace({0.02f, -0.05f, -1});
         REQUIRE(floor);
         CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
+    }
+
+    // Looked through everywhere the ray meets what is behind, while blocks are those of what is in front: as near as can be, none is
+    // passed at once; the same as behind, some are.
+    TEST_CASE("rays that pass blocks of a random picture at once hit what those hit that go pixel by pixel; no look is infinitely wide") {
+        std::mt19937 random(7);
+        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        int hits = 0;
+        for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 7), std::pair(33, 40), std::pair(64, 64), std::pair(300, 9)}) {
+            const View view{look({0, 0, 0}, {0, 0, -1}, 60), width, height};
+            ImageFloat deep(width, height), nearest(width, height, 0.5f);
+            const double part = uniform(0.01, 0.2);
+            const auto near = static_cast<float>(CameraModel(view).through().near);
+            for (std::size_t i = 0; i < deep.size(); ++i)
+                deep[i] = near / static_cast<float>(uniform(0, 1) < part ? uniform(1, 3) : uniform(8, 9));
+            const auto screen_with = [&](const ImageFloat& depths) {
+                auto screen = std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
+                screen->set_normals(ImageRgb(width, height, Rgb(0.5f, 0.5f, 1)));
+                screen->set_first_look({{}, Image<std::uint32_t>(width, height, 0), {}, {}, {}});
+                screen->set_turns(ImageFloat(width, height, 0));
+                return screen;
+            };
+            const auto behind = screen_with(deep), alike = screen_with(deep), before = screen_with(nearest);
+            const Box3 bounds{Vec3(-20, -20, -20), Vec3(20, 20, 20)};
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 p(Vec3d(uniform(-2, 2), uniform(-2, 2), uniform(-9, -1)));
+                const Vec3 way = normalize(Vec3(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.5))));
+                const auto at_once = raster::trace_screen({*alike, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
+                const auto singly = raster::trace_screen({*before, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
+                REQUIRE(at_once.has_value() == singly.has_value());
+                if (!at_once) continue;
+                ++hits;
+                REQUIRE(at_once->x == singly->x);
+                REQUIRE(at_once->y == singly->y);
+                REQUIRE(at_once->distance == singly->distance);
+            }
+            const raster::Scenery scenery{*behind, nullptr, kNoObject};
+            CHECK(scenery.width_within(0, 0, kInfinity) == 1);
+            CHECK(scenery.width_within(0, 0, std::numeric_limits<float>::quiet_NaN()) == 1);
+        }
+        CHECK(hits > 500);
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {
