@@ -374,10 +374,10 @@ TEST_SUITE("unit") {
         for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 7), std::pair(33, 40), std::pair(64, 64), std::pair(300, 9)}) {
             const View view{look({0, 0, 0}, {0, 0, -1}, 60), width, height};
             ImageFloat deep(width, height), nearest(width, height, 0.5f);
-            const double part = uniform(0.01, 0.2);
+            const double part = uniform(0.002, 0.02);
             const auto near = static_cast<float>(CameraModel(view).through().near);
             for (std::size_t i = 0; i < deep.size(); ++i)
-                deep[i] = near / static_cast<float>(uniform(0, 1) < part ? uniform(1, 3) : uniform(8, 9));
+                deep[i] = near / static_cast<float>(uniform(0, 1) < part ? uniform(2, 4) : uniform(8, 9));
             const auto screen_with = [&](const ImageFloat& depths) {
                 auto screen = std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
                 screen->set_normals(ImageRgb(width, height, Rgb(0.5f, 0.5f, 1)));
