@@ -15,14 +15,18 @@ public:
     Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
         if (!(from_.z > 0)) return;
         const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
-        // Half way to the eye's plane, or a good deal farther than anything that moves a pixel.
-        reach_ = std::min(deeper < 0 ? 0.5f * from_.z / -deeper : kInfinity, 1e3f * from_.z);
+        // Up to the near plane, or a good deal nearer or farther than anything that moves a pixel.
+        const float nearest = std::min(from_.z, std::max(screen.near(), 1e-4f * from_.z));
+        const float to_nearest = deeper < 0 ? (from_.z - nearest) / -deeper : kInfinity, farthest = 1e3f * from_.z;
+        reach_ = std::min(to_nearest, farthest);
         to_ = screen.project(p + way * reach_);
         pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
         if (!moves()) return;
-        float in = 0, out = 1;
-        clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out);
+        float in = 0, out = 1, out_at_side = 1;
+        clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out_at_side);
+        out = out_at_side;
         clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
+        leaves_ = out < 1, leaves_at_side_ = leaves_ && out_at_side <= out;
         if (!(in <= out)) return;
         // A start far beside the picture may be any number of pixels away.
         const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
@@ -39,6 +43,8 @@ public:
     float step_x() const { return (to_.x - from_.x) / pixels_; }
     float step_y() const { return (to_.y - from_.y) / pixels_; }
     float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
+    bool leaves() const { return leaves_; } ///< whether an edge of the picture cuts it off
+    bool leaves_at_side() const { return leaves_at_side_; } ///< at the left or right one
     bool comes_nearer() const { return to_.z < from_.z; }
     /// The other way round; the end where it keeps its depth.
     float part_at(float depth) const {
@@ -62,7 +68,7 @@ private:
     }
 
     Vec3 from_, to_; ///< in pixels, and depth
-    bool perspective_;
+    bool perspective_, leaves_ = false, leaves_at_side_ = false;
     float reach_ = 0, pixels_ = 0;
     int first_ = 1, last_ = 0;
 };

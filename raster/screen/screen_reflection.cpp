@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
 constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for each metre behind the nearer side of what hides: deep in, means alone are known
+constexpr int kBesideFirst = 4; ///< pixels along the edge that are looked at beyond twice as far as the first that a ray goes on to
 constexpr int kLeastBlock = 8, kMostBlock = 256; ///< pixels: blocks of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
@@ -35,6 +36,14 @@ int steps_in_block(float x, float y, float sx, float sy, int block, int most) {
 bool block_is_beyond(const Screen& screen, float x, float y, int block, float depth) {
     const int x0 = static_cast<int>(x) & -block, y0 = static_cast<int>(y) & -block;
     return depth < screen.least_depth(x0, y0, std::min(x0 + block, screen.width()) - 1, std::min(y0 + block, screen.height()) - 1);
+}
+
+/// The greatest width that fits, of those that fall by a fixed part from `width` on; one, where none does or it is not finite.
+template <typename F> float widest(float width, const F& fits) {
+    if (!(width < kInfinity)) return 1;
+    for (; width > 1; width *= 0.7f)
+        if (fits(width)) return width;
+    return 1;
 }
 
 /// One ray on its way.
@@ -165,51 +174,73 @@ private:
         return scenery_.all.contains(fx, fy) ? Pixel{static_cast<int>(fx), static_cast<int>(fy)} : Pixel{};
     }
 
-    /// Where it meets the plane of a flat surface that a pixel shows, farther than `from`.
-    std::optional<ScreenHit> goes_on(Pixel at, float from) const {
-        if (!at.valid()) return std::nullopt;
+    /// Where it meets the plane of a flat surface that a pixel shows, farther than `from`: as that pixel shows it,
+    std::optional<ScreenHit> meets_flat(Pixel at, float from) const {
         const Screen& screen = scenery_.at(at.x, at.y);
         const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
         if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
-        const ScreenHit hit = guess(screen, middle(at.x), middle(at.y), crossed);
-        return of_hidden(flat_at(hit, hit));
+        return guess(screen, middle(at.x), middle(at.y), crossed);
+    }
+    /// and as the flat look does.
+    std::optional<ScreenHit> goes_on(Pixel at, float from) const {
+        const auto hit = at.valid() ? meets_flat(at, from) : std::nullopt;
+        return hit ? std::optional(of_hidden(flat_at(*hit, *hit))) : std::nullopt;
     }
 
     std::optional<ScreenHit> beyond_edge() const {
         const Pixel end = last();
         if (hidden_from_ >= 0) {
             if (const auto hit = goes_on(last_flat(line_.last()), hidden_from_)) return hit;
-            return ends_far_off() ? past_what_hides(end) : at_end(end);
+            if (ends_far_off()) return past_what_hides(end);
+            return line_.leaves() ? std::optional(at_end(end)) : std::nullopt; // it has come out before the viewer
         }
         const Screen& screen = scenery_.at(end.x, end.y);
-        if (scenery_.is_own(end.x, end.y)) return beside_own(end);
-        if (!screen.seen(end.x, end.y)) return std::nullopt;
-        const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
-        return goes_on(flat ? end : last_flat(line_.last()), 0);
+        if (!scenery_.is_own(end.x, end.y)) {
+            if (!screen.seen(end.x, end.y)) return std::nullopt;
+            const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
+            if (!flat || !line_.leaves())
+                if (const auto hit = goes_on(flat ? end : last_flat(line_.last()), 0)) return hit;
+        }
+        return line_.leaves() ? along_edge(end) : std::nullopt;
     }
 
-    /// Of a ray that leaves the picture where the edge cuts the mirror itself: what goes on there of what is seen at the edge beside
-    /// that, the nearest first.
-    std::optional<ScreenHit> beside_own(Pixel end) const {
-        const Screen& all = scenery_.all;
-        const float out = line_.part(line_.last() + 2); // by rounding the next step may still be in the picture
-        const Vec2 beyond(line_.x(out), line_.y(out));
-        if (line_.part(line_.last() + 1) > 1 || all.contains(beyond.x, beyond.y)) return std::nullopt;
-        const bool at_side = !(beyond.x >= 0 && beyond.x < static_cast<float>(all.width()));
-        for (int i = 1; i <= std::max(all.width(), all.height()) / 2; ++i)
+    /// Of a ray that leaves the picture before what the edge shows there, or over the mirror itself: of what is seen along the edge, at
+    /// distances that grow, and goes on there to the ray, what that meets first, as it seems a little beyond the first that it meets.
+    std::optional<ScreenHit> along_edge(Pixel end) const {
+        const bool at_side = line_.leaves_at_side();
+        const float t = line_.part(line_.last()), left = line_.distance(t, line_.depth(t));
+        std::optional<ScreenHit> nearest;
+        for (int i = 0, most = at_side ? scenery_.all.height() : scenery_.all.width(); i < most; i += 1 + i / 4)
             for (const int step : {-i, i}) {
                 const Pixel at = at_side ? Pixel{end.x, end.y + step} : Pixel{end.x + step, end.y};
-                if (!all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) continue;
-                const Screen& screen = scenery_.at(at.x, at.y);
-                if (!screen.seen(at.x, at.y)) return std::nullopt;
-                if (!is_flat(screen, at.x, at.y)) continue;
-                if (const auto hit = goes_on(at, 0)) return hit;
+                const std::optional<ScreenHit> hit = flat_beyond(at, i == 0 ? 0 : left);
+                if (!hit || (nearest && nearest->distance <= hit->distance) || !is_before_plane(edge_before(*hit, end), at)) continue;
+                if (!nearest) most = std::min(most, 2 * i + kBesideFirst);
+                nearest = hit;
             }
-        return std::nullopt;
+        return nearest ? std::optional(of_hidden(flat_at(*nearest, *nearest))) : std::nullopt;
+    }
+    /// Where what a pixel of the edge shows, if flat, is met farther than `left`, where the ray leaves the picture.
+    std::optional<ScreenHit> flat_beyond(Pixel at, float left) const {
+        if (!scenery_.all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) return std::nullopt;
+        return is_flat(scenery_.at(at.x, at.y), at.x, at.y) ? meets_flat(at, left) : std::nullopt;
+    }
+    /// Whether what a pixel shows stands on or before the plane of what another does, which may go on behind it.
+    bool is_before_plane(Pixel at, Pixel other) const {
+        const Screen& screen = scenery_.at(other.x, other.y);
+        const std::optional<Vec3> seen = scenery_.at(at.x, at.y).seen(at.x, at.y), on = screen.seen(other.x, other.y);
+        return seen && on && dot(screen.normal(other.x, other.y), *seen - *on) >= -kSlack * length(*seen - *on);
+    }
+    /// The pixel of the edge next to a place outside the picture; beside the viewer or behind him, `end`.
+    Pixel edge_before(const ScreenHit& hit, Pixel end) const {
+        const Vec3 place = scenery_.all.project(p_ + way_ * hit.distance);
+        if (!(place.z > scenery_.all.near())) return end;
+        const auto [x, y] = scenery_.all.pixel_at(place);
+        return line_.leaves_at_side() ? Pixel{end.x, y} : Pixel{x, end.y};
     }
 
     /// Whether the picture shows where the ray goes to: no edge of it cuts it off.
-    bool ends_far_off() const { return line_.part(line_.last() + 1) > 1 && !line_.comes_nearer(); }
+    bool ends_far_off() const { return !line_.leaves() && !line_.comes_nearer(); }
     /// Hidden up to its end, it meets the first flat surface past what hides it whose plane it crosses, or what is behind all.
     std::optional<ScreenHit> past_what_hides(Pixel end) const {
         for (int i = line_.last() + 1;; ++i) {
@@ -306,16 +337,11 @@ bool Scenery::own_within(float x, float y, float reach) const {
 }
 
 float Scenery::width_beside_own(float x, float y, float width) const {
-    if (own_within(x, y, 0)) return width;
-    for (; width > 1; width *= 0.7f)
-        if (!own_within(x, y, 2 * width)) return width;
-    return 1;
+    return own_within(x, y, 0) ? width : widest(width, [&](float wide) { return !own_within(x, y, 2 * wide); });
 }
 
 float Scenery::width_within(float x, float y, float width) const {
-    for (; width > 1; width *= 0.7f)
-        if (one_object(x, y, 2 * width)) return width; // of the coarser level, between its pixels
-    return 1;
+    return widest(width, [&](float wide) { return one_object(x, y, 2 * wide); }); // of the coarser level, between its pixels
 }
 
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {

@@ -55,15 +55,18 @@ struct ScreenHit {
 ///
 /// What the picture does not show it may still tell of. A flat surface that the ray, when it comes out from behind
 /// something, has already crossed by its plane is what it has met there; one that it was last seen before goes on behind
-/// what hides the ray up to the picture's edge, which stands for what it meets where there is none; and flat surfaces go on
-/// beyond the edge as they are there, up to the bounds of the scene (relative to the eye). Where that is behind something
-/// round it is looked up at its own place, which the flat look fills from all sides. Glass that the ray comes through
-/// towards the viewer is not met: what that shows the viewer it does not show the ray. Empty where the ray meets nothing so.
+/// what hides the ray. Hidden up to its own end, where no edge of the picture cuts it off, it goes on past that to the
+/// first flat surface whose plane it crosses, or to what is behind all; else the picture's edge stands for what it meets.
+/// Flat surfaces go on beyond the edge, up to the bounds of the scene (relative to the eye): what the edge shows where the ray
+/// leaves, or, where that is the mirror itself or is not met, what is seen along the edge and has not ended where it would
+/// be met. Where that is behind something round it is looked up at its own place, which the flat look fills from all sides.
+/// Glass that the ray comes through towards the viewer is not met: what that shows the viewer it does not show the ray.
+/// Empty where the ray meets nothing so.
 ///
 /// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
 
-inline constexpr float kThickness = 0.02f;
+inline constexpr float kThickness = 0.02f; ///< of the depth: of what is not closed, as thick it is taken to be at least
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.
 inline constexpr float kGuessBlur = 0.25f;
 

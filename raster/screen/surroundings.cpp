@@ -85,8 +85,7 @@ Rgb Surroundings::seen(const Look& look) const {
         const LampSeen found = std::visit(finder, light.shape);
         if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
     }
-    // What the picture shows a little before the lamp is the lamp.
-    if (lamp == nullptr || distance < 0.98f * nearest.distance) return sum;
+    if (lamp == nullptr || distance < nearest.distance) return sum;
     if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
     const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, *lamp, p, look.way, nearest.distance)
                                                       : lamp->radiance;
@@ -127,7 +126,10 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
-    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], scenery_.all.near());
+    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
+    const float shown_depth = scenery_.at(x, y).depth(x, y); // of what is met nearer than the picture shows it
+    const float least = shown_depth < kInfinity ? shown_depth : scenery_.all.near();
+    const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], least);
     const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
     // What is met is of one object: no look at it is as wide as to see another beside it. But no narrower than a rough surface
     // blurs: what that sees beside is not a guess, but for the mirror itself.
@@ -137,9 +139,11 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     const Screen::FirstLook& shown = screen.first_look();
     // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
     // wherever what is met is guessed.
-    const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
     const bool is_lamp = shown.lamps(x, y) != 0;
-    if (is_lamp) distance = kInfinity; // it hides none
+    if (is_lamp) // it hides none
+        distance = kInfinity;
+    else // what is met within the pixel may be as much farther than its middle: beside a lamp, the lamp
+        distance = hit.distance + pixel / max(std::abs(dot(screen.normal(x, y), look.way)), 0.1f);
     if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;

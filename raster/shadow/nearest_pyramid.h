@@ -1,4 +1,4 @@
-// What is nearest in any part of a shadow map, without looking at all of it.
+// What is nearest in any part of a shadow map or of a screen's depths, without looking at all of it.
 #pragma once
 
 #include "common/image/image.h"

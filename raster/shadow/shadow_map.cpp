@@ -98,7 +98,7 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
 /// that rises more and more from the receiver to the texel and on is a convex function f of the texels' coordinates, of which
 /// f(c) − (f(c + e) − f(c)) |r| is at most f(c − r e): taken away from the receiver, differences never put it into the shade
 /// of its own valley, be creases where they may.
-double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const {
+double ShadowMap::roundings_over_receiver(const Plane& plane, Vec3d place, int x, int y) const {
     const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
     // Slopes away from the receiver. Of a convex surface three in a row grow; of the middle one in size a single step
     // from one thing to another is no part.
@@ -118,7 +118,7 @@ double ShadowMap::height_at_receiver(const Plane& plane, Vec3d place, int x, int
 /// wall's plane, as they would see what is beyond a ridge.
 bool ShadowMap::is_covered(const Plane& plane, Vec3d place) const {
     const int x = static_cast<int>(std::floor(place.x - 0.5)), y = static_cast<int>(std::floor(place.y - 0.5));
-    const auto over = [&](int column, int row) { return height_at_receiver(plane, place, column, row) > kFourDepths; };
+    const auto over = [&](int column, int row) { return roundings_over_receiver(plane, place, column, row) > kFourDepths; };
     return over(x, y) && over(x + 1, y) && over(x, y + 1) && over(x + 1, y + 1);
 }
 
@@ -140,7 +140,7 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
             if (over < -slack(plane.falling)) continue;
             const bool near = over <= slack(plane.rising);
-            const bool blocks = over > plane.rounding && (!near || height_at_receiver(plane, place, x, y) > kDepths);
+            const bool blocks = over > plane.rounding && (!near || roundings_over_receiver(plane, place, x, y) > kDepths);
             if (blocks && seen <= plane.at) continue;
             const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
             (over < -plane.rounding ? under : known) += weight;

@@ -56,8 +56,8 @@ public:
     static constexpr double kSteepest = 0.5;    ///< facets of one surface meet at up to 27°,
     static constexpr double kOfElevation = 0.9; ///< or, on the light's side, at most nearly as steeply as light falls;
     static constexpr double kFalling = 0.23;    ///< those under the receiver's plane at less of it
-    static constexpr double kDepths = 64; ///< times the receiver's rounding: that of planes through depths solved in float
-    static constexpr double kFourDepths = 5; ///< the same of texels up to one beside the place: of a depth, and of two differences of two
+    static constexpr double kDepths = 64; ///< roundings of a texel's own plane (roundings_over_receiver): its depths are solved in float
+    static constexpr double kFourDepths = 5; ///< the same of texels up to one beside the place: of a depth, and two differences of two
     static constexpr double kUnsure = 0.75; ///< of the filter: where texels of less weight say anything, what covers the receiver counts
     static constexpr double kContactsShade = 0.75; ///< of the texels that say anything: where less block, contacts do not shade
     static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
@@ -78,7 +78,7 @@ private:
         const double nearness = max(static_cast<double>(nearness_(x, y)), 1e-30);
         return orthographic_ ? -view_.near / nearness : nearness;
     }
-    double height_at_receiver(const Plane& plane, Vec3d place, int x, int y) const;
+    double roundings_over_receiver(const Plane& plane, Vec3d place, int x, int y) const;
     bool is_covered(const Plane& plane, Vec3d place) const;
     template <std::size_t N>
     float lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,

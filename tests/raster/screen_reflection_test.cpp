@@ -7,6 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <random>
+
 using namespace duet;
 using namespace duet::test;
 
@@ -99,6 +102,32 @@ TEST_SUITE("unit") {
         CHECK(within > 3);
     }
 
+    TEST_CASE("a mirror shows a board that stands a little before a lamp, down to its lower edge, and beside it the lamp") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-9, 0, 15), Vec3(18, 0, 0), Vec3(0, 0, -60)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(-6, 1, -40), Vec3(12, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
+        add(scene, QuadList{{{Vec3(-2, 1, -39.5f), Vec3(4, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Diffuse{{Rgb()}});
+        finish_scene(scene);
+        const View view{look({0, 3, 20}, {0, 1, -20}, 30), 320, 240};
+        raster::Settings settings = plain();
+        settings.aovs.hit = true;
+        const Rendering found = render(scene, view, settings);
+        int dark = 0, bright = 0, wrong = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at(-ray.origin.y / ray.direction.y);
+                const Vec3d way(ray.direction.x, -ray.direction.y, ray.direction.z), at = p + way * ((-39.5 - p.z) / way.z);
+                const double aside = std::abs(at.x);
+                if (p.z < -39 || at.y < 1.5 || at.y > 6.5 || std::abs(aside - 2) < 0.5 || aside > 5.5) continue;
+                ++(aside < 2 ? dark : bright);
+                wrong += std::abs(found.radiance(x, y).g - (aside < 2 ? 0.0f : 4.0f)) > 0.1f;
+            }
+        CHECK(std::min(dark, bright) > 500);
+        CHECK(wrong == 0);
+    }
+
     TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
         Scene scene;
         const Vec3 center(0.8f, 0.7f, -0.2f);
@@ -125,6 +154,45 @@ TEST_SUITE("unit") {
         CHECK(red > 60);
         CHECK(white > 2000);
         CHECK(wrong * 50 < red);
+    }
+
+    TEST_CASE("a mirror shows a ball before it, however much nearer to the viewer that is") {
+        constexpr double kDeep = 5;
+        for (const auto projection : {Camera::Projection::kPerspective, Camera::Projection::kOrthographic})
+            for (const double part : {0.1, 0.3, 0.45, 0.55, 0.7, 0.9}) {
+                const bool perspective = projection == Camera::Projection::kPerspective;
+                const double depth = part * kDeep, radius = 0.08 * (perspective ? depth : 0.5 * kDeep);
+                const Vec3d center = perspective ? Vec3d(0.25, 0.1, -1) * depth : Vec3d(0.5, 0.2, -depth);
+                Scene scene;
+                add(scene, QuadList{{{Vec3(-3, -3, -kDeep), Vec3(6, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+                add(scene, Sphere{Vec3(center), static_cast<float>(radius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
+                scene.environment = ConstantEnvironment{Rgb(1.0f)};
+                finish_scene(scene);
+                Camera camera = look({0, 0, 0}, {perspective ? 0.0 : 1.5, 0, -kDeep}, 40); // the ball is seen beside its mirror image
+                camera.projection = projection;
+                camera.height = 3.5;
+                const View view{camera, 320, 240};
+                raster::Settings settings = plain();
+                settings.aovs.hit = true;
+                const Rendering found = render(scene, view, settings);
+                int red = 0, white = 0, wrong = 0;
+                for (int y = 0; y < view.height; ++y)
+                    for (int x = 0; x < view.width; ++x) {
+                        if (found.hit(x, y).object != 0) continue;
+                        const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+                        const Vec3d p = ray.at((-kDeep - ray.origin.z) / ray.direction.z);
+                        const Vec3d way = normalize(Vec3d(ray.direction.x, ray.direction.y, -ray.direction.z)), to = center - p;
+                        const double beside = length(to - way * dot(to, way));
+                        if (std::abs(beside / radius - 1) < 0.3) continue;
+                        ++(beside < radius ? red : white);
+                        wrong += std::abs(found.radiance(x, y).g - (beside < radius ? 0.0f : 1.0f)) > 0.1f;
+                    }
+                CAPTURE(perspective);
+                CAPTURE(part);
+                CHECK(red > 2);
+                CHECK(white > 20000);
+                CHECK(wrong == 0);
+            }
     }
 
     // From below, where only its back is met, and about the place where it touches the mirror.
@@ -212,6 +280,44 @@ TEST_SUITE("unit") {
         }
     }
 
+    // Beside the ball stand bright boxes, which the edge cuts too. The sky is seen above alone.
+    TEST_CASE("a metal ball that the picture's edge cuts shows the black floor below: a little of what else stands there, no sky") {
+        const Vec3d center(0, 0.7, 0);
+        for (const bool boxes : {false, true}) {
+            Scene scene;
+            add(scene, QuadList{{{Vec3(-9, 0, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb()}});
+            add(scene, Sphere{Vec3(center), 0.7f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+            for (const float x : {-1.0f, 0.8f})
+                if (boxes) {
+                    const Vec3 right(0.2f, 0, 0), up(0, 0.6f, 0), back(0, 0, -0.6f), corner(x, 0, 0.3f);
+                    add(scene, QuadList{{{corner, right, up}, {corner, up, back}, {corner + right, back, up}, {corner + up, right, back}}},
+                        Mat4(), Emissive{{Rgb(0, 0.8f, 0)}});
+                }
+            scene.environment = ConstantEnvironment{Rgb(1.0f)};
+            finish_scene(scene);
+            const View view{look({0, 1.6, 5}, {0, 1.6, 0}, 30), 320, 240};
+            raster::Settings settings = plain();
+            settings.aovs.hit = true;
+            const Rendering found = render(scene, view, settings);
+            const Oracle oracle(scene);
+            int within = 0;
+            double sum = 0, sky = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x) {
+                    if (found.hit(x, y).object != 1) continue;
+                    const Rayd ray = mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
+                    if (ray.direction.y > -0.1 || oracle.trace({ray.at(1e-3), ray.direction}).object != 0) continue;
+                    sum += static_cast<double>(found.radiance(x, y).g);
+                    sky += static_cast<double>(found.radiance(x, y).r);
+                    ++within;
+                }
+            CAPTURE(boxes);
+            CHECK(within > 1500);
+            CHECK(sum < (boxes ? 0.065 : 0.05) * within); // what the picture does not show is guessed, and blurred
+            CHECK(sky < (boxes ? 0.065 : 0.05) * within);
+        }
+    }
+
     TEST_CASE("a rough metal ball shows a black ball beside it black, and nothing of itself in that") {
         const Vec3d center(0.52, 0, 0), black(-0.52, 0, 0);
         constexpr double kRadius = 0.5;
@@ -257,6 +363,47 @@ TEST_SUITE("unit") {
         const auto floor = trace({0.02f, -0.05f, -1});
         REQUIRE(floor);
         CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
+    }
+
+    // Looked through everywhere the ray meets what is behind, while blocks are those of what is in front: as near as can be, none is
+    // passed at once; the same as behind, some are.
+    TEST_CASE("rays that pass blocks of a random picture at once hit what those hit that go pixel by pixel; no look is infinitely wide") {
+        std::mt19937 random(7);
+        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        int hits = 0;
+        for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 7), std::pair(33, 40), std::pair(64, 64), std::pair(300, 9)}) {
+            const View view{look({0, 0, 0}, {0, 0, -1}, 60), width, height};
+            ImageFloat deep(width, height), nearest(width, height, 0.5f);
+            const double part = uniform(0.002, 0.02);
+            const auto near = static_cast<float>(CameraModel(view).through().near);
+            for (std::size_t i = 0; i < deep.size(); ++i)
+                deep[i] = near / static_cast<float>(uniform(0, 1) < part ? uniform(2, 4) : uniform(8, 9));
+            const auto screen_with = [&](const ImageFloat& depths) {
+                auto screen = std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
+                screen->set_normals(ImageRgb(width, height, Rgb(0.5f, 0.5f, 1)));
+                screen->set_first_look({{}, Image<std::uint32_t>(width, height, 0), {}, {}, {}});
+                screen->set_turns(ImageFloat(width, height, 0));
+                return screen;
+            };
+            const auto behind = screen_with(deep), alike = screen_with(deep), before = screen_with(nearest);
+            const Box3 bounds{Vec3(-20, -20, -20), Vec3(20, 20, 20)};
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 p(Vec3d(uniform(-2, 2), uniform(-2, 2), uniform(-9, -1)));
+                const Vec3 way = normalize(Vec3(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.5))));
+                const auto at_once = raster::trace_screen({*alike, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
+                const auto singly = raster::trace_screen({*before, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
+                REQUIRE(at_once.has_value() == singly.has_value());
+                if (!at_once) continue;
+                ++hits;
+                REQUIRE(at_once->x == singly->x);
+                REQUIRE(at_once->y == singly->y);
+                REQUIRE(at_once->distance == singly->distance);
+            }
+            const raster::Scenery scenery{*behind, nullptr, kNoObject};
+            CHECK(scenery.width_within(0, 0, kInfinity) == 1);
+            CHECK(scenery.width_within(0, 0, std::numeric_limits<float>::quiet_NaN()) == 1);
+        }
+        CHECK(hits > 500);
     }
 
     TEST_CASE("a ray that begins beside the picture is followed through it") {
