@@ -143,7 +143,7 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     if (is_lamp) // it hides none
         distance = kInfinity;
     else // what is met within the pixel may be as much farther than its middle: beside a lamp, the lamp
-        distance = hit.distance + pixel / max(std::abs(dot(screen.normal(x, y), look.way)), 0.1f);
+        distance = hit.distance + pixel;
     if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
