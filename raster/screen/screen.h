@@ -6,7 +6,7 @@
 #include "raster/geometry/samples.h"
 #include "raster/lanes.h"
 #include "raster/screen/radiance_pyramid.h"
-#include "raster/shadow/nearest_pyramid.h"
+#include "raster/visibility/nearest_pyramid.h"
 
 #include <algorithm>
 #include <array>

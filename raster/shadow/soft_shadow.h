@@ -4,7 +4,7 @@
 #include "raster/lanes.h"
 #include "raster/shadow/cube_map.h"
 #include "raster/shadow/emitter.h"
-#include "raster/shadow/nearest_pyramid.h"
+#include "raster/visibility/nearest_pyramid.h"
 #include "raster/taps.h"
 
 #include <memory>

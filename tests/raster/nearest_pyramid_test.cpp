@@ -1,6 +1,6 @@
 // What is nearest in a part of a map, against a look at all of it.
 #include "common/sampling/hash.h"
-#include "raster/shadow/nearest_pyramid.h"
+#include "raster/visibility/nearest_pyramid.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "raster/shadow/nearest_pyramid.h"
+#include "raster/visibility/nearest_pyramid.h"
 
 #include <algorithm>
 #include <bit>
