@@ -98,21 +98,26 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
     frame.account.tiles += tiles_watch.seconds();
 }
 
-/// Samples of a tile by a program.
+/// Samples of a tile by a program, a row of strips at a time.
 void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
     const PixelRect& rect = depths.rect();
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
     constexpr int kColumns = kStripWidth, kRows = DepthTile::kStripRows;
-    for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows)
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) {
-            StripColors colors;
-            const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), colors);
-            for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
-                for (int x = x0; x < std::min(x0 + kColumns, rect.x1); ++x) {
-                    const auto i = static_cast<std::size_t>((y - y0) * kColumns + x - x0);
-                    picture.add(x, y, seen >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb());
-                }
-        }
+    std::array<StripPlace, TileGrid::kTileSize / kColumns> places;
+    std::array<StripColors, TileGrid::kTileSize / kColumns> colors;
+    std::array<std::uint32_t, TileGrid::kTileSize / kColumns> seen;
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows) {
+        std::size_t count = 0;
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) places[count++] = strip_place(depths, x0, y0);
+        shader->shade(std::span(places).first(count), colors.data(), seen.data());
+        for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                const auto strip = static_cast<std::size_t>((x - rect.x0) / kColumns);
+                const auto i = static_cast<std::size_t>((y - y0) * kColumns + (x - rect.x0) % kColumns);
+                const StripColors& own = colors[strip];
+                picture.add(x, y, seen[strip] >> i & 1 ? Rgb(own.r[i], own.g[i], own.b[i]) : Rgb());
+            }
+    }
 }
 
 /// Whether a tile has surfaces that may be seen through.
