@@ -84,7 +84,7 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
     const std::array<SurfacePoint, 3> points{at.surface, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
     for (std::size_t k = 0; k < 3; ++k) {
         at.p[k] = points[k].p_object;
-        at.n[k] = to_object_normal(object, points[k].ns);
+        at.n[k] = normalize(to_object_normal(object, points[k].ns)); // as the sphere has it, however the object is stretched
         at.uv[k] = points[k].uv;
         at.edges[k] = Vec3(1, 1, 1);
     }

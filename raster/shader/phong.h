@@ -64,6 +64,11 @@ PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direct
     });
     return sum;
 }
+/// Light interpolated: at a triangle's edge a weight may round to less than none, light may not.
+template <typename T> PhongLight<T> not_negative(const PhongLight<T>& light) {
+    const auto each = [](const RgbT<T>& c) { return RgbT<T>(max(c.r, T(0)), max(c.g, T(0)), max(c.b, T(0))); };
+    return {each(light.irradiance), each(light.highlights)};
+}
 template <typename T> RgbT<T> phong(const PhongLight<T>& light, Rgb ambient, RgbT<T> base) {
     return base * (light.irradiance * T(kPhongDiffuse) + spread<T>(ambient)) + light.highlights;
 }
@@ -79,7 +84,7 @@ struct LightAtVertices {
                            Direction<T>{v.object.to_viewer(p), T(1)});
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        return f.with_emitted(phong(f.at, f.object.data.ambient, f.base_color()));
+        return f.with_emitted(phong(not_negative(f.at), f.object.data.ambient, f.base_color()));
     }
 };
 

@@ -9,8 +9,9 @@
 //     };
 //     Rendering picture = draw(prepared, view, settings, Stripes{}, control);   // raster/draw.h
 //
-// Visibility comes first (an image of triangle numbers), so a fragment function runs once a visible sample, and a vertex function
-// only for the corners of triangles that are seen, and for each sample of a sphere. Both inline into the loop over strips of samples.
+// Visibility comes first (an image of triangle numbers), so a fragment function runs once for each strip of samples that sees an
+// object (what it makes of samples that do not is thrown away), and a vertex function only for the corners of triangles that are
+// seen, and for each sample of a sphere. Both inline into the loop over strips.
 // Where a vertex lies in the picture is not theirs to say: that is exact (raster/geometry/transform.h).
 #pragma once
 

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <optional>
+#include <random>
 
 using namespace duet;
 using namespace duet::test;
@@ -17,7 +18,7 @@ namespace {
 /// Colours are what a test wants to see, moved to where none is negative.
 constexpr float kLift = 100;
 
-enum class Asked { kPoint, kInterpolated, kNormal, kAlongX, kAlongY, kUv };
+enum class Asked { kPoint, kInterpolated, kNormal, kVertexNormal, kAlongX, kAlongY, kUv };
 
 /// Shows what fragments are given.
 struct Probe {
@@ -33,6 +34,7 @@ struct Probe {
         const Vec3T<T> v = asked == Asked::kPoint          ? f.p()
                            : asked == Asked::kInterpolated ? f.at.p
                            : asked == Asked::kNormal       ? f.normal(f.at.n).unit()
+                           : asked == Asked::kVertexNormal ? f.at.n
                            : asked == Asked::kAlongX       ? f.dx.p
                            : asked == Asked::kAlongY       ? f.dy.p
                                                            : Vec3T<T>(f.at.uv.x, f.at.uv.y, T(0));
@@ -89,7 +91,7 @@ struct Compared {
     double mean = 0;    ///< of what is seen
 };
 
-Compared strips_against_alone(const Scene& scene, const View& view, raster::Shading shading) {
+Compared strips_against_alone(const Scene& scene, const View& view, const raster::Program& program) {
     raster::Settings settings;
     const raster::Prepared prepared = raster::prepare(scene, settings);
     const Pinhole pinhole = CameraModel(view).through();
@@ -98,8 +100,6 @@ Compared strips_against_alone(const Scene& scene, const View& view, raster::Shad
     const raster::TileGrid grid{{0, 0, view.width, view.height}};
     raster::Geometry geometry;
     process_geometry(prepared.data(), grid, pass, settings, geometry);
-    const auto program = raster::program(shading, view.camera);
-    REQUIRE(program != nullptr);
     Compared found;
     for (std::size_t t = 0; t < grid.size(); ++t) {
         const raster::PixelRect& r = grid.tile(t);
@@ -110,8 +110,8 @@ Compared strips_against_alone(const Scene& scene, const View& view, raster::Shad
             for (int x = r.x0; x + 8 <= r.x1; x += 8) places.push_back(raster::strip_place(depths, x, y));
         std::vector<raster::StripColors> together(places.size());
         std::vector<std::uint32_t> seen(places.size());
-        program->for_tile(prepared.data(), geometry, pass, r)->shade(places, together.data(), seen.data());
-        const auto one_by_one = program->for_tile(prepared.data(), geometry, pass, r);
+        program.for_tile(prepared.data(), geometry, pass, r)->shade(places, together.data(), seen.data());
+        const auto one_by_one = program.for_tile(prepared.data(), geometry, pass, r);
         for (std::size_t s = 0; s < places.size(); ++s) {
             const raster::StripPlace& place = places[s];
             raster::StripColors by_itself;
@@ -124,7 +124,7 @@ Compared strips_against_alone(const Scene& scene, const View& view, raster::Shad
                 if (id == raster::kNoTriangle) continue;
                 const Vec2d pixel = place.position(i);
                 const Hit hit = find_hit(geometry, pass, id, pixel);
-                const Rgb alone = program->shade_hit(prepared.data(), pass, hit, pixel);
+                const Rgb alone = program.shade_hit(prepared.data(), pass, hit, pixel);
                 const auto shown = [&](const raster::StripColors& c) { return std::array<float, 3>{c.r[i], c.g[i], c.b[i]}; };
                 const std::array<float, 3> wanted{alone.r, alone.g, alone.b}, here = shown(together[s]);
                 ++found.samples;
@@ -144,6 +144,11 @@ Compared strips_against_alone(const Scene& scene, const View& view, raster::Shad
     }
     found.mean /= found.samples;
     return found;
+}
+Compared strips_against_alone(const Scene& scene, const View& view, raster::Shading shading) {
+    const auto program = raster::program(shading, view.camera);
+    REQUIRE(program != nullptr);
+    return strips_against_alone(scene, view, *program);
 }
 
 } // namespace
@@ -293,6 +298,53 @@ TEST_SUITE("unit") {
                 CHECK(found.apart <= found.samples / 2000);
             }
         }
+    }
+
+    TEST_CASE("a sphere's vertices have its own unit normals, however it is stretched, in strips and alone") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0.3f, 0.1f, 0), 0.8f}, Mat4(scaling(Vec3(1.5f, 0.6f, 3))), Diffuse{{Rgb(0.5f)}});
+        finish_scene(scene);
+        const raster::ProgramOf<Probe> program(Probe{Asked::kVertexNormal});
+        const Compared found = strips_against_alone(scene, perspective(), program);
+        CHECK(found.of_spheres > 5'000);
+        CHECK(found.apart == 0); // (colours are kLift and more, and compared to 2e-4 of that)
+        const Rendering seen = show(scene, perspective(), Asked::kVertexNormal);
+        double worst = 0;
+        for (int y = 0; y < seen.hit.height(); ++y)
+            for (int x = 0; x < seen.hit.width(); ++x)
+                if (seen.hit(x, y).valid()) worst = std::max(worst, std::abs(static_cast<double>(length(shown(seen, x, y))) - 1));
+        CHECK(worst < 1e-4); // of numbers about kLift
+    }
+
+    // Samples lie on the dark edges exactly, where the lit corner's weight is a rounding of either sign.
+    TEST_CASE("Gouraud: light is not negative, however weights round where a lit corner is opposite to a dark edge") {
+        constexpr float kPixel = 4.0f / 128;
+        Mesh mesh;
+        std::minstd_rand random(5);
+        std::uniform_real_distribution<float> part(0.1f, 0.9f);
+        for (int row = 0; row < 16; ++row)
+            for (int column = 0; column < 16; ++column) {
+                const Vec3 corner(-2 + (8 * static_cast<float>(column) + 0.5f) * kPixel, -2 + 8 * static_cast<float>(row) * kPixel, 0);
+                const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+                mesh.positions.insert(mesh.positions.end(), {corner + Vec3(7 * kPixel, 7 * part(random) * kPixel, 0),
+                                                             corner + Vec3(0, (6 + part(random)) * kPixel, 0), corner});
+                mesh.normals.insert(mesh.normals.end(), {{0, -1, 0.1f}, {0, 1, 0.1f}, {0, 1, 0.1f}}); // the sun comes from below
+                mesh.triangles.push_back({first, first + 1, first + 2});
+            }
+        Scene scene;
+        add(scene, mesh);
+        scene.lights.push_back(SunLight{Vec3(0, 1, 0), Rgb(2)});
+        finish_scene(scene);
+        Camera camera = look({0, 0, 4}, {0, 0, 0});
+        camera.projection = Camera::Projection::kOrthographic;
+        camera.height = 4;
+        raster::Settings settings = with_hits();
+        settings.shading = raster::Shading::kGouraud;
+        const Rendering seen = render(scene, {camera, 128, 128}, settings);
+        int lit = 0;
+        for (std::size_t i = 0; i < seen.hit.size(); ++i) lit += seen.hit[i].valid() && seen.radiance[i].r > 0;
+        CHECK(lit > 4'000);
+        CHECK(seen.statistics.invalid_samples == 0);
     }
 
     TEST_CASE("normals that cancel each other out, and those that are none, are no direction in any shading, nor invalid") {
