@@ -23,7 +23,7 @@ public:
     SkySeen look(Vec3 p, Vec3 n) const;
     std::size_t memory_bytes() const { return found_.front().size() * found_.size() * sizeof(float); }
 
-    static constexpr int kLines = 2, kSteps = 12;
+    static constexpr int kLines = 3, kSteps = 24;
 
 private:
     /// The part visible, and the three coordinates of what is hidden.
