@@ -22,6 +22,11 @@ float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
     return towards > 1e-3f && height > 0 ? height / towards : kInfinity;
 }
 
+/// Whether what a pixel shows is a lamp that rays look for: that has an end, wherever it is.
+bool shows_lamp(const Screen& screen, int x, int y) { return screen.first_look().lamps(x, y) != 0; }
+/// Whether what a pixel shows may be guessed to go on.
+bool goes_on_flat(const Screen& screen, int x, int y) { return !shows_lamp(screen, x, y) && is_flat(screen, x, y); }
+
 /// How many of at most `most` steps (sx, sy) from a place stay in its block of `block` × `block` pixels, a power of two, or fewer.
 int steps_in_block(float x, float y, float sx, float sy, int block, int most) {
     const auto side = static_cast<float>(block), per_side = 1 / side;
@@ -49,8 +54,8 @@ template <typename F> float widest(float width, const F& fits) {
 /// One ray on its way.
 class ScreenTrace {
 public:
-    ScreenTrace(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture)
-        : scenery_(scenery), scene_(scene), p_(p), n_(n), way_(way), from_picture_(from_picture), line_(scenery.all, p, way) {}
+    ScreenTrace(const Scenery& scenery, const Box3& scene, const ScreenRay& ray)
+        : scenery_(scenery), scene_(scene), ray_(ray), line_(scenery.all, ray.p, ray.way) {}
 
     std::optional<ScreenHit> follow() {
         if (!(line_.from().z > 0)) return std::nullopt;
@@ -74,9 +79,9 @@ private:
 
     std::optional<ScreenHit> in_one_pixel() const {
         const Vec3 from = line_.from();
-        if (from_picture_ || !scenery_.all.contains(from.x, from.y)) return std::nullopt;
+        if (ray_.from_picture || !scenery_.all.contains(from.x, from.y)) return std::nullopt;
         const auto x = static_cast<int>(from.x), y = static_cast<int>(from.y);
-        const float beyond = scenery_.at(x, y).depth(x, y) - from.z, deeper = scenery_.all.homogeneous_change(way_)[2];
+        const float beyond = scenery_.at(x, y).depth(x, y) - from.z, deeper = scenery_.all.homogeneous_change(ray_.way)[2];
         return deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper}) : std::nullopt;
     }
 
@@ -104,7 +109,7 @@ private:
     /// A step, over which the ray's depth goes from `before` to `depth`.
     std::optional<ScreenHit> visit(int i, float t, float fx, float fy, float before, float depth) {
         const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
-        if (from_picture_ && i < 2) return std::nullopt;
+        if (ray_.from_picture && i < 2) return std::nullopt;
         const Screen& screen = scenery_.at(x, y);
         const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
         const float distance = line_.distance(t, depth);
@@ -113,25 +118,27 @@ private:
             return std::nullopt;
         }
         const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
-        const bool glass = is_passed_glass(screen, x, y);
-        const bool behind = near > seen_depth + (glass ? 0 : thickness);
+        const bool passed = is_passed(screen, x, y);
+        const bool behind = near > seen_depth + (passed ? 0 : thickness);
         if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
-        if (hidden_from_ >= 0 && is_flat(screen, x, y)) {
-            const float crossed = meets_plane(screen, p_, way_, x, y);
+        if (hidden_from_ >= 0 && goes_on_flat(screen, x, y)) {
+            const float crossed = meets_plane(screen, ray_.p, ray_.way, x, y);
             if (crossed > hidden_from_ && crossed <= distance) {
                 const ScreenHit hit = guess(screen, fx, fy, crossed);
                 return of_hidden(flat_at(hit, beside_edge(hit, seen_depth)));
             }
         }
-        if (behind || glass) return std::nullopt;
+        if (behind || passed) return std::nullopt;
         const auto hit = meet(screen, i, t, x, y, near, known > 0);
         if (!hit || hidden_from_ < 0) return hit;
         const auto flat = goes_on(last_flat(i), hidden_from_); // it may have gone under that, hidden
         return flat && flat->distance < hit->distance ? flat : hit;
     }
 
-    /// Whether a pixel shows glass that the ray comes through the other way: what it shows the viewer it does not show the ray.
-    bool is_passed_glass(const Screen& screen, int x, int y) const {
+    /// Whether a pixel shows what is not met: a lamp, or glass that the ray comes through the other way, for what that shows the
+    /// viewer it does not show the ray.
+    bool is_passed(const Screen& screen, int x, int y) const {
+        if (ray_.past_lamps && shows_lamp(screen, x, y)) return true;
         const Screen* behind = screen.behind();
         return behind != nullptr && line_.comes_nearer() && behind->first_look().objects(x, y) != screen.first_look().objects(x, y);
     }
@@ -140,13 +147,13 @@ private:
     std::optional<ScreenHit> meet(const Screen& screen, int i, float t, int x, int y, float near, bool closed) const {
         const std::optional<Vec3> seen = screen.seen(x, y);
         if (!seen) return std::nullopt;
-        const Vec3 step = *seen - p_;
+        const Vec3 step = *seen - ray_.p;
         const float depth = screen.depth(x, y);
         const bool inside = closed && near > depth; // it has come from behind or beside
-        if (!(dot(n_, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
+        if (!(dot(ray_.n, step) > kSlack * length(step)) && !(inside && !scenery_.is_own(x, y))) return std::nullopt;
         if (inside && screen.turn(x, y) >= kSmallTurn) return std::nullopt; // too little of it is seen to tell
         if (inside) return guess(screen, line_.x(t), line_.y(t), line_.distance(t, line_.depth(t)));
-        if (closed && dot(screen.normal(x, y), way_) >= 0) return std::nullopt; // it comes past its edge
+        if (closed && dot(screen.normal(x, y), ray_.way) >= 0) return std::nullopt; // it comes past its edge
         const float met = clamp(line_.part_at(depth), line_.part(i - 1), t);
         return ScreenHit{in_pixel(line_.x(met), x), in_pixel(line_.y(met), y), length(step)};
     }
@@ -158,12 +165,21 @@ private:
         const auto [x, y] = scenery_.all.pixel_at(line_.from());
         return {x, y};
     }
+    /// The last one that shows no lamp: what is behind a lamp is what is beside it.
+    Pixel last_but_lamps() const {
+        for (int i = line_.last(); i >= line_.first(); --i)
+            if (const Pixel at = pixel(i); at.valid() && !shows_lamp(scenery_.at(at.x, at.y), at.x, at.y)) return at;
+        return last();
+    }
     /// The last one, up to a step, that shows a flat surface that it is before.
     Pixel last_flat(int i) const {
         for (; i >= line_.first(); --i) {
             const Pixel at = pixel(i);
-            if (!at.valid() || scenery_.is_own(at.x, at.y) || !is_flat(scenery_.at(at.x, at.y), at.x, at.y)) continue;
-            const float depth = scenery_.at(at.x, at.y).depth(at.x, at.y);
+            if (!at.valid() || scenery_.is_own(at.x, at.y)) continue;
+            const Screen& screen = scenery_.at(at.x, at.y);
+            const float depth = screen.depth(at.x, at.y);
+            if (!(depth < kInfinity)) return {}; // what it was before has ended there
+            if (!goes_on_flat(screen, at.x, at.y)) continue;
             if (std::max(line_.depth(line_.part(i - 1)), line_.depth(line_.part(i))) < depth) return at;
         }
         return {};
@@ -177,8 +193,8 @@ private:
     /// Where it meets the plane of a flat surface that a pixel shows, farther than `from`: as that pixel shows it,
     std::optional<ScreenHit> meets_flat(Pixel at, float from) const {
         const Screen& screen = scenery_.at(at.x, at.y);
-        const float crossed = meets_plane(screen, p_, way_, at.x, at.y);
-        if (!(crossed > from) || crossed == kInfinity || !scene_.contains(p_ + way_ * crossed)) return std::nullopt;
+        const float crossed = meets_plane(screen, ray_.p, ray_.way, at.x, at.y);
+        if (!(crossed > from) || crossed == kInfinity || !scene_.contains(ray_.p + ray_.way * crossed)) return std::nullopt;
         return guess(screen, middle(at.x), middle(at.y), crossed);
     }
     /// and as the flat look does.
@@ -188,19 +204,18 @@ private:
     }
 
     std::optional<ScreenHit> beyond_edge() const {
-        const Pixel end = last();
+        const Pixel end = last(), shown = last_but_lamps();
+        const Screen& screen = scenery_.at(shown.x, shown.y);
+        const bool own = scenery_.is_own(shown.x, shown.y);
+        if (!own && !screen.seen(shown.x, shown.y)) return std::nullopt;
         if (hidden_from_ >= 0) {
             if (const auto hit = goes_on(last_flat(line_.last()), hidden_from_)) return hit;
             if (ends_far_off()) return past_what_hides(end);
-            return line_.leaves() ? std::optional(at_end(end)) : std::nullopt; // it has come out before the viewer
+            return line_.leaves() ? std::optional(at_end(shown)) : std::nullopt; // it has come out before the viewer
         }
-        const Screen& screen = scenery_.at(end.x, end.y);
-        if (!scenery_.is_own(end.x, end.y)) {
-            if (!screen.seen(end.x, end.y)) return std::nullopt;
-            const bool flat = is_flat(screen, end.x, end.y); // else something round stands before it there
-            if (!flat || !line_.leaves())
-                if (const auto hit = goes_on(flat ? end : last_flat(line_.last()), 0)) return hit;
-        }
+        const bool flat = goes_on_flat(screen, shown.x, shown.y); // else something round stands before it there
+        if (!own && (!flat || !line_.leaves()))
+            if (const auto hit = goes_on(flat ? shown : last_flat(line_.last()), 0)) return hit;
         return line_.leaves() ? along_edge(end) : std::nullopt;
     }
 
@@ -223,7 +238,7 @@ private:
     /// Where what a pixel of the edge shows, if flat, is met farther than `left`, where the ray leaves the picture.
     std::optional<ScreenHit> flat_beyond(Pixel at, float left) const {
         if (!scenery_.all.contains(middle(at.x), middle(at.y)) || scenery_.is_own(at.x, at.y)) return std::nullopt;
-        return is_flat(scenery_.at(at.x, at.y), at.x, at.y) ? meets_flat(at, left) : std::nullopt;
+        return goes_on_flat(scenery_.at(at.x, at.y), at.x, at.y) ? meets_flat(at, left) : std::nullopt;
     }
     /// Whether what a pixel shows stands on or before the plane of what another does, which may go on behind it.
     bool is_before_plane(Pixel at, Pixel other) const {
@@ -233,7 +248,7 @@ private:
     }
     /// The pixel of the edge next to a place outside the picture; beside the viewer or behind him, `end`.
     Pixel edge_before(const ScreenHit& hit, Pixel end) const {
-        const Vec3 place = scenery_.all.project(p_ + way_ * hit.distance);
+        const Vec3 place = scenery_.all.project(ray_.p + ray_.way * hit.distance);
         if (!(place.z > scenery_.all.near())) return end;
         const auto [x, y] = scenery_.all.pixel_at(place);
         return line_.leaves_at_side() ? Pixel{end.x, y} : Pixel{x, end.y};
@@ -248,7 +263,7 @@ private:
             if (!at.valid()) return at_end(end);
             const Screen& screen = scenery_.at(at.x, at.y);
             if (!screen.seen(at.x, at.y)) return std::nullopt;
-            if (scenery_.is_own(at.x, at.y) || !is_flat(screen, at.x, at.y)) continue;
+            if (scenery_.is_own(at.x, at.y) || !goes_on_flat(screen, at.x, at.y)) continue;
             if (const auto hit = goes_on(at, hidden_from_)) return hit;
         }
     }
@@ -259,7 +274,7 @@ private:
     /// What a pixel shows stands for what is met at a distance.
     ScreenHit guess(const Screen& screen, float x, float y, float distance) const {
         const std::optional<Vec3> seen = screen.seen(static_cast<int>(x), static_cast<int>(y));
-        return {x, y, distance, seen ? length(*seen - p_ - way_ * distance) : 0.0f};
+        return {x, y, distance, seen ? length(*seen - ray_.p - ray_.way * distance) : 0.0f};
     }
     /// Whether across the ray's way another object than at a place begins behind it.
     bool at_own_edge(float fx, float fy) const {
@@ -275,7 +290,7 @@ private:
     /// A flat surface's hit, moved to where it would be seen: in the flat look surfaces go on behind round things as they are about
     /// them, and at the picture's edge as they are there. `otherwise` behind a flat thing, and at the surface's own edge.
     ScreenHit flat_at(ScreenHit hit, const ScreenHit& otherwise) const {
-        const Vec3 place = scenery_.all.project(p_ + way_ * hit.distance);
+        const Vec3 place = scenery_.all.project(ray_.p + ray_.way * hit.distance);
         if (!(place.z > 0) || !scenery_.all.contains(place.x, place.y)) {
             const Pixel end = last();
             hit.x = middle(end.x), hit.y = middle(end.y);
@@ -307,8 +322,7 @@ private:
 
     const Scenery& scenery_;
     const Box3& scene_;
-    Vec3 p_, n_, way_;
-    bool from_picture_;
+    ScreenRay ray_;
     Crossing line_;
     int block_ = kLeastBlock;
     float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
@@ -344,8 +358,8 @@ float Scenery::width_within(float x, float y, float width) const {
     return widest(width, [&](float wide) { return one_object(x, y, 2 * wide); }); // of the coarser level, between its pixels
 }
 
-std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture) {
-    return ScreenTrace(scenery, scene, p, n, way, from_picture).follow();
+std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, const ScreenRay& ray) {
+    return ScreenTrace(scenery, scene, ray).follow();
 }
 
 } // namespace duet::raster

@@ -46,9 +46,16 @@ struct ScreenHit {
     bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
 };
 
+/// A ray to be followed through the picture.
+struct ScreenRay {
+    Vec3 p;                   ///< relative to the eye, in the picture or beside it
+    Vec3 n, way;              ///< unit: its surface's normal; its direction
+    bool from_picture = true; ///< p is on what the picture shows there, which the ray cannot meet at once
+    bool past_lamps = false;  ///< lamps that rays look for (Screen::FirstLook::lamps) are not met: it is known that none is on the way
+};
+
 /// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
-/// until it goes behind what is seen there. `p` is relative to the eye, in the picture or beside it; n, its surface's unit
-/// normal, and `way`, are unit. A closed thing is met from behind, too: it is as thick as its nearest back face says
+/// until it goes behind what is seen there. A closed thing is met from behind, too: it is as thick as its nearest back face says
 /// (Screen::thickness), and what it shows of itself stands for its far side. Of another the picture does not say how
 /// thick it is: one that the ray passes farther behind than it is itself deep over two pixels, or kThickness of its depth, is
 /// taken to be passed.
@@ -60,11 +67,9 @@ struct ScreenHit {
 /// Flat surfaces go on beyond the edge, up to the bounds of the scene (relative to the eye): what the edge shows where the ray
 /// leaves, or, where that is the mirror itself or is not met, what is seen along the edge and has not ended where it would
 /// be met. Where that is behind something round it is looked up at its own place, which the flat look fills from all sides.
-/// Glass that the ray comes through towards the viewer is not met: what that shows the viewer it does not show the ray.
-/// Empty where the ray meets nothing so.
-///
-/// `from_picture`: p is on what the picture shows there, which the ray cannot meet at once.
-std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, Vec3 p, Vec3 n, Vec3 way, bool from_picture = true);
+/// Lamps do not go on. Glass that the ray comes through towards the viewer is not met: what that shows the viewer it does not
+/// show the ray. Empty where the ray meets nothing so.
+std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, const ScreenRay& ray);
 
 inline constexpr float kThickness = 0.02f; ///< of the depth: of what is not closed, as thick it is taken to be at least
 /// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.

@@ -10,8 +10,8 @@
 namespace duet::raster {
 namespace {
 
-/// A lamp that a ray meets: how far off, and how much of a look of some width about the ray it fills.
-struct LampSeen {
+/// Where a ray meets a lamp, and how much of a look about it that fills.
+struct Met {
     float distance = kInfinity, part = 0;
 };
 
@@ -25,19 +25,19 @@ struct LampFinder {
     Vec3 p, way;
     const Look& look;
 
-    LampSeen operator()(const Quad& quad) const {
+    Met operator()(const Quad& quad) const {
         float distance, a, b;
         if (!meet(quad.corner, quad.u, quad.v, distance, a, b)) return {};
         const float wide = max(look.size(distance), 1e-6f * distance);
         return {distance, part_within(a, length(quad.u), wide) * part_within(b, length(quad.v), wide)};
     }
     /// Others may go on beyond its edges.
-    LampSeen operator()(const SurfaceLight::Triangle& t) const {
+    Met operator()(const SurfaceLight::Triangle& t) const {
         float distance, a, b;
         if (!meet(t.a, t.b - t.a, t.c - t.a, distance, a, b) || a < 0 || b < 0 || a + b > 1) return {};
         return {distance, 1};
     }
-    LampSeen operator()(const Sphere& sphere) const {
+    Met operator()(const Sphere& sphere) const {
         const Vec3 to = sphere.center - p;
         const float along = dot(to, way), beside = length(to - way * along);
         if (!(along > 0) || dot(to, to) < sqr(sphere.radius)) return {};
@@ -70,30 +70,34 @@ Surroundings::Surroundings(const PreparedData& data, const Settings& settings, c
     bounds_ = {bounds_.low - slack, bounds_.high + slack};
 }
 
-Rgb Surroundings::seen(const Look& look) const {
-    float distance = kInfinity;
-    Rgb sum = picture_or_environment(look, distance);
-    const auto& lights = data_.scene.lights;
-    if (!look.lamps) return sum;
-    const Vec3 p = scenery_.all.absolute(look.p);
-    const LampFinder finder{p, look.way, look};
+/// The nearest lamp that a look sees something of, whatever stands before it; part 0: none.
+Surroundings::LampSeen Surroundings::nearest_lamp(const Look& look) const {
+    const LampFinder finder{scenery_.all.absolute(look.p), look.way, look};
     LampSeen nearest;
-    const SurfaceLight* lamp = nullptr;
-    std::size_t index = 0;
     for (const std::size_t i : data_.lamps) {
-        const auto& light = std::get<SurfaceLight>(lights[i]);
-        const LampSeen found = std::visit(finder, light.shape);
-        if (found.part > 0 && found.distance < nearest.distance && emits_towards(light, p)) nearest = found, lamp = &light, index = i;
+        const auto [distance, part] = std::visit(finder, std::get<SurfaceLight>(data_.scene.lights[i]).shape);
+        if (part > 0 && distance < nearest.distance) nearest = {distance, part, i};
     }
-    if (lamp == nullptr || distance < nearest.distance) return sum;
-    if (look.point != nullptr && settings_.shadows) nearest.part *= Visibility{data_.shadows.get(), {}}(index, *look.point);
-    const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, *lamp, p, look.way, nearest.distance)
-                                                      : lamp->radiance;
-    return lerp(sum, shown, nearest.part);
+    return nearest;
 }
 
-Rgb Surroundings::picture_or_environment(const Look& look, float& distance) const {
-    if (const auto hit = trace_screen(scenery_, bounds_, look.p, look.n, look.way, look.from_picture)) {
+Rgb Surroundings::seen(const Look& look) const {
+    float distance = kInfinity;
+    if (!look.lamps) return picture_or_environment(look, false, distance);
+    LampSeen lamp = nearest_lamp(look);
+    const Rgb behind = picture_or_environment(look, lamp.part == 0, distance);
+    if (lamp.part == 0 || distance < lamp.distance) return behind;
+    const auto& light = std::get<SurfaceLight>(data_.scene.lights[lamp.light]);
+    const Vec3 p = scenery_.all.absolute(look.p);
+    if (!emits_towards(light, p)) return behind * (1 - lamp.part); // its back is black
+    if (look.point != nullptr && settings_.shadows) lamp.part *= Visibility{data_.shadows.get(), {}}(lamp.light, *look.point);
+    const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, light, p, look.way, lamp.distance)
+                                                      : light.radiance;
+    return lerp(behind, shown, lamp.part);
+}
+
+Rgb Surroundings::picture_or_environment(const Look& look, bool past_lamps, float& distance) const {
+    if (const auto hit = trace_screen(scenery_, bounds_, {look.p, look.n, look.way, look.from_picture, past_lamps})) {
         distance = hit->distance;
         if (const auto mirrored = behind_metal(look, *hit)) return *mirrored;
         return picture(look, *hit, distance);
@@ -122,7 +126,7 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
     again.spread += blur_mirrored(metal->alpha), again.alpha = min(look.alpha + metal->alpha, 1.0f);
     again.from_picture = false, again.mirrored_again = true;
     float distance = kInfinity;
-    return picture_or_environment(again, distance) * metal->albedo(away);
+    return picture_or_environment(again, false, distance) * metal->albedo(away);
 }
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {

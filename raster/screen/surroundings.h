@@ -47,7 +47,14 @@ public:
     static constexpr std::size_t kMostLamps = 256; ///< PreparedData::lamps: of more, the others are seen in the picture alone
 
 private:
-    Rgb picture_or_environment(const Look& look, float& distance) const;
+    /// A lamp that a ray meets: how far off, how much of its look that fills, and which of Scene::lights.
+    struct LampSeen {
+        float distance = kInfinity, part = 0;
+        std::size_t light = 0;
+    };
+    LampSeen nearest_lamp(const Look& look) const;
+    /// `past_lamps`: no lamp is on the way, whatever the picture's pixels show of one.
+    Rgb picture_or_environment(const Look& look, bool past_lamps, float& distance) const;
     Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const; ///< What it shows where it is met.
     std::optional<Rgb> behind_metal(const Look& look, const ScreenHit& hit) const;
 

@@ -125,7 +125,7 @@ TEST_SUITE("unit") {
         for (const float x : {-0.6f, -0.3f, 0.3f, 0.6f}) {
             const Vec3 to(x, 0, -0.5f);
             const Vec3 p = screen->relative(from), n(1, 0, 0), way = normalize(to - from);
-            const auto hit = raster::trace_screen({*screen}, bounds, p, n, way, false);
+            const auto hit = raster::trace_screen({*screen}, bounds, {p, n, way, false});
             CAPTURE(x);
             REQUIRE(hit);
             CHECK(hit->hidden);

@@ -46,6 +46,12 @@ Rayd mirrored_ray(const Rayd& ray, const Hit& hit, Vec3d center) {
     return {p, way - n * (2 * dot(way, n))};
 }
 
+Rendering render_with_hits(const Scene& scene, const View& view) {
+    raster::Settings settings = plain();
+    settings.aovs.hit = true;
+    return render(scene, view, settings);
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -109,9 +115,7 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-2, 1, -39.5f), Vec3(4, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Diffuse{{Rgb()}});
         finish_scene(scene);
         const View view{look({0, 3, 20}, {0, 1, -20}, 30), 320, 240};
-        raster::Settings settings = plain();
-        settings.aovs.hit = true;
-        const Rendering found = render(scene, view, settings);
+        const Rendering found = render_with_hits(scene, view);
         int dark = 0, bright = 0, wrong = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
@@ -128,6 +132,51 @@ TEST_SUITE("unit") {
         CHECK(wrong == 0);
     }
 
+    TEST_CASE("a mirror behind a lamp shows its back, which is black, and nothing of its light") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-3, -2, -2), Vec3(6, 0, 0), Vec3(0, 4, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+        add(scene, QuadList{{{Vec3(0.6f, 0.2f, -1), Vec3(0.8f, 0, 0), Vec3(0, 0.7f, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}}); // faces the viewer
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const Rendering found = render_with_hits(scene, kView);
+        int back = 0, sky = 0, wrong = 0;
+        for (int y = 0; y < kView.height; ++y)
+            for (int x = 0; x < kView.width; ++x) {
+                if (found.hit(x, y).object != 0) continue;
+                const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
+                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z), way(ray.direction.x, ray.direction.y, -ray.direction.z);
+                const Vec3d at = p + way * ((-1 - p.z) / way.z);
+                const double beside = std::max(std::abs(at.x - 1) - 0.4, std::abs(at.y - 0.55) - 0.35); // of the lamp's edge
+                if (std::abs(beside) < 0.06) continue;
+                ++(beside < 0 ? back : sky);
+                wrong += std::abs(found.radiance(x, y).g - (beside < 0 ? 0.0f : 1.0f)) > 0.02f;
+            }
+        CHECK(back > 50);
+        CHECK(sky > 2000);
+        CHECK(wrong == 0);
+    }
+
+    // The wall's upper edge is seen in the picture, above it the sky, and before that a lamp that the picture's edge cuts.
+    TEST_CASE("a wall that has ended in the picture does not go on behind a lamp at the picture's edge") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-20, -3, -6), Vec3(40, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Diffuse{{Rgb()}}); // up to y = 0
+        add(scene, QuadList{{{Vec3(-4, 0.4f, -3), Vec3(3, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
+        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Settings settings = plain();
+        const View view{look({0, 0, 0}, {0, 0, -1}, 60), 320, 240};
+        const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
+        const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
+        const Vec3 from(-0.2f, -0.3f, -5);
+        for (const float up : {0.3f, 0.4f, 0.5f}) {
+            const Vec3 way = normalize(Vec3(-1, up, -0.02f)); // before the wall, over its edge, then behind the lamp
+            CHECK_FALSE(raster::trace_screen({*screen, nullptr, 2}, bounds, {from, way, way, false, true}));
+        }
+        const Vec3 down = normalize(Vec3(-1, -0.05f, -0.2f));
+        CHECK(raster::trace_screen({*screen, nullptr, 2}, bounds, {from, down, down, false, true})); // beyond the edge the wall goes on
+    }
+
     TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
         Scene scene;
         const Vec3 center(0.8f, 0.7f, -0.2f);
@@ -136,9 +185,7 @@ TEST_SUITE("unit") {
         add(scene, Sphere{center, static_cast<float>(kRadius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
-        raster::Settings settings = plain();
-        settings.aovs.hit = true;
-        const Rendering found = render(scene, kView, settings);
+        const Rendering found = render_with_hits(scene, kView);
         int red = 0, white = 0, wrong = 0;
         for (int y = 0; y < kView.height; ++y)
             for (int x = 0; x < kView.width; ++x) {
@@ -172,9 +219,7 @@ TEST_SUITE("unit") {
                 camera.projection = projection;
                 camera.height = 3.5;
                 const View view{camera, 320, 240};
-                raster::Settings settings = plain();
-                settings.aovs.hit = true;
-                const Rendering found = render(scene, view, settings);
+                const Rendering found = render_with_hits(scene, view);
                 int red = 0, white = 0, wrong = 0;
                 for (int y = 0; y < view.height; ++y)
                     for (int x = 0; x < view.width; ++x) {
@@ -205,9 +250,7 @@ TEST_SUITE("unit") {
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const View view{look({0, 3.2, 4.4}, {0, 0.3, 0}, 40), 320, 240};
-        raster::Settings settings = plain();
-        settings.aovs.hit = true;
-        const Rendering found = render(scene, view, settings);
+        const Rendering found = render_with_hits(scene, view);
         int within = 0;
         float worst = 0;
         for (int y = 0; y < view.height; ++y)
@@ -232,9 +275,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         for (const int height : {120, 121, 122, 123, 124}) { // the line is at different places within a pixel
             const View view{look({0, 1, 6}, {0, 0.6f, 0}, 35), 160, height};
-            raster::Settings settings = plain();
-            settings.aovs.hit = true;
-            const Rendering found = render(scene, view, settings);
+            const Rendering found = render_with_hits(scene, view);
             int pixels = 0;
             float worst = 0;
             for (int x = 40; x < 120; ++x)
@@ -261,9 +302,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         for (const double middle : {0.4, 1.6}) {
             const View view{look({0, 1.6f, 5}, {0, middle, 0}, 30), 320, 240};
-            raster::Settings settings = plain();
-            settings.aovs.hit = true;
-            const Rendering found = render(scene, view, settings);
+            const Rendering found = render_with_hits(scene, view);
             int within = 0;
             float worst = 0;
             for (int y = 0; y < view.height; ++y)
@@ -296,9 +335,7 @@ TEST_SUITE("unit") {
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
             finish_scene(scene);
             const View view{look({0, 1.6, 5}, {0, 1.6, 0}, 30), 320, 240};
-            raster::Settings settings = plain();
-            settings.aovs.hit = true;
-            const Rendering found = render(scene, view, settings);
+            const Rendering found = render_with_hits(scene, view);
             const Oracle oracle(scene);
             int within = 0;
             double sum = 0, sky = 0;
@@ -327,9 +364,7 @@ TEST_SUITE("unit") {
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const View view{look({0, 0, 5}, {0, 0, 0}, 30), 640, 480};
-        raster::Settings settings = plain();
-        settings.aovs.hit = true;
-        const Rendering found = render(scene, view, settings);
+        const Rendering found = render_with_hits(scene, view);
         int within = 0;
         double sum = 0;
         for (int y = 0; y < view.height; ++y)
@@ -357,12 +392,39 @@ TEST_SUITE("unit") {
         const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
         const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
         const auto trace = [&](Vec3 way) {
-            return raster::trace_screen({*screen}, bounds, screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false);
+            return raster::trace_screen({*screen}, bounds, {screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false});
         };
         CHECK_FALSE(trace({0.02f, 0.05f, -1}));
         const auto floor = trace({0.02f, -0.05f, -1});
         REQUIRE(floor);
         CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
+    }
+
+    // Lamps are put in by their own edges wherever a ray meets them: guessed of, they would shine beside that.
+    TEST_CASE("a ray that passes behind a lamp or beside it meets nothing of it, nor what goes on as the lamp does") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-1.5f, 1.5f, -7), Vec3(3, 0, 0), Vec3(0, 0, 3)}}}, Mat4(), Emissive{{Rgb(4.0f)}}); // faces down
+        add(scene, QuadList{{{Vec3(-2.5f, -1, -6), Vec3(1.5f, 0, 0), Vec3(0, 1, 0.5f)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
+        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        finish_scene(scene);
+        const raster::Settings settings = plain();
+        const View view{look({0, 0, 0}, {0, 0, -1}, 60), 320, 240};
+        const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
+        const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
+        const Oracle oracle(scene);
+        std::minstd_rand random(3);
+        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        int past = 0, met = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const Vec3d p(uniform(-3, 3), uniform(-2, 2), uniform(-9, -2));
+            const Vec3d way = normalize(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
+            if (oracle.trace({p, way}).object != kNoObject) continue;
+            ++past;
+            met += raster::trace_screen({*screen, nullptr, 2}, bounds, {Vec3(p), Vec3(way), Vec3(way), false, true}).has_value();
+        }
+        CHECK(past > 15'000);
+        CHECK(met == 0);
     }
 
     // Looked through everywhere the ray meets what is behind, while blocks are those of what is in front: as near as can be, none is
@@ -381,7 +443,7 @@ TEST_SUITE("unit") {
             const auto screen_with = [&](const ImageFloat& depths) {
                 auto screen = std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
                 screen->set_normals(ImageRgb(width, height, Rgb(0.5f, 0.5f, 1)));
-                screen->set_first_look({{}, Image<std::uint32_t>(width, height, 0), {}, {}, {}});
+                screen->set_first_look({{}, Image<std::uint32_t>(width, height, 0), Image<std::uint8_t>(width, height, 0), {}, {}});
                 screen->set_turns(ImageFloat(width, height, 0));
                 return screen;
             };
@@ -390,8 +452,8 @@ TEST_SUITE("unit") {
             for (int i = 0; i < 2000; ++i) {
                 const Vec3 p(Vec3d(uniform(-2, 2), uniform(-2, 2), uniform(-9, -1)));
                 const Vec3 way = normalize(Vec3(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.5))));
-                const auto at_once = raster::trace_screen({*alike, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
-                const auto singly = raster::trace_screen({*before, behind.get(), 0}, bounds, p, Vec3(0, 0, 1), way, false);
+                const auto at_once = raster::trace_screen({*alike, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
+                const auto singly = raster::trace_screen({*before, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
                 REQUIRE(at_once.has_value() == singly.has_value());
                 if (!at_once) continue;
                 ++hits;
@@ -411,14 +473,14 @@ TEST_SUITE("unit") {
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), kView, plain());
         const Vec3 from(-5.5f, 1, 0), to(-1.2f, 0.8f, -2), way = normalize(to - from);
         const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
-        const auto hit = raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(1, 0, 0), way, false);
+        const auto hit = raster::trace_screen({*screen}, bounds, {screen->relative(from), Vec3(1, 0, 0), way, false});
         REQUIRE(hit);
         const Vec3 place = screen->project(screen->relative(to));
         CHECK(std::abs(hit->x - place.x) < 1);
         CHECK(std::abs(hit->y - place.y) < 1);
         CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
         CHECK(hit->gap == 0);
-        CHECK_FALSE(raster::trace_screen({*screen}, bounds, screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false));
+        CHECK_FALSE(raster::trace_screen({*screen}, bounds, {screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false}));
     }
 
     TEST_CASE("a mirror behind a glass ball shows the floor under it, not what the ball shows the viewer") {
@@ -431,9 +493,7 @@ TEST_SUITE("unit") {
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const View view{look({1.8, 1.6, 5}, {0, 0.6, 0}, 45), 320, 240};
-        raster::Settings settings = plain();
-        settings.aovs.hit = true;
-        const Rendering found = render(scene, view, settings);
+        const Rendering found = render_with_hits(scene, view);
         int within = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
