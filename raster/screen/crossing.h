@@ -22,6 +22,7 @@ public:
         to_ = screen.project(p + way * reach_);
         pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
         if (!moves()) return;
+        over_pixels_ = 1 / pixels_, near_ = screen.near(), nearness_from_ = near_ / from_.z, nearness_to_ = near_ / to_.z;
         float in = 0, out = 1, out_at_side = 1;
         clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out_at_side);
         out = out_at_side;
@@ -37,12 +38,14 @@ public:
     bool moves() const { return pixels_ > 1; }
     int first() const { return first_; } ///< steps at which it is in the picture: rays may begin beside that
     int last() const { return last_; }
-    float part(int step) const { return static_cast<float>(step) / pixels_; }
+    float part(int step) const { return static_cast<float>(step) * over_pixels_; }
     float x(float t) const { return lerp(from_.x, to_.x, t); }
     float y(float t) const { return lerp(from_.y, to_.y, t); }
-    float step_x() const { return (to_.x - from_.x) / pixels_; }
-    float step_y() const { return (to_.y - from_.y) / pixels_; }
+    float step_x() const { return (to_.x - from_.x) * over_pixels_; }
+    float step_y() const { return (to_.y - from_.y) * over_pixels_; }
     float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
+    /// near / depth, as Screen::nearness() has it.
+    float nearness(float t) const { return perspective_ ? lerp(nearness_from_, nearness_to_, t) : near_ / lerp(from_.z, to_.z, t); }
     bool leaves() const { return leaves_; } ///< whether an edge of the picture cuts it off
     bool leaves_at_side() const { return leaves_at_side_; } ///< at the left or right one
     bool comes_nearer() const { return to_.z < from_.z; }
@@ -69,7 +72,7 @@ private:
 
     Vec3 from_, to_; ///< in pixels, and depth
     bool perspective_, leaves_ = false, leaves_at_side_ = false;
-    float reach_ = 0, pixels_ = 0;
+    float reach_ = 0, pixels_ = 0, over_pixels_ = 0, near_ = 0, nearness_from_ = 0, nearness_to_ = 0;
     int first_ = 1, last_ = 0;
 };
 

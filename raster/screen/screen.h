@@ -84,8 +84,8 @@ public:
     template <typename T> T pixel_size(T depth) const { return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_)); }
     float near() const { return near_; }
     const ImageFloat& nearness() const { return nearness_; }
-    /// The least depth in columns x0 to x1 and rows y0 to y1, or a little less.
-    float least_depth(int x0, int y0, int x1, int y1) const { return near_ / nearest_.greatest(x0, y0, x1, y1); }
+    /// The greatest nearness in the pixel's block of 2^level × 2^level, or in a larger one.
+    float greatest_nearness(int x, int y, int level) const { return nearest_.of_block(x, y, level); }
 
     /// Shading normals on the viewer's side, unit, once they are there; any where nothing is seen.
     /// Given as colours, as Shading::kNormal shows them.

@@ -11,7 +11,7 @@ namespace {
 constexpr float kSlack = 2e-3f; ///< of the distance between two points: lower is no step over a plane, but rounding
 constexpr float kHiddenBlur = 12; ///< ScreenHit::gap for each metre behind the nearer side of what hides: deep in, means alone are known
 constexpr int kBesideFirst = 4; ///< pixels along the edge that are looked at beyond twice as far as the first that a ray goes on to
-constexpr int kLeastBlock = 8, kMostBlock = 256; ///< pixels: blocks of the picture before which a ray is are passed at once
+constexpr int kLeastLevel = 3, kMostLevel = 8; ///< blocks of 2^level pixels of the picture before which a ray is are passed at once
 
 /// The distance at which a ray comes through the plane of what a pixel sees, from its front; infinity where it does not.
 float meets_plane(const Screen& screen, Vec3 p, Vec3 way, int x, int y) {
@@ -27,22 +27,6 @@ bool shows_lamp(const Screen& screen, int x, int y) { return screen.first_look()
 /// Whether what a pixel shows may be guessed to go on.
 bool goes_on_flat(const Screen& screen, int x, int y) { return !shows_lamp(screen, x, y) && is_flat(screen, x, y); }
 
-/// How many of at most `most` steps (sx, sy) from a place stay in its block of `block` × `block` pixels, a power of two, or fewer.
-int steps_in_block(float x, float y, float sx, float sy, int block, int most) {
-    const auto side = static_cast<float>(block), per_side = 1 / side;
-    const auto along = [&](float at, float step) {
-        const float from_edge = at - side * std::floor(at * per_side);
-        return step > 0 ? (side - from_edge) / step : step < 0 ? from_edge / -step : 1e6f;
-    };
-    return std::min(most, static_cast<int>(std::min(along(x, sx), along(y, sy)) - 0.01f));
-}
-
-/// Whether all of a place's block lies farther than a depth.
-bool block_is_beyond(const Screen& screen, float x, float y, int block, float depth) {
-    const int x0 = static_cast<int>(x) & -block, y0 = static_cast<int>(y) & -block;
-    return depth < screen.least_depth(x0, y0, std::min(x0 + block, screen.width()) - 1, std::min(y0 + block, screen.height()) - 1);
-}
-
 /// The greatest width that fits, of those that fall by a fixed part from `width` on; one, where none does or it is not finite.
 template <typename F> float widest(float width, const F& fits) {
     if (!(width < kInfinity)) return 1;
@@ -55,18 +39,23 @@ template <typename F> float widest(float width, const F& fits) {
 class ScreenTrace {
 public:
     ScreenTrace(const Scenery& scenery, const Box3& scene, const ScreenRay& ray)
-        : scenery_(scenery), scene_(scene), ray_(ray), line_(scenery.all, ray.p, ray.way) {}
+        : scenery_(scenery), scene_(scene), ray_(ray), line_(scenery.all, ray.p, ray.way), per_step_x_(per(line_.step_x())),
+          per_step_y_(per(line_.step_y())) {}
 
     std::optional<ScreenHit> follow() {
         if (!(line_.from().z > 0)) return std::nullopt;
         if (!line_.moves()) return in_one_pixel();
-        float before = line_.depth(line_.part(line_.first() - 1));
+        float before = line_.nearness(line_.part(line_.first() - 1));
         for (int i = line_.first(); i <= line_.last(); ++i) {
             i += passed_at_once(i, before);
-            const float t = line_.part(i), depth = line_.depth(t), fx = line_.x(t), fy = line_.y(t);
+            const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t), nearness = line_.nearness(t);
             if (!scenery_.all.contains(fx, fy)) continue; // by rounding
-            if (const auto hit = visit(i, t, fx, fy, before, depth)) return hit;
-            before = depth;
+            const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
+            if (std::min(before, nearness) > scenery_.at(x, y).nearness()(x, y))
+                hidden_from_ = -1, in_front_ = i;
+            else if (i >= 2 || !ray_.from_picture)
+                if (const auto hit = visit(i, t, fx, fy)) return hit;
+            before = nearness;
         }
         return beyond_edge();
     }
@@ -86,41 +75,47 @@ private:
     }
 
     /// Steps from the i-th to the last one in a block of the picture before all of which the ray stays: after one that is passed
-    /// larger ones are looked at, where it does not pass them smaller ones.
+    /// larger ones are looked at, where it does not pass them smaller ones. `before`: nearness at the step before, then at the last.
     int passed_at_once(int i, float& before) {
-        if (i <= 2) return 0;
-        const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t);
+        if (i < look_again_) return 0;
+        const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t), nearness = line_.nearness(t);
         if (!scenery_.all.contains(fx, fy)) return 0;
-        for (;; block_ /= 2) {
-            const int more = steps_in_block(fx, fy, line_.step_x(), line_.step_y(), block_, line_.last() - i);
+        for (;; --level_) {
+            const int more = std::min(steps_in_block(fx, fy, level_), line_.last() - i);
             if (more > 0) {
-                const float last_depth = line_.depth(line_.part(i + more)), deepest = std::max({before, line_.depth(t), last_depth});
-                if (block_is_beyond(scenery_.all, fx, fy, block_, deepest)) {
-                    before = last_depth;
-                    hidden_from_ = -1, in_front_ = line_.distance(line_.part(i + more), last_depth);
-                    block_ = std::min(2 * block_, kMostBlock);
+                const float last = line_.nearness(line_.part(i + more)), farthest = std::min({before, nearness, last});
+                if (farthest > scenery_.all.greatest_nearness(static_cast<int>(fx), static_cast<int>(fy), level_)) {
+                    before = last, hidden_from_ = -1, in_front_ = i + more;
+                    level_ = std::min(level_ + 1, kMostLevel);
                     return more;
                 }
             }
-            if (block_ == kLeastBlock) return 0;
+            if (level_ == kLeastLevel) {
+                look_again_ = i + std::max(more, 0) + 1;
+                return 0;
+            }
         }
     }
+    /// How many steps from a place stay in its block of 2^level pixels, or fewer.
+    int steps_in_block(float x, float y, int level) const {
+        const auto side = static_cast<float>(1 << level), per_side = 1 / side;
+        const auto along = [&](float at, float step, float per_step) {
+            const float from_edge = at - side * std::floor(at * per_side);
+            return (step > 0 ? side - from_edge : from_edge) * per_step;
+        };
+        return static_cast<int>(std::min({along(x, line_.step_x(), per_step_x_), along(y, line_.step_y(), per_step_y_), 1e6f}) - 0.01f);
+    }
 
-    /// A step, over which the ray's depth goes from `before` to `depth`.
-    std::optional<ScreenHit> visit(int i, float t, float fx, float fy, float before, float depth) {
+    /// A step at which the ray may not be before what is seen.
+    std::optional<ScreenHit> visit(int i, float t, float fx, float fy) {
         const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
-        if (ray_.from_picture && i < 2) return std::nullopt;
         const Screen& screen = scenery_.at(x, y);
+        const float before = line_.depth(line_.part(i - 1)), depth = line_.depth(t), distance = line_.distance(t, depth);
         const float seen_depth = screen.depth(x, y), far = std::max(before, depth), near = std::min(before, depth);
-        const float distance = line_.distance(t, depth);
-        if (far < seen_depth) {
-            hidden_from_ = -1, in_front_ = distance;
-            return std::nullopt;
-        }
         const float known = screen.thickness(x, y), thickness = known > 0 ? known : std::max(2 * (far - near), kThickness * seen_depth);
         const bool passed = is_passed(screen, x, y);
         const bool behind = near > seen_depth + (passed ? 0 : thickness);
-        if (behind && hidden_from_ < 0) hidden_from_ = in_front_;
+        if (behind && hidden_from_ < 0) hidden_from_ = distance_at(in_front_);
         if (hidden_from_ >= 0 && goes_on_flat(screen, x, y)) {
             const float crossed = meets_plane(screen, ray_.p, ray_.way, x, y);
             if (crossed > hidden_from_ && crossed <= distance) {
@@ -133,6 +128,11 @@ private:
         if (!hit || hidden_from_ < 0) return hit;
         const auto flat = goes_on(last_flat(i), hidden_from_); // it may have gone under that, hidden
         return flat && flat->distance < hit->distance ? flat : hit;
+    }
+
+    float distance_at(int step) const {
+        const float t = line_.part(step);
+        return std::max(line_.distance(t, line_.depth(t)), 0.0f); // at its start rounding may have it before that
     }
 
     /// Whether a pixel shows what is not met: a lamp, or glass that the ray comes through the other way, for what that shows the
@@ -318,14 +318,17 @@ private:
     }
     /// What is met is what that pixel shows, not the one before.
     static float in_pixel(float at, int pixel) { return clamp(at, static_cast<float>(pixel), static_cast<float>(pixel) + 0.99f); }
+    static float per(float step) { return std::min(1 / std::abs(step), 1e9f); } ///< (of no step, infinity: the bound)
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
     const Scenery& scenery_;
     const Box3& scene_;
     ScreenRay ray_;
     Crossing line_;
-    int block_ = kLeastBlock;
-    float in_front_ = 0, hidden_from_ = -1; ///< distances: the last before what is seen; where it went behind that, negative: it is not
+    float per_step_x_, per_step_y_; ///< steps a pixel
+    int level_ = kLeastLevel, look_again_ = 3; ///< of the block to be looked at next; the step from which on, as the last was not passed
+    int in_front_ = 0;       ///< the last step before what is seen
+    float hidden_from_ = -1; ///< at which distance it went behind that; negative: it did not
 };
 
 } // namespace

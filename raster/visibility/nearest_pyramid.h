@@ -3,6 +3,7 @@
 
 #include "common/image/image.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace duet::raster {
@@ -16,6 +17,11 @@ public:
     /// At least the greatest number in columns x0 to x1 and rows y0 to y1, all within the image; at most the greatest
     /// in a region of four blocks around them.
     float greatest(int x0, int y0, int x1, int y1) const;
+    /// The greatest number of a pixel's block of 2^level × 2^level pixels, or, where there are none so large, of the whole image.
+    float of_block(int x, int y, int level) const {
+        level = std::min(level, static_cast<int>(levels_.size()) - 1);
+        return levels_[static_cast<std::size_t>(level)](x >> level, y >> level);
+    }
     /// Of the whole image.
     float greatest() const { return levels_.back()[0]; }
     /// The greatest number of each block of 2^level × 2^level pixels, level 0 or more; the last level has one block.
