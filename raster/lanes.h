@@ -101,6 +101,20 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #endif
 }
 
+/// Doubles, each rounded to what a float can be.
+inline Doubles as_floats(const Doubles& value) {
+#if defined(__AVX512F__)
+    return _mm512_cvtps_pd(_mm512_cvtpd_ps(value));
+#elif defined(__AVX__)
+    return _mm256_cvtps_pd(_mm256_cvtpd_ps(value));
+#else
+    alignas(64) std::array<double, Doubles::size> wide;
+    value.store_aligned(wide.data());
+    for (double& x : wide) x = static_cast<double>(static_cast<float>(x));
+    return Doubles::load_aligned(wide.data());
+#endif
+}
+
 /// Whole numbers of 32 bits to memory.
 inline void store_ints(const Doubles& value, std::int32_t* to) {
 #if defined(__AVX512F__)
@@ -324,6 +338,13 @@ inline const StripOf<float> kLanesAsFloats = [] {
     StripOf<float> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<float>(i);
     return result;
+}();
+
+/// And as doubles.
+inline const Doubles kLanesAsDoubles = [] {
+    alignas(64) std::array<double, Doubles::size> result;
+    for (std::size_t i = 0; i < Doubles::size; ++i) result[i] = static_cast<double>(i);
+    return Doubles::load_aligned(result.data());
 }();
 
 } // namespace duet::raster

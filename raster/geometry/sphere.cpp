@@ -1,6 +1,7 @@
 #include "raster/geometry/sphere.h"
 
 #include "common/geometry/sphere.h"
+#include "common/system/sabotage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,6 +86,29 @@ std::optional<float> DrawSphere::intersect(const Ray& ray) const {
     local.t_min = *t;
     const std::optional<float> out = intersect_sphere(local, sphere);
     return out ? out : t;
+}
+
+Doubles DrawSphere::intersect(const CameraRays& rays) const {
+    const Doubles none(std::numeric_limits<double>::infinity());
+    if (!identity || sabotaged(Guard::kSphereRoots)) {
+        alignas(64) std::array<double, Doubles::size> found;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const std::optional<float> t = intersect(rays.at(i, 0));
+            found[i] = t ? static_cast<double>(*t) : std::numeric_limits<double>::infinity();
+        }
+        return Doubles::load_aligned(found.data());
+    }
+    const auto to_center = [&](float center, const Doubles& origin) { return Doubles(static_cast<double>(center)) - origin; };
+    const Vec3T<Doubles> to{to_center(sphere.center.x, rays.origin.x), to_center(sphere.center.y, rays.origin.y),
+                            to_center(sphere.center.z, rays.origin.z)};
+    const SphereTest<Doubles> test(to, SphereLine<Doubles>(rays.direction), Doubles(static_cast<double>(sphere.radius)));
+    const auto met = test.discriminant >= Doubles(0.0);
+    if (!xsimd::any(met)) return none;
+    const auto roots = test.roots();
+    const Doubles near = as_floats(roots.near), far = as_floats(roots.far), t_min = as_floats(rays.t_min);
+    const Doubles beyond = xsimd::select((far > t_min) & (far < none), far, none);
+    const Doubles first = xsimd::select((near > t_min) & (near < none), near, beyond);
+    return xsimd::select(met, far_side ? max(first, beyond) : first, none);
 }
 
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport) {

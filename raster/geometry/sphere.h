@@ -1,6 +1,7 @@
 // Spheres, drawn exactly: bounded in the picture, then their equation solved at each sample.
 #pragma once
 
+#include "raster/geometry/camera_rays.h"
 #include "raster/geometry/setup.h"
 
 #include "common/scene/scene.h"
@@ -22,6 +23,8 @@ struct DrawSphere {
 
     /// Where a camera ray meets it: intersect_sphere in its object's space, as the ray tracer does it.
     std::optional<float> intersect(const Ray& ray) const;
+    /// The same of rays side by side, all at the pass's moment: each t, infinity where there is none.
+    Doubles intersect(const CameraRays& rays) const;
     /// Where the ray passes its centre, as the sphere's own space measures it.
     float nearest(const Ray& ray) const;
 };

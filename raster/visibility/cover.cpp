@@ -8,13 +8,23 @@ namespace duet::raster {
 namespace {
 
 void draw(const DrawSphere& sphere, const PassView& view, DepthTile& tile) {
+    constexpr int kLanes = static_cast<int>(Doubles::size);
     const PixelRect r = intersect(tile.rect(), sphere.bounds);
+    alignas(64) std::array<double, Doubles::size> nearness;
     for (int y = r.y0; y < r.y1; ++y)
-        for (int x = r.x0; x < r.x1; ++x) {
-            const Rayd exact = view.pinhole.ray(tile.offset().position(x, y));
-            const std::optional<float> t = sphere.intersect(rounded(exact, view.time));
-            if (t) tile.draw(x, y, sphere.id, kept_nearness(exact.t_min / static_cast<double>(*t)));
+        for (int x = r.x0; x < r.x1; x += kLanes) {
+            const Vec2d first = tile.offset().position(x, y);
+            const CameraRays rays(view.pinhole, Doubles(first.x) + kLanesAsDoubles, Doubles(first.y));
+            const Doubles t = sphere.intersect(rays);
+            (rays.t_min / t).store_aligned(nearness.data()); // 0 where it is missed
+            for (int i = 0; i < std::min(kLanes, r.x1 - x); ++i)
+                if (const double n = nearness[static_cast<std::size_t>(i)]; n > 0) tile.draw(x + i, y, sphere.id, kept_nearness(n));
         }
+}
+
+/// Of a sphere that the ray meets, but for rounding.
+Hit hit_sphere(const DrawSphere& sphere, const Ray& ray) {
+    return {.object = sphere.object, .primitive = 0, .t = sphere.intersect(ray).value_or(sphere.nearest(ray))};
 }
 
 /// A tile's items of all batches, in order; asked for from memory ahead of time.
@@ -104,11 +114,7 @@ Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, V
     const Triangles& triangles = geometry.triangles;
     const Run& run = triangles.run_of(id);
     const Rayd exact = view.pinhole.ray(pixel);
-    if (run.sphere) {
-        const DrawSphere& sphere = geometry.spheres[run.object];
-        const Ray ray = rounded(exact, view.time);
-        return {.object = sphere.object, .primitive = 0, .t = sphere.intersect(ray).value_or(sphere.nearest(ray))};
-    }
+    if (run.sphere) return hit_sphere(geometry.spheres[run.object], rounded(exact, view.time));
     const std::uint32_t index = Triangles::index(run, id);
     const WholeTriangle whole = triangles.whole(run, index);
     return hit_triangle(whole, triangles.objects[run.object].object,
@@ -128,26 +134,37 @@ public:
 
 private:
     void fill(const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip) {
+        StripOf<double> xs, ys;
         for (std::size_t i = 0; i < kStrip; ++i) {
-            const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
-            if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
-            const std::size_t at = tile_.index(x, y);
-            const Rayd exact = view_.pinhole.ray(place.position(i));
-            tile_.rays_[at] = rounded(exact, view_.time);
-            tile_.distance_per_depth_[at] = exact.t_min / view_.pinhole.near;
-            if (!(strip.samples->seen >> i & 1)) continue;
-            tile_.hits_[at] = hit(i, place, strip, at);
-            tile_.nearness_[at] = place.nearness != nullptr
-                                      ? place.nearness[i]
-                                      : static_cast<float>(min(exact.t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
+            const Vec2d p = place.position(i);
+            xs[i] = p.x, ys[i] = p.y;
+        }
+        const double near = view_.pinhole.near;
+        for (std::size_t first = 0; first < kStrip; first += Doubles::size) {
+            const CameraRays rays(view_.pinhole, load(xs, first), load(ys, first));
+            for (std::size_t lane = 0; lane < Doubles::size; ++lane) {
+                const std::size_t i = first + lane;
+                const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
+                if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
+                const std::size_t at = tile_.index(x, y);
+                const double t_min = rays.t_min.get(lane);
+                tile_.rays_[at] = rays.at(lane, view_.time);
+                tile_.distance_per_depth_[at] = t_min / near;
+                if (!(strip.samples->seen >> i & 1)) continue;
+                tile_.hits_[at] = hit(i, place, strip, at);
+                tile_.nearness_[at] = place.nearness != nullptr
+                                          ? place.nearness[i]
+                                          : static_cast<float>(min(t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
+            }
         }
     }
 
     Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip, std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
         const std::uint32_t id = strip.samples->id(i);
-        if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
         const Run& run = solver_.run_of(id);
+        if (run.sphere) return hit_sphere(geometry_.spheres[run.object], tile_.rays_[at]);
+        if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
         const double depth = std::max(strip.depth[i], view_.pinhole.near);
         const std::uint32_t index = Triangles::index(run, id);
         const PackedShape& shape = *strip.samples->shape;

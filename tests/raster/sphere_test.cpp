@@ -143,6 +143,43 @@ TEST_SUITE("unit") {
         check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(0, 0, 4), 1}, Mat4d()}); // around the eye
     }
 
+    TEST_CASE("camera rays side by side are those of each alone, and meet spheres where those do: near, far, of any size, from inside") {
+        Random random(3);
+        int met = 0;
+        for (int i = 0; i < 6000; ++i) {
+            Camera c = camera(i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective, i % 4 == 0 ? 1.5 : 1e-3);
+            c.eye = c.eye + random.vector(1);
+            const Pinhole pinhole = CameraModel({c, 64, 48}).through();
+            const double size = std::pow(10, random(-6, 6));
+            DrawSphere sphere;
+            // About the line of sight, or around the eye.
+            const Vec3d about = i % 5 == 0 ? c.eye : c.eye - normalize(c.eye - c.look_at) * random(0, 5 * size);
+            sphere.sphere = {Vec3(about + random.vector(0.5 * size)), static_cast<float>(size)};
+            sphere.far_side = i % 7 == 0;
+            if (i % 11 == 0) {
+                sphere.identity = false;
+                sphere.to_world = Mat4(random.stretch());
+                sphere.to_object = Mat4(inverse_affine(Mat4d(sphere.to_world)));
+            }
+            alignas(64) std::array<double, Doubles::size> x, y;
+            for (std::size_t k = 0; k < x.size(); ++k) x[k] = random(0, 64), y[k] = random(0, 48);
+            const CameraRays rays(pinhole, Doubles::load_aligned(x.data()), Doubles::load_aligned(y.data()));
+            const Doubles found = sphere.intersect(rays);
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                const Rayd exact = pinhole.ray({x[k], y[k]});
+                const Ray ray = rays.at(k, 0);
+                REQUIRE(ray.origin == Vec3(exact.origin));
+                REQUIRE(ray.direction == Vec3(exact.direction));
+                REQUIRE(rays.t_min.get(k) == exact.t_min);
+                const std::optional<float> t = sphere.intersect(ray);
+                REQUIRE(found.get(k) == (t ? static_cast<double>(*t) : std::numeric_limits<double>::infinity()));
+                met += t.has_value();
+            }
+        }
+        CHECK(met > 8'000);
+        CHECK(met < 6000 * static_cast<int>(Doubles::size) - 2'000);
+    }
+
     TEST_CASE("what lies behind the eye or beside the picture has empty bounds") {
         const View view{camera(Camera::Projection::kPerspective, 1e-3), 64, 48};
         const Pinhole pinhole = CameraModel(view).through();

@@ -1,0 +1,39 @@
+// Camera rays of samples side by side.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "raster/lanes.h"
+
+namespace duet::raster {
+
+/// Rays through places of the picture, number for number those of Pinhole::ray; what is traced of them in float, as doubles.
+struct CameraRays {
+    Vec3T<Doubles> origin, direction; ///< rounded to float
+    Doubles t_min;                    ///< not rounded
+    Doubles per_depth;                ///< distance along the ray for each metre of depth
+
+    CameraRays(const Pinhole& pinhole, const Doubles& x, const Doubles& y) {
+        const auto linear = [&](Vec3d start, Vec3d dx, Vec3d dy) {
+            const auto along = [&](std::size_t axis) { return Doubles(start[axis]) + Doubles(dx[axis]) * x + Doubles(dy[axis]) * y; };
+            return Vec3T<Doubles>{along(0), along(1), along(2)};
+        };
+        const Vec3T<Doubles> from = linear(pinhole.origin, pinhole.origin_dx, pinhole.origin_dy),
+                             way = linear(pinhole.direction, pinhole.direction_dx, pinhole.direction_dy);
+        per_depth = xsimd::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+        t_min = Doubles(pinhole.near) * per_depth;
+        origin = {as_floats(from.x), as_floats(from.y), as_floats(from.z)};
+        direction = {as_floats(way.x / per_depth), as_floats(way.y / per_depth), as_floats(way.z / per_depth)};
+    }
+
+    /// One of them.
+    Ray at(std::size_t lane, float time) const {
+        return {.origin = of(origin, lane), .direction = of(direction, lane), .t_min = static_cast<float>(t_min.get(lane)), .time = time};
+    }
+
+private:
+    static Vec3 of(const Vec3T<Doubles>& v, std::size_t lane) {
+        return {static_cast<float>(v.x.get(lane)), static_cast<float>(v.y.get(lane)), static_cast<float>(v.z.get(lane))};
+    }
+};
+
+} // namespace duet::raster
