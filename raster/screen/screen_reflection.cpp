@@ -49,12 +49,13 @@ public:
         for (int i = line_.first(); i <= line_.last(); ++i) {
             i += passed_at_once(i, before);
             const float t = line_.part(i), fx = line_.x(t), fy = line_.y(t), nearness = line_.nearness(t);
-            if (!scenery_.all.contains(fx, fy)) continue; // by rounding
-            const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
-            if (std::min(before, nearness) > scenery_.at(x, y).nearness()(x, y))
-                hidden_from_ = -1, in_front_ = i;
-            else if (i >= 2 || !ray_.from_picture)
-                if (const auto hit = visit(i, t, fx, fy)) return hit;
+            if (scenery_.all.contains(fx, fy) && (i > 1 || !ray_.from_picture)) { // (outside only by rounding)
+                const auto x = static_cast<int>(fx), y = static_cast<int>(fy);
+                if (std::min(before, nearness) > scenery_.at(x, y).nearness()(x, y))
+                    hidden_from_ = -1, in_front_ = i;
+                else if (const auto hit = visit(i, t, fx, fy))
+                    return hit;
+            }
             before = nearness;
         }
         return beyond_edge();
