@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Tests a lab itself: its starter gets few points and helpful messages, the answer and the library's version get all,
+and each typical mistake is caught by a message that names it.
+
+usage: selftest.py [--build FOLDER] ID…
+"""
+import argparse
+import json
+import pathlib
+import sys
+import tempfile
+
+import grade
+import labs
+
+ANSWERS = labs.SOURCE / "tests" / "grading" / "answers"
+MOST_STARTER_POINTS = 20
+
+
+def read_mistakes(path):
+    """The mistakes of a file: {name, edits: [(old, new)], says}."""
+    mistakes = []
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        where = f"{path.name}:{number}"
+        if line.startswith("# "):
+            mistakes.append({"name": line[2:].strip(), "edits": [], "says": ""})
+        elif line.startswith("- "):
+            mistakes[-1]["edits"].append((line[2:], ""))
+        elif line.startswith("+"):
+            old, _ = mistakes[-1]["edits"].pop()
+            mistakes[-1]["edits"].append((old, line[2:]))
+        elif line.startswith("says: "):
+            mistakes[-1]["says"] = line[6:].strip()
+        elif line.strip():
+            raise labs.Unusable(f"{where}: found '{line}'; expected a line that begins with '# ', '- ', '+ ' or 'says: '")
+    return mistakes
+
+
+def apply(text, mistake):
+    for old, new in mistake["edits"]:
+        if text.count(old) != 1:
+            raise labs.Unusable(f"mistake {mistake['name']}: '{old}' occurs {text.count(old)} times in answer.cpp; expected 1")
+        text = text.replace(old, new)
+    return text
+
+
+def failures(result):
+    return [item for item in result["items"] if item["status"] != "passed" and item["points"] > 0]
+
+
+def check_starter(lab_id, build):
+    result = grade.grade(lab_id, labs.folder_of(lab_id) / "lab_starter.cpp", build)
+    if "error" in result:
+        return [f"the starter doesn't compile: {result['error']}"]
+    faults = [f"the item '{item['title']}' fails without a message" for item in failures(result) if not item.get("message")]
+    if result["earned"] > MOST_STARTER_POINTS:
+        faults.append(f"the starter gets {result['earned']} points; expected at most {MOST_STARTER_POINTS}")
+    if not any(item["status"] == "not_attempted" for item in result["items"]):
+        faults.append("the starter isn't told apart as not attempted")
+    if not any(item.get("images") for item in result["items"]):
+        faults.append("the starter shows no picture")
+    if result["points"] != 100:
+        faults.append(f"the items sum to {result['points']} points; expected 100")
+    return faults
+
+
+def check_full(lab_id, path, build, trusted):
+    result = grade.grade(lab_id, path, build, trusted=trusted)
+    faults = [f"{path.name}: {result['error']}"] if "error" in result else []
+    for item in failures(result):
+        faults.append(f"{path.name} fails '{item['title']}': {item.get('message')} expected {item.get('expected')}, "
+                      f"found {item.get('found')}\n{item.get('map', '')}")
+    return faults
+
+
+def check_mistake(lab_id, mistake, build, scratch):
+    path = scratch / f"{mistake['name']}.cpp"
+    path.write_text(apply((ANSWERS / lab_id / "answer.cpp").read_text(), mistake))
+    result = grade.grade(lab_id, path, build)
+    said = json.dumps(result, ensure_ascii=False)
+    faults = []
+    if "error" in result:
+        faults.append(f"mistake {mistake['name']}: {result['error']}")
+    elif result["earned"] >= result["points"]:
+        faults.append(f"mistake {mistake['name']} gets all points")
+    elif not mistake["says"] or json.dumps(mistake["says"], ensure_ascii=False)[1:-1] not in said:
+        messages = " | ".join(item.get("message", "") for item in failures(result))
+        faults.append(f"mistake {mistake['name']}: no message says '{mistake['says']}', but: {messages}")
+    return faults
+
+
+def check(lab_id, build):
+    """All that is not as it should be with a lab, a line each."""
+    answers = ANSWERS / lab_id
+    faults = check_starter(lab_id, build) + check_full(lab_id, answers / "answer.cpp", build, False)
+    faults += check_full(lab_id, answers / "library.cpp", build, True)
+    mistakes = read_mistakes(answers / "mistakes.txt")
+    if len(mistakes) < 3:
+        faults.append(f"there are {len(mistakes)} typical mistakes; expected at least 3")
+    with tempfile.TemporaryDirectory() as scratch:
+        for mistake in mistakes:
+            faults += check_mistake(lab_id, mistake, build, pathlib.Path(scratch))
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--build", type=pathlib.Path, default=grade.DEFAULT_BUILD)
+    parser.add_argument("ids", nargs="+")
+    arguments = parser.parse_args()
+    faults = []
+    try:
+        for lab_id in arguments.ids:
+            found = check(lab_id, arguments.build.resolve())
+            faults += [f"{lab_id}: {fault}" for fault in found]
+            print(f"{lab_id}: {'as it should be' if not found else str(len(found)) + ' faults'}")
+    except labs.Unusable as error:
+        print(f"selftest: {error}", file=sys.stderr)
+        sys.exit(2)
+    print("\n".join(faults))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+// One worker: a child process with a student's code, and the calls that are made in it.
+#pragma once
+
+#include "tests/grading/channel.h"
+
+#include <string>
+#include <sys/types.h>
+
+namespace duet::grading {
+
+/// A call that brought no answer: what happened, in a sentence for the student.
+struct CallFailed {
+    std::string text;
+};
+
+/// What a worker may use.
+struct Limits {
+    double seconds = 2;                            ///< for each call
+    std::size_t memory_bytes = std::size_t{1} << 30; ///< address space; of trusted workers ignored
+    bool sandbox = true; ///< off for the repository's own answers, which are linked with its libraries
+};
+
+/// Starts the worker with the first call. Not copyable: it owns a process and its pipes.
+class Session {
+public:
+    Session(std::string worker, Limits limits) : worker_(std::move(worker)), limits_(limits) {}
+    ~Session() { stop(); }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// The bytes of the function's result. Throws CallFailed where the worker ended, hung, threw or answered nonsense;
+    /// then it is gone, and the next call starts another.
+    std::string call(const char* function, const std::string& request);
+    void limit(double seconds) { limits_.seconds = seconds; }
+    /// Whether a function that was called since the start said not_attempted().
+    bool not_attempted() const { return not_attempted_; }
+    /// Whether the kernel let the worker be shut off from files (seccomp).
+    bool guarded() const { return guarded_; }
+    /// What the student's code printed, at most 8 KiB.
+    std::string printed();
+
+private:
+    void start();
+    void stop();
+    std::string exchange(const std::string& request);
+    std::string how_it_ended();
+
+    std::string worker_;
+    Limits limits_;
+    pid_t child_ = -1;
+    int requests_ = -1, replies_ = -1, output_ = -1;
+    bool not_attempted_ = false, guarded_ = false;
+    std::string printed_;
+};
+
+/// The session of the item that runs.
+Session& session();
+void set_session(Session* session);
+
+} // namespace duet::grading
