@@ -21,8 +21,8 @@ struct MeshVertex {
 using Mesh = std::vector<MeshVertex>;
 
 /// Reads the lines v, vt, vn and f of an OBJ file whose faces name a point, a texture coordinate and a normal for each
-/// corner ("f 1/1/1 2/2/2 3/3/3"). A face of n corners becomes a fan of n - 2 triangles. Throws std::runtime_error where the file is
-/// missing or a face names what the file doesn't have.
+/// corner ("f 1/1/1 2/2/2 3/3/3"). A face of n corners becomes a fan of n - 2 triangles. Throws std::runtime_error
+/// where the file is missing or a face names what the file doesn't have.
 inline Mesh read_obj(const std::string& path) {
     std::vector<Vec3> points, normals;
     std::vector<Vec2> uvs;

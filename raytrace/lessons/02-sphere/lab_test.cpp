@@ -53,8 +53,8 @@ LAB_ITEM(20, "a ray through the center meets the front first") {
                           "was written as b."},
                {T(1.0f), "Is the 2 in front of b counted once too often? The solution is (-b ± √(b² - ac)) / a for "
                          "a·t² + 2b·t + c = 0."},
-               {T(), "The ray passes through the center, so it hits; your function returned nothing. Is the sign of "
-                     "the discriminant right?"}});
+               {T(), "The ray passes through the center, so it hits; your function returned nothing. "
+                     "Is q = origin - center, in this order, and b² - a·c the discriminant?"}});
 }
 
 LAB_ITEM(15, "a ray through the center meets two surfaces: from inside it finds the back") {
