@@ -9,10 +9,15 @@ preset=${1:-release}
 # The browser tests need Python and a Chromium. Debian has one as a package; Ubuntu's is a stub for a snap, so there one
 # that is installed (Chromium or Chrome) is taken, and without one the tests are skipped.
 # Embree is a peer of `compare kernels`, whose tests want it; the programs build without.
-packages='libembree-dev'
+# The course's pages are checked by KaTeX (formulas) and hunspell (spelling).
+packages='libembree-dev katex hunspell hunspell-en-us'
 command -v python3 >/dev/null || packages="$packages python3"
 if grep -q '^ID=debian' /etc/os-release && ! python3 -B tests/browser/chromium.py >/dev/null 2>&1; then
     packages="$packages chromium"
 fi
 sh common/setup.sh "$preset" $packages
+case $preset in
+    asan | tsan | sabotage) ;; # the course's programs are tested as students build them
+    *) cmake --build --preset "$preset" --target lessons judges ;;
+esac
 exec ctest --preset "$preset" "$@"

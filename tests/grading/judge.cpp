@@ -40,7 +40,8 @@ double mean_distance(const ImageRgb& a, const ImageRgb& b) {
     for (std::size_t i = 0; i < a.size(); ++i) sum += std::min(distance(a[i], b[i]), 1e3);
     return sum / static_cast<double>(a.size());
 }
-template <typename Pixel> void require_size(const std::string& name, const Image<Pixel>& found, const Image<Pixel>& expected) {
+template <typename Pixel>
+void require_size(const std::string& name, const Image<Pixel>& found, const Image<Pixel>& expected) {
     if (found.width() == expected.width() && found.height() == expected.height()) return;
     throw ItemFailed{name + " has the wrong size.", message(expected.width(), " x ", expected.height()),
                      message(found.width(), " x ", found.height()), ""};
@@ -54,7 +55,9 @@ std::uint64_t Rng::bits() {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
 }
-int Rng::integer(int low, int high) { return low + static_cast<int>(uniform() * (static_cast<double>(high) - low + 1)); }
+int Rng::integer(int low, int high) {
+    return low + static_cast<int>(uniform() * (static_cast<double>(high) - low + 1));
+}
 Vec3d Rng::unit_vector() {
     const double z = uniform(-1, 1), phi = uniform(0, 2 * kPiDouble), r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
@@ -82,7 +85,8 @@ void Item::image(const std::string& name, const ImageRgb& found, const ImageRgb&
             difference(x, y) = Rgb(static_cast<float>(std::min(distance(found(x, y), expected(x, y)), 1.0)));
             if (!wrong(x, y)) continue;
             if (count++ == 0)
-                first = message(", first at (", x, ", ", y, "): expected ", describe(expected(x, y)), ", found ", describe(found(x, y)));
+                first = message(", first at (", x, ", ", y, "): expected ", describe(expected(x, y)), ", found ",
+                                describe(found(x, y)));
         }
     show(name + ": found", found);
     show(name + ": expected", expected);
@@ -94,8 +98,9 @@ void Item::image(const std::string& name, const ImageRgb& found, const ImageRgb&
             mean_distance(found, mistake.value) < 0.3 * mean_distance(found, expected))
             hint = " " + mistake.text;
     throw ItemFailed{message(name, " has ", count, " wrong pixels of ", found.size(), first, ".", hint), "", "",
-                     draw_map(found.width(), found.height(), [&](int x, int y) { return wrong(x, y) ? '#' : '.'; },
-                              [](char c) { return c == '#'; })};
+                     draw_map(
+                         found.width(), found.height(), [&](int x, int y) { return wrong(x, y) ? '#' : '.'; },
+                         [](char c) { return c == '#'; })};
 }
 
 void Item::coverage(const std::string& name, const Image<int>& found, const Image<int>& expected,
@@ -116,8 +121,8 @@ void Item::coverage(const std::string& name, const Image<int>& found, const Imag
     std::string hint;
     for (const auto& mistake : mistakes)
         if (hint.empty() && mistake.value.pixels() == found.pixels()) hint = " " + mistake.text;
-    throw ItemFailed{message(name, ": ", missing, " pixels missing (-), ", doubled, " covered more often than they should be (2), ", extra,
-                             " where nothing is (+).", hint),
+    throw ItemFailed{message(name, ": ", missing, " pixels missing (-), ", doubled,
+                             " covered more often than they should be (2), ", extra, " where nothing is (+).", hint),
                      "", "", draw_map(found.width(), found.height(), symbol, [](char c) {
                          return c == '-' || c == '2' || c == '+' ? 2 : c == 'o' ? 1 : 0;
                      })};

@@ -65,7 +65,8 @@ public:
     void require(bool ok, const std::string& text) {
         if (!ok) throw ItemFailed{text, "", "", ""};
     }
-    /// All components of `found` within `tolerance` of those of `expected`: numbers, vectors, colors, optionals of them.
+    /// All components of `found` within `tolerance` of those of `expected`: numbers, vectors, colors, optionals of
+    /// them.
     template <typename T>
     void near(const std::string& what, const T& found, const std::type_identity_t<T>& expected, double tolerance,
               const std::vector<Mistake<std::type_identity_t<T>>>& mistakes = {}) {
@@ -73,7 +74,8 @@ public:
         std::string hint;
         for (const auto& mistake : mistakes)
             if (hint.empty() && is_near(found, mistake.value, tolerance)) hint = mistake.text;
-        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found), ""};
+        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found),
+                         ""};
     }
     /// Exactly equal.
     template <typename T>
@@ -83,10 +85,11 @@ public:
         std::string hint;
         for (const auto& mistake : mistakes)
             if (hint.empty() && found == mistake.value) hint = mistake.text;
-        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found), ""};
+        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found),
+                         ""};
     }
-    /// Each pixel's components within `tolerance`. Found, expected and difference go to the page, and the message has a map
-    /// of the wrong pixels. A mistake's image need only be nearer to what was found than the expected one is.
+    /// Each pixel's components within `tolerance`. Found, expected and difference go to the page, and the message has a
+    /// map of the wrong pixels. A mistake's image need only be nearer to what was found than the expected one is.
     void image(const std::string& name, const ImageRgb& found, const ImageRgb& expected, double tolerance,
                const std::vector<Mistake<ImageRgb>>& mistakes = {});
     /// How many times each pixel is covered. The map shows missing (-), doubled (2) and extra (+) pixels.
@@ -156,8 +159,7 @@ inline bool set_title(const char* id, const char* title) {
 #define DUET_GRADING_JOIN(a, b) DUET_GRADING_JOIN_(a, b)
 /// The function of the student's with that name.
 #define STUDENT(f) (::duet::grading::Remote<decltype(::duet::lab::f)>(#f))
-#define LAB_TITLE(id, title)                                                                                           \
-    [[maybe_unused]] static const bool duet_lab_title = ::duet::grading::set_title(id, title);
+#define LAB_TITLE(id, title) [[maybe_unused]] static const bool duet_lab_title = ::duet::grading::set_title(id, title);
 #define LAB_ITEM(points, title)                                                                                        \
     static void DUET_GRADING_JOIN(duet_item_, __LINE__)(::duet::grading::Item & item);                                 \
     [[maybe_unused]] static const bool DUET_GRADING_JOIN(duet_item_added_, __LINE__) =                                 \

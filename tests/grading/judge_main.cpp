@@ -22,12 +22,18 @@ Arguments read_arguments(int count, char** values) {
     Arguments arguments;
     for (int i = 1; i < count; ++i) {
         const std::string option = values[i];
-        if (option == "--trusted") arguments.trusted = true;
-        else if (i + 1 == count) throw duet::Error("judge: " + option + " needs a value");
-        else if (option == "--worker") arguments.worker = values[++i];
-        else if (option == "--out") arguments.out = values[++i];
-        else if (option == "--seed") arguments.seed = std::stoull(values[++i]);
-        else throw duet::Error("judge: unknown option " + option + "; expected --worker, --out, --seed or --trusted");
+        if (option == "--trusted")
+            arguments.trusted = true;
+        else if (i + 1 == count)
+            throw duet::Error("judge: " + option + " needs a value");
+        else if (option == "--worker")
+            arguments.worker = values[++i];
+        else if (option == "--out")
+            arguments.out = values[++i];
+        else if (option == "--seed")
+            arguments.seed = std::stoull(values[++i]);
+        else
+            throw duet::Error("judge: unknown option " + option + "; expected --worker, --out, --seed or --trusted");
     }
     if (arguments.worker.empty() || arguments.out.empty())
         throw duet::Error("usage: judge --worker PROGRAM --out FOLDER [--seed N] [--trusted]");
@@ -56,7 +62,8 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     } catch (const ItemFailed& failed) {
         result["status"] = "failed";
         result["message"] = clean(failed.text);
-        for (const auto& [key, text] : {std::pair{"expected", &failed.expected}, {"found", &failed.found}, {"map", &failed.map}})
+        for (const auto& [key, text] :
+             {std::pair{"expected", &failed.expected}, {"found", &failed.found}, {"map", &failed.map}})
             if (!text->empty()) result[key] = clean(*text);
     } catch (const CallFailed& failed) {
         result["status"] = "failed";
@@ -65,17 +72,20 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     if (result["status"] == "failed" && session.not_attempted()) result["status"] = "not_attempted";
     if (session.not_attempted() && result["status"] == "passed" && definition.points > 0) {
         result["status"] = "not_attempted"; // a starter that happens to be right isn't an answer
-        result["message"] = "What the starter returns happens to be right here; remove not_attempted() where you have begun.";
+        result["message"] =
+            "What the starter returns happens to be right here; remove not_attempted() where you have begun.";
     }
     result["earned"] = result["status"] == "passed" ? definition.points : 0;
     if (const std::string printed = clean(session.printed()); !printed.empty()) result["printed"] = printed;
-    for (const ShownImage& image : item.images()) result["images"].push_back({{"name", image.name}, {"file", image.file}});
+    for (const ShownImage& image : item.images())
+        result["images"].push_back({{"name", image.name}, {"file", image.file}});
     result["guarded"] = session.guarded();
     return result;
 }
 
 int judge(const Arguments& arguments) {
-    Json report{{"lab", lab_title().id}, {"title", lab_title().title}, {"seed", arguments.seed}, {"items", Json::array()}};
+    Json report{
+        {"lab", lab_title().id}, {"title", lab_title().title}, {"seed", arguments.seed}, {"items", Json::array()}};
     int earned = 0, points = 0;
     for (const ItemDefinition& definition : items()) {
         report["items"].push_back(run_item(arguments, static_cast<int>(report["items"].size()), definition));

@@ -81,7 +81,7 @@ def check_text(files, staged):
             directive, name = match.group(1), match.group(2).strip()
             system = re.fullmatch(r"<[a-z0-9_]+(\.h)?>\s*(//.*|/\*.*)?", name)
             quoted = re.fullmatch(r'"([^"]+)"\s*(//.*|/\*.*)?', name)
-            ours = quoted and ".." not in quoted[1] and (quoted[1] in own or (staged / quoted[1]).exists())
+            ours = quoted and not re.match(r"/|.*\.\.", quoted[1]) and (quoted[1] in own or (staged / quoted[1]).exists())
             if directive != "include" or not (system or ours):
                 raise Refused(f"{file.name} includes {name}, which a submission may not: expected the lab's lab.h, the "
                               "headers that it includes, files of your own, or the standard library")

@@ -16,16 +16,43 @@ namespace duet::grading {
 
 namespace {
 
-/// The system calls of a static program that computes, reads and writes its pipes, and takes memory. execve is among them
-/// since the filter stands before the worker itself is loaded; a program that it could run would have the same filter.
-/// Files can't be opened, so what is not on this list and might matter to a student's code simply fails.
+/// The system calls of a static program that computes, reads and writes its pipes, and takes memory. execve is among
+/// them since the filter stands before the worker itself is loaded; a program that it could run would have the same
+/// filter. Files can't be opened, so what is not on this list and might matter to a student's code simply fails.
 constexpr std::array kAllowed{
-    SYS_read,          SYS_write,       SYS_writev,   SYS_close,          SYS_mmap,        SYS_munmap,
-    SYS_mremap,        SYS_mprotect,    SYS_madvise,  SYS_brk,            SYS_exit,        SYS_exit_group,
-    SYS_futex,         SYS_rt_sigreturn, SYS_rt_sigaction, SYS_rt_sigprocmask, SYS_sigaltstack, SYS_clock_gettime,
-    SYS_gettimeofday,  SYS_getrandom,   SYS_fstat,    SYS_newfstatat,     SYS_lseek,       SYS_execve,
-    SYS_arch_prctl,    SYS_set_tid_address, SYS_set_robust_list, SYS_rseq, SYS_sched_yield, SYS_getpid,
-    SYS_gettid,        SYS_tgkill,      SYS_sched_getaffinity,
+    SYS_read,
+    SYS_write,
+    SYS_writev,
+    SYS_close,
+    SYS_mmap,
+    SYS_munmap,
+    SYS_mremap,
+    SYS_mprotect,
+    SYS_madvise,
+    SYS_brk,
+    SYS_exit,
+    SYS_exit_group,
+    SYS_futex,
+    SYS_rt_sigreturn,
+    SYS_rt_sigaction,
+    SYS_rt_sigprocmask,
+    SYS_sigaltstack,
+    SYS_clock_gettime,
+    SYS_gettimeofday,
+    SYS_getrandom,
+    SYS_fstat,
+    SYS_newfstatat,
+    SYS_lseek,
+    SYS_execve,
+    SYS_arch_prctl,
+    SYS_set_tid_address,
+    SYS_set_robust_list,
+    SYS_rseq,
+    SYS_sched_yield,
+    SYS_getpid,
+    SYS_gettid,
+    SYS_tgkill,
+    SYS_sched_getaffinity,
 };
 
 /// The filter: another architecture is ended at once, calls on the list are let through, all others fail with EPERM.

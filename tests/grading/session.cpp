@@ -79,8 +79,8 @@ void Session::stop() {
 }
 
 std::string Session::exchange(const std::string& request) {
-    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                             std::chrono::duration<double>(limits_.seconds));
+    const auto deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.seconds));
     const auto write_all = [&](const char* bytes, std::size_t size) {
         while (size > 0) {
             wait_for(requests_, POLLOUT, output_, printed_, deadline);
@@ -120,12 +120,18 @@ std::string Session::how_it_ended() {
     if (WIFEXITED(status))
         return message("ended the program (exit code ", WEXITSTATUS(status), "): a function must return its result.");
     switch (const int signal = WTERMSIG(status)) {
-    case SIGSEGV: return "crashed (segmentation fault): an index out of range, a null pointer, or endless recursion?";
-    case SIGABRT: return "aborted: a failed assertion, or an exception where none is allowed.";
-    case SIGFPE: return "crashed (a division of a whole number by zero).";
-    case SIGXCPU: return "used more processor time than is allowed: an endless loop?";
-    case SIGSYS: return "asked the system for something that a submission may not do.";
-    default: return message("was ended by signal ", signal, " (", ::strsignal(signal), ").");
+    case SIGSEGV:
+        return "crashed (segmentation fault): an index out of range, a null pointer, or endless recursion?";
+    case SIGABRT:
+        return "aborted: a failed assertion, or an exception where none is allowed.";
+    case SIGFPE:
+        return "crashed (a division of a whole number by zero).";
+    case SIGXCPU:
+        return "used more processor time than is allowed: an endless loop?";
+    case SIGSYS:
+        return "asked the system for something that a submission may not do.";
+    default:
+        return message("was ended by signal ", signal, " (", ::strsignal(signal), ").");
     }
 }
 
@@ -139,11 +145,13 @@ std::string Session::call(const char* function, const std::string& request) {
         const auto text = in.get<std::string>();
         if (outcome == Outcome::kReturned) return text;
         if (outcome == Outcome::kOutOfMemory)
-            throw CallFailed{message(function, " asked for more memory than the ", limits_.memory_bytes >> 20, " MiB that it may have.")};
+            throw CallFailed{message(function, " asked for more memory than the ", limits_.memory_bytes >> 20,
+                                     " MiB that it may have.")};
         throw CallFailed{message(function, " threw an exception: ", text)};
     } catch (const Silence& silence) {
-        const std::string text = silence.late ? message("gave no answer within ", limits_.seconds, " s: an endless loop, or far too slow.")
-                                              : how_it_ended();
+        const std::string text =
+            silence.late ? message("gave no answer within ", limits_.seconds, " s: an endless loop, or far too slow.")
+                         : how_it_ended();
         stop();
         throw CallFailed{message(function, " ", text)};
     } catch (const WireError& error) {

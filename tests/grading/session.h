@@ -15,7 +15,7 @@ struct CallFailed {
 
 /// What a worker may use.
 struct Limits {
-    double seconds = 2;                            ///< for each call
+    double seconds = 2;                              ///< for each call
     std::size_t memory_bytes = std::size_t{1} << 30; ///< address space; of trusted workers ignored
     bool sandbox = true; ///< off for the repository's own answers, which are linked with its libraries
 };

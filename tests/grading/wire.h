@@ -1,7 +1,7 @@
 // Values as bytes, for calls between the examiner and the process that runs a student's code.
 //
-// Both ends are compiled on one machine, so numbers travel as they lie in memory. The reader trusts nothing: each length
-// is checked against the bytes that are there.
+// Both ends are compiled on one machine, so numbers travel as they lie in memory. The reader trusts nothing: each
+// length is checked against the bytes that are there.
 #pragma once
 
 #include "common/image/image.h"

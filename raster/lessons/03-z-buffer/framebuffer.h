@@ -22,4 +22,12 @@ struct Framebuffer {
     }
 };
 
+/// Smooth edges: a picture that was drawn n times too wide and high, with each block of n × n pixels averaged to one.
+inline ImageRgb shrink(const ImageRgb& large, int n) {
+    ImageRgb small(large.width() / n, large.height() / n);
+    for (int y = 0; y < small.height() * n; ++y)
+        for (int x = 0; x < small.width() * n; ++x) small(x / n, y / n) += large(x, y) / static_cast<float>(n * n);
+    return small;
+}
+
 } // namespace duet::lesson

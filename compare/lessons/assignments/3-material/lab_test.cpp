@@ -191,7 +191,8 @@ LAB_ITEM(20, "samples follow their density (chi-squared)") {
         const double lost = counts[cells.size()] / kSamples;
         item.require(std::abs(1 - integral - lost) < 0.015,
                      message("The density integrates to ", integral, ", so ", 1 - integral,
-                             " of the samples should lie below the surface, but ", lost, " do."));
+                             " of the samples should lie below the surface, but ", lost,
+                             " do. Check that sample and density use the same alpha."));
         expected[cells.size()] = kSamples - inside;
         // Cells that expect few samples are pooled, so that each term of the statistic is nearly normal.
         double chi2 = 0, pooled_count = 0, pooled_expected = 0;

@@ -123,7 +123,7 @@ void require_count(Item& item, const std::vector<Rgb>& values, std::size_t count
 LAB_ITEM(15, "a light sample: direction, distance and density per steradian") {
     const Quad light = ceiling_light(0.5f, 2);
     for (const auto& [p, random] :
-         {std::pair{Vec3{0, 0, 0}, Vec2{0.5f, 0.5f}}, std::pair{Vec3{2, 0, -1}, Vec2{0.25f, 0.75f}}}) {
+         {std::pair{Vec3{2, 0, -1}, Vec2{0.25f, 0.75f}}, std::pair{Vec3{0, 0, 0}, Vec2{0.5f, 0.5f}}}) {
         const Vec3 to = light.corner + light.u * random.x + light.v * random.y - p;
         const double distance = length(Vec3d(to)), cosine = to.y / distance, pdf = distance * distance / cosine;
         const auto found = STUDENT(sample_light)(light, p, random);

@@ -1,0 +1,61 @@
+"""What the course consists of: its rooms, its lessons and their files, read from the folders."""
+import pathlib
+import re
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+ROOMS = {"raytrace": "Ray tracing", "raster": "Rasterization", "compare": "Both ways"}
+
+
+class Lesson:
+    """A folder such as raytrace/lessons/02-sphere, whose id is raytrace-02."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.room = folder.parent.parent.name
+        self.number = folder.name[:2]
+        self.id = f"{self.room}-{self.number}"
+        self.page = folder / "README.md"
+
+    def program_files(self):
+        """The files of the lesson's program: lesson.cpp and the headers that it adds, without those of the lab."""
+        return sorted(path for path in self.folder.iterdir()
+                      if path.suffix in (".cpp", ".h") and not path.name.startswith("lab"))
+
+    def program_lines(self):
+        return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in self.program_files())
+
+    def figures(self):
+        return sorted((self.folder / "figures").glob("*.*"))
+
+    def title(self):
+        """The page's first heading without its number: "A ray meets a sphere"."""
+        if not self.page.exists():
+            return self.folder.name[3:].replace("-", " ")
+        match = re.search(r"^# *(?:\d\d *· *)?(.+)$", self.page.read_text(encoding="utf-8"), re.MULTILINE)
+        return match.group(1).strip() if match else self.folder.name
+
+    def has_lab(self):
+        return (self.folder / "lab.h").exists()
+
+
+def lessons(source=SOURCE):
+    """All lessons that have a program, by room in the order above, then by number."""
+    found = [Lesson(folder) for room in ROOMS for folder in sorted((source / room / "lessons").glob("[0-9][0-9]-*"))]
+    return [lesson for lesson in found if (lesson.folder / "lesson.cpp").exists()]
+
+
+def other_pages(source=SOURCE):
+    """The course's Markdown pages beside those of its lessons."""
+    of_lessons = {lesson.page for lesson in lessons(source)}
+    pages = [*(source / "compare" / "lessons").rglob("*.md"), *(source / "tests" / "grading").rglob("*.md"),
+             *(source / "raster" / "lessons").glob("*.md"), *(source / "raytrace" / "lessons").glob("*.md")]
+    return sorted(page for page in pages if page not in of_lessons)
+
+
+def pick(ids, source=SOURCE):
+    """The lessons with these ids, all without any. Ends the program where one does not exist."""
+    known = lessons(source)
+    for wanted in ids:
+        if wanted not in [lesson.id for lesson in known]:
+            raise SystemExit(f"{wanted}: no such lesson, expected one of {', '.join(x.id for x in known)}")
+    return [lesson for lesson in known if not ids or lesson.id in ids]

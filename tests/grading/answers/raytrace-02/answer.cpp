@@ -1,0 +1,25 @@
+// A ray and a sphere by the quadratic formula.
+#include "raytrace/lessons/02-sphere/lab.h"
+
+namespace duet::lab {
+
+std::optional<float> hit_sphere(Vec3 center, float radius, const Ray& ray) {
+    const Vec3 q = ray.origin - center;
+    const float a = dot(ray.direction, ray.direction);
+    const float b = dot(q, ray.direction);
+    const float c = dot(q, q) - radius * radius;
+    const float discriminant = b * b - a * c;
+    if (discriminant < 0) return std::nullopt;
+    const float root = std::sqrt(discriminant);
+    const float near = (-b - root) / a;
+    const float far = (-b + root) / a;
+    if (near > ray.t_min && near < ray.t_max) return near;
+    if (far > ray.t_min && far < ray.t_max) return far;
+    return std::nullopt;
+}
+
+Vec3 sphere_normal(Vec3 center, float radius, Vec3 p) { return (p - center) / radius; }
+
+Rgb normal_color(Vec3 n) { return {(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2}; }
+
+} // namespace duet::lab
