@@ -3,7 +3,6 @@
 #include "common/image/plot.h"
 #include "common/image/srgb.h"
 #include "raytrace/lessons/02-sphere/sky.h"
-#include "raytrace/lessons/03-surfaces/surfaces.h"
 #include "raytrace/lessons/05-diffuse/diffuse.h"
 
 #include <cstdio>
@@ -33,14 +32,6 @@ struct Scene {
 
 // How the ray that goes on keeps away from the surface that it leaves.
 enum class Leave { kAtOnce, kAfterEpsilon, kBeyondError };
-
-// The point of a hit, computed again from the center: then it is off by few roundings, each at most 2^-24 of its
-// number. It is moved out of the surface, to the side of the ray, by a bound of that error.
-Vec3 beyond_error(const Sphere& sphere, const Hit& hit) {
-    const Vec3 outward = normalize(hit.p - sphere.center);
-    const float bound = 8 * 0x1p-24f * (max_component(abs(sphere.center)) + sphere.radius);
-    return sphere.center + outward * (sphere.radius + (hit.front ? bound : -bound));
-}
 
 // The light that comes along a ray: that of the sky, dimmed by each surface it came by.
 Rgb matte_color(const Scene& scene, Ray ray, Leave leave, Random& random) {
