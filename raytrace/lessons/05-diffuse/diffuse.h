@@ -1,7 +1,7 @@
-// Random directions off a matte surface.
+// Random directions off a matte surface, and points from which they leave it for good.
 #pragma once
 
-#include "common/vec/vec.h"
+#include "raytrace/lessons/03-surfaces/surfaces.h"
 #include "raytrace/lessons/04-antialiasing/sampling.h"
 
 namespace duet::lesson {
@@ -22,6 +22,14 @@ inline Vec3 random_unit_vector(Random& random) {
 inline Vec3 random_diffuse_direction(Vec3 n, Random& random) {
     const Vec3 direction = n + random_unit_vector(random);
     return length_squared(direction) > 1e-12f ? direction : n; // the random vector may be almost exactly -n
+}
+
+/// The point of a hit, computed again from the center: then it is off by few roundings, each at most 2^-24 of its
+/// number. It is moved out of the surface, to the side from which the ray came, by a bound of that error.
+inline Vec3 beyond_error(const Sphere& sphere, const Hit& hit) {
+    const Vec3 outward = normalize(hit.p - sphere.center);
+    const float bound = 8 * 0x1p-24f * (max_component(abs(sphere.center)) + sphere.radius);
+    return sphere.center + outward * (sphere.radius + (hit.front ? bound : -bound));
 }
 
 } // namespace duet::lesson

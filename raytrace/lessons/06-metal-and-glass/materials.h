@@ -1,7 +1,6 @@
 // Matte, metal and glass surfaces, and the color of a path that bounces between them.
 #pragma once
 
-#include "common/image/rgb.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/03-surfaces/surfaces.h"
 #include "raytrace/lessons/05-diffuse/diffuse.h"
@@ -9,12 +8,14 @@
 namespace duet::lesson {
 
 struct Material {
-    enum class Kind { kMatte, kMetal, kGlass };
-    Kind kind = Kind::kMatte;
-    Rgb albedo{1, 1, 1}; ///< the fraction of light that is reflected, 0 to 1 (matte and metal)
+    enum class Kind { kMatte, kMetal, kGlass } kind = Kind::kMatte;
+    Rgb albedo{1, 1, 1}; ///< the fraction of light that goes on, 0 to 1; the rest is absorbed
     float fuzz = 0;      ///< the radius of the blur around the mirror direction, 0 to 1 (metal)
     float ior = 1.5f;    ///< the index of refraction of the inside relative to the outside (glass)
 };
+inline Material matte(Rgb albedo) { return {Material::Kind::kMatte, albedo}; }
+inline Material metal(Rgb albedo, float fuzz = 0) { return {Material::Kind::kMetal, albedo, fuzz}; }
+inline Material glass(float ior) { return {Material::Kind::kGlass, Rgb(1), 0, ior}; }
 
 /// The direction d mirrored at a surface of unit normal n. Unlike duet::reflect, d points toward the surface.
 inline Vec3 mirror(Vec3 d, Vec3 n) { return d - n * (2 * dot(d, n)); }
@@ -28,8 +29,7 @@ inline std::optional<Vec3> refract(Vec3 d, Vec3 n, float ratio) {
     return d * ratio + n * (ratio * cosine - std::sqrt(1 - sine2));
 }
 
-/// Schlick's approximation of the fraction of light that glass reflects; cosine is that of the angle in the thinner
-/// medium. (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15)
+/// The fraction of light that glass reflects; the cosine is taken in the thinner medium. (Schlick 1994, eq. 15)
 inline float schlick(float cosine, float ior) {
     const float r0 = (1 - ior) / (1 + ior);
     return r0 * r0 + (1 - r0 * r0) * std::pow(1 - cosine, 5.0f);
@@ -44,22 +44,22 @@ struct Scattered {
 /// Where light that leaves `hit` against the direction of `ray` may have come from; nothing where it is absorbed.
 inline std::optional<Scattered> scatter(const Material& material, const Ray& ray, const Hit& hit, Random& random) {
     const Vec3 d = normalize(ray.direction);
-    const auto leave = [&](Vec3 direction, Rgb weight) { return Scattered{{hit.p, direction, 1e-3f}, weight}; };
-    if (material.kind == Material::Kind::kMatte)
-        return leave(random_diffuse_direction(hit.n, random), material.albedo);
+    Vec3 direction = mirror(d, hit.n);
+    if (material.kind == Material::Kind::kMatte) direction = random_diffuse_direction(hit.n, random);
     if (material.kind == Material::Kind::kMetal) {
-        const Vec3 direction = mirror(d, hit.n) + random_unit_vector(random) * material.fuzz;
+        direction += random_unit_vector(random) * material.fuzz;
         if (dot(direction, hit.n) <= 0) return std::nullopt; // the blur points into the metal
-        return leave(direction, material.albedo);
     }
-    const auto refracted = refract(d, hit.n, hit.front ? 1 / material.ior : material.ior);
-    if (!refracted) return leave(mirror(d, hit.n), Rgb(1)); // total reflection
-    const float cosine = hit.front ? -dot(d, hit.n) : -dot(*refracted, hit.n);
-    return leave(random.next() < schlick(cosine, material.ior) ? mirror(d, hit.n) : *refracted, Rgb(1));
+    if (material.kind == Material::Kind::kGlass)
+        if (const auto refracted = refract(d, hit.n, hit.front ? 1 / material.ior : material.ior)) {
+            const bool in_thinner = hit.front == (material.ior > 1); // whether the ray comes through the thinner medium
+            const float cosine = -dot(in_thinner ? d : *refracted, hit.n);
+            if (random.next() >= schlick(cosine, material.ior)) direction = *refracted;
+        }
+    return Scattered{{hit.p, direction, 1e-3f}, material.albedo};
 }
 
-/// The light that comes along a ray under the sky, after at most `bounces` bounces. `closest(ray)` finds the nearest
-/// hit, whose index also names its material.
+/// The light that a ray under the sky brings. closest(ray) finds the nearest hit, whose index names its material.
 template <typename Closest>
 Rgb path_color(const Closest& closest, const std::vector<Material>& materials, Ray ray, int bounces, Random& random) {
     Rgb weight(1);
@@ -68,8 +68,7 @@ Rgb path_color(const Closest& closest, const std::vector<Material>& materials, R
         if (!hit) return weight * sky_color(ray.direction);
         const auto scattered = scatter(materials[hit->index], ray, *hit, random);
         if (!scattered) return Rgb(0);
-        weight *= scattered->weight;
-        ray = scattered->ray;
+        weight *= scattered->weight, ray = scattered->ray;
     }
     return Rgb(0); // light that bounced more often is left out
 }
