@@ -30,8 +30,8 @@ inline Mat4 perspective(float fov, float aspect, float near, float far) {
 /// Clip space to the picture: x and y in pixels from the upper left corner, z the depth, and in w what the division
 /// divided by. w must be positive (the clipping lesson sees to that).
 inline Vec4 to_picture(Vec4 clip, int width, int height) {
-    const float x = clip.x / clip.w, y = clip.y / clip.w;
-    return {(x + 1) / 2 * static_cast<float>(width), (1 - y) / 2 * static_cast<float>(height), clip.z / clip.w, clip.w};
+    const float x = (1 + clip.x / clip.w) / 2, y = (1 - clip.y / clip.w) / 2;
+    return {x * static_cast<float>(width), y * static_cast<float>(height), clip.z / clip.w, clip.w};
 }
 
 } // namespace duet::lesson

@@ -16,6 +16,16 @@ struct Vertex {
 };
 using Triangle = std::array<Vertex, 3>;
 
+/// The triangles of a mesh that is in world space already.
+inline std::vector<Triangle> in_clip_space(const Mesh& world, const Mat4& clip_from_world) {
+    std::vector<Triangle> triangles(world.size() / 3);
+    for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
+        const auto& [p, n, uv] = world[i];
+        triangles[i / 3][i % 3] = {clip_from_world * Vec4(p, 1), p, n, uv};
+    }
+    return triangles;
+}
+
 /// The vertex at fraction t of the way from a to b. All is linear in clip space, so one t serves every attribute.
 inline Vertex between(const Vertex& a, const Vertex& b, float t) {
     const float s = 1 - t;
