@@ -6,7 +6,7 @@ namespace duet::lab {
 std::optional<float> hit_sphere(Vec3 center, float radius, const Ray& ray) {
     not_attempted(); // Remove this line when you start.
     (void)center, (void)radius, (void)ray;
-    // Compute a, b and k of the quadratic, then the discriminant. What does its sign say?
+    // Compute a, b and the third coefficient of the quadratic, then the discriminant. What does its sign say?
     return std::nullopt;
 }
 

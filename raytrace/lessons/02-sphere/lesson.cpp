@@ -1,7 +1,6 @@
 // Lesson 02: a ray meets a sphere. Writes a sphere colored by its normal, under a blue-white sky.
 #include "common/image/image_file.h"
-#include "common/image/plot.h"
-#include "raytrace/lessons/02-sphere/eye.h"
+#include "common/image/srgb.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/02-sphere/sphere.h"
 
@@ -10,62 +9,80 @@
 using namespace duet;
 using namespace duet::lesson;
 
+constexpr int kWidth = 480, kHeight = 270;
+
+/// The ray from the eye at the origin through a point of the picture, (x, y) in pixels from the upper left corner. The
+/// picture is a window of height 2 at distance 1, so a direction has x and y in these units, and z = -1.
+Ray eye_ray(float x, float y) {
+    const float pixel = 2.0f / kHeight;
+    return {{0, 0, 0}, {(x - 0.5f * kWidth) * pixel, (0.5f * kHeight - y) * pixel, -1}};
+}
+
+/// One color for each pixel: that of the ray through its center.
+template <typename Color> ImageRgb draw(const Color& color) {
+    ImageRgb image(kWidth, kHeight);
+    for (int row = 0; row < kHeight; ++row)
+        for (int column = 0; column < kWidth; ++column)
+            image(column, row) = color(eye_ray(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f));
+    return image;
+}
+
+/// A unit normal as a color: each coordinate from [-1, 1] to [0, 1]. These are the numbers that the file shall hold, so
+/// they are decoded to linear light, which write_image expects.
+Rgb normal_color(Vec3 n) {
+    const auto channel = [](float coordinate) { return srgb_decode(0.5f * (coordinate + 1)); };
+    return {channel(n.x), channel(n.y), channel(n.z)};
+}
+
 const Sphere kSphere{{0, 0, -1}, 0.5f};
 
 /// The first picture: red where the ray meets the sphere, sky where it doesn't.
-Rgb disk_color(const Ray& ray) { return hit_sphere(kSphere, ray) ? Rgb(0.7f, 0.06f, 0.05f) : sky_color(ray.direction); }
+Rgb disk_color(const Ray& ray) { return hit_sphere(kSphere, ray) ? Rgb(0.8f, 0.1f, 0.1f) : sky_color(ray.direction); }
 
-/// The lesson's picture: the normal at the point that the ray meets. Any other divisor than the radius is a mistake.
-Rgb sphere_color(const Ray& ray, float divisor) {
-    const auto t = hit_sphere(kSphere, ray);
-    return t ? normal_color((ray.at(*t) - kSphere.center) / divisor) : sky_color(ray.direction);
-}
-
-/// A sphere of colored fog: the longer the ray's way through it, the less of the sky is left.
-Rgb fog_color(Ray ray) {
-    const Rgb sky = sky_color(ray.direction);
-    const auto enters = hit_sphere(kSphere, ray);
-    if (!enters) return sky;
-    ray.t_min = *enters; // only points beyond the first count now
-    const auto leaves = hit_sphere(kSphere, ray);
-    const float way = leaves ? (*leaves - *enters) * length(ray.direction) : 0;
-    return lerp(sky, Rgb(0.85f, 0.25f, 0.03f), way / (2 * kSphere.radius));
-}
-
-/// A mistake: t is taken for the distance whatever the length of the direction. It is on the right half of this
-/// picture; on the left the direction is normalized first. The rings are 0.04 apart, from 0.5 on.
-Rgb ring_color(Ray ray) {
-    if (ray.direction.x < 0) ray.direction = normalize(ray.direction);
+/// The lesson's picture: the normal at the point that the ray meets.
+Rgb sphere_color(const Ray& ray) {
     const auto t = hit_sphere(kSphere, ray);
     if (!t) return sky_color(ray.direction);
-    const float rings = (*t - 0.5f) / 0.04f;
-    return static_cast<int>(rings) % 2 == 0 ? Rgb(0.02f, 0.08f, 0.25f) : Rgb(0.9f, 0.6f, 0.15f);
+    return normal_color((ray.at(*t) - kSphere.center) / kSphere.radius);
 }
 
-/// The quadratic of four rays along -z, at these heights above the center: |p(t) - center|² - radius² as t grows. It is
-/// zero where the ray meets the sphere.
-Plot quadratics() {
-    Plot plot{.title = "Four rays, from the center to past the sphere", .x_label = "t", .y_label = "|p(t) - c|² - r²"};
-    plot.series.push_back({"zero: the surface", {{0, 0}, {2, 0}}});
-    for (const auto& [name, height] :
-         {std::pair{"missed", 0.7f}, {"tangent", 0.5f}, {"off axis", 0.3f}, {"center", 0.0f}}) {
-        const Ray ray{{0, height, 0}, {0, 0, -1}};
-        Series series{name, {}};
-        for (float t = 0; t < 2.01f; t += 0.05f)
-            series.points.push_back({t, length_squared(ray.at(t) - kSphere.center) - sqr(kSphere.radius)});
-        plot.series.push_back(series);
-    }
-    return plot;
+/// The classic mistake: the vector from the center to the point is used as it is. It is as long as the radius.
+Rgb unnormalized_color(const Ray& ray) {
+    const auto t = hit_sphere(kSphere, ray);
+    return t ? normal_color(ray.at(*t) - kSphere.center) : sky_color(ray.direction);
+}
+
+/// Another: t is taken for the distance, though the ray's direction is longer than 1 off the middle of the picture.
+/// Shown is the distance, black at 0.5 and white at 0.87, where the rim of the sphere is.
+Rgb depth_color(const Ray& ray, bool unit_length) {
+    Ray used = ray;
+    if (unit_length) used.direction = normalize(ray.direction);
+    const auto t = hit_sphere(kSphere, used);
+    return t ? Rgb(clamp((*t - 0.5f) / 0.37f, 0.0f, 1.0f)) : Rgb(0.1f, 0.1f, 0.3f);
+}
+
+/// How many points of the sphere lie on the ray, for all t: the sign of the discriminant says it.
+Rgb roots_color(Ray ray) {
+    ray.t_min = -kInfinity;
+    const auto first = hit_sphere(kSphere, ray);
+    if (!first) return {0.1f, 0.1f, 0.3f};
+    ray.t_min = *first; // what is left of the ray has the second point
+    const auto second = hit_sphere(kSphere, ray);
+    const float chord = second ? (*second - *first) * length(ray.direction) : 0; // the way through the sphere
+    return lerp(Rgb(0.9f, 0.5f, 0.1f), Rgb(1, 1, 0.8f), chord / (2 * kSphere.radius));
 }
 
 int main() {
+    write_image("disk.png", draw(disk_color));
+    write_image("evidence.png", draw(sphere_color));
+    write_image("chord.png", draw(roots_color));
+    write_image("unnormalized.png", draw(unnormalized_color));
+    write_image("depth.png", draw([](const Ray& ray) { return depth_color(ray, true); }));
+    write_image("depth-wrong.png", draw([](const Ray& ray) { return depth_color(ray, false); }));
     int hits = 0;
-    const auto write = [](const char* name, const auto& color) { write_image(name, draw(480, 270, 1.5f, color)); };
-    write("disk.png", [&](const Ray& ray) { return hits += hit_sphere(kSphere, ray).has_value(), disk_color(ray); });
-    write("evidence.png", [](const Ray& ray) { return sphere_color(ray, kSphere.radius); });
-    write("unnormalized.png", [](const Ray& ray) { return sphere_color(ray, 1); });
-    write("fog.png", fog_color);
-    write("rings.png", ring_color);
-    write_plot("quadratics.svg", quadratics());
-    std::printf("%d of %d rays meet the sphere.\n", hits, 480 * 270);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            hits +=
+                hit_sphere(kSphere, eye_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).has_value();
+    std::printf("%d of %d rays meet the sphere\n", hits, kWidth * kHeight);
 }

@@ -5,9 +5,9 @@
 
 namespace duet::lesson {
 
-/// What a ray sees that hits nothing: white straight down, blue straight up. The direction may have any length.
+/// White at the horizon and below, blue overhead: what a ray sees that hits nothing. The direction may have any length.
 inline Rgb sky_color(Vec3 direction) {
-    const float height = 0.5f * (normalize(direction).y + 1); // from 0, straight down, to 1, straight up
+    const float height = 0.5f * (normalize(direction).y + 1);
     return lerp(Rgb(1, 1, 1), Rgb(0.5f, 0.7f, 1), height);
 }
 

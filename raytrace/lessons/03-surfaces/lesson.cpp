@@ -1,20 +1,28 @@
 // Lesson 03: the nearest of many surfaces. Writes spheres on a large sphere that serves as ground.
 #include "common/image/image_file.h"
-#include "raytrace/lessons/03-surfaces/scene.h"
+#include "common/image/srgb.h"
+#include "raytrace/lessons/02-sphere/sky.h"
+#include "raytrace/lessons/03-surfaces/surfaces.h"
 
+#include <array>
 #include <cstdio>
 
 using namespace duet;
 using namespace duet::lesson;
 
-/// Which sphere of the list was hit: a hue for each index.
-Rgb index_color(std::size_t index) {
-    const auto wave = [&](float shift) { return 0.5f + 0.45f * std::cos(2.4f * static_cast<float>(index) + shift); };
-    return index == 0 ? Rgb(0.25f) : Rgb(sqr(wave(0)), sqr(wave(2.1f)), sqr(wave(4.2f)));
-}
+constexpr int kWidth = 480, kHeight = 270;
 
-/// How far away: white at 2 m and nearer, half as bright for every 2 m more.
-Rgb depth_color(const Ray& ray, float t) { return Rgb(min(std::exp2(1 - t * length(ray.direction) / 2), 1.0f)); }
+/// The ground is a sphere of radius 100: so large that it looks flat.
+const std::vector<Sphere> kSpheres{
+    {{0, 0, -1.5f}, 0.5f},        {{-1.1f, -0.1f, -1.9f}, 0.4f}, {{1.0f, -0.2f, -1.6f}, 0.3f},
+    {{0.35f, -0.35f, -1}, 0.15f}, {{-0.45f, -0.38f, -1}, 0.12f}, {{0, -100.5f, -1.5f}, 100},
+};
+
+/// The color of a normal, as in lesson 02.
+Rgb normal_color(Vec3 n) {
+    const auto channel = [](float coordinate) { return srgb_decode(0.5f * (coordinate + 1)); };
+    return {channel(n.x), channel(n.y), channel(n.z)};
+}
 
 /// The mistake: each hit replaces the one before, nearer or not, so the last sphere of the list covers all others.
 std::optional<Hit> last_hit(const std::vector<Sphere>& spheres, const Ray& ray) {
@@ -25,34 +33,39 @@ std::optional<Hit> last_hit(const std::vector<Sphere>& spheres, const Ray& ray) 
     return last;
 }
 
-/// The view from inside the large sphere. With `turned` the normals are on the side from which the ray came, as Hit has
-/// them; else they point out of the sphere.
-Rgb inside_color(const std::vector<Sphere>& spheres, Ray ray, bool turned) {
-    ray.origin = spheres[1].center;
-    const Hit hit = *closest_hit(spheres, ray); // no ray leaves the sphere without a hit
-    return normal_color(turned || hit.front ? hit.n : -hit.n);
+/// Draws the picture that `find` and `shade` make together: a ray through the center of each pixel of a window of
+/// height 2 at distance 1, as in lesson 02.
+template <typename Find, typename Shade> ImageRgb draw(Vec3 eye, const Find& find, const Shade& shade) {
+    ImageRgb image(kWidth, kHeight);
+    const float pixel = 2.0f / kHeight;
+    for (int row = 0; row < kHeight; ++row)
+        for (int column = 0; column < kWidth; ++column) {
+            const float x = static_cast<float>(column) + 0.5f, y = static_cast<float>(row) + 0.5f;
+            const Ray ray{eye, {(x - 0.5f * kWidth) * pixel, (0.5f * kHeight - y) * pixel, -1}};
+            const std::optional<Hit> hit = find(kSpheres, ray);
+            image(column, row) = hit ? shade(*hit) : sky_color(ray.direction);
+        }
+    return image;
 }
 
+/// Which sphere was hit, as one of six colors.
+Rgb index_color(const Hit& hit) {
+    constexpr std::array<Rgb, 6> kColors{Rgb(0.8f, 0.1f, 0.1f), Rgb(0.1f, 0.4f, 0.8f), Rgb(0.9f, 0.6f, 0.1f),
+                                         Rgb(0.1f, 0.6f, 0.3f), Rgb(0.5f, 0.2f, 0.6f), Rgb(0.6f, 0.6f, 0.55f)};
+    return kColors[hit.index];
+}
+
+/// From inside (the eye is in the middle sphere): with the normal turned to the ray, and as it points outward.
+Rgb turned(const Hit& hit) { return normal_color(hit.n); }
+Rgb outward(const Hit& hit) { return normal_color(hit.front ? hit.n : -hit.n); }
+
 int main() {
-    const std::vector<Sphere> spheres = sphere_scene();
-    const auto write = [](const char* name, const auto& color) { write_image(name, draw(480, 270, 1, color)); };
-    write("evidence.png", [&](const Ray& ray) { return scene_color(spheres, ray); });
-    write("index.png", [&](const Ray& ray) {
-        const auto hit = closest_hit(spheres, ray);
-        return hit ? index_color(hit->index) : sky_color(ray.direction);
-    });
-    write("depth.png", [&](const Ray& ray) {
-        const auto hit = closest_hit(spheres, ray);
-        return hit ? depth_color(ray, hit->t) : Rgb(0);
-    });
-    const std::vector<Sphere> reversed(spheres.rbegin(), spheres.rend()); // the ground is the last one now
-    write("last.png", [&](const Ray& ray) {
-        const auto hit = last_hit(reversed, ray);
-        return hit ? index_color(spheres.size() - 1 - hit->index) : sky_color(ray.direction);
-    });
-    write("inside.png", [&](const Ray& ray) { return inside_color(spheres, ray, ray.direction.x < 0); });
-    const std::vector<Sphere> huge = sphere_scene(1e7f);
-    write("huge.png", [&](const Ray& ray) { return scene_color(huge, ray); });
-    std::printf("%d rays, each tested against %zu spheres: %zu tests\n", 480 * 270, spheres.size(),
-                spheres.size() * 480 * 270);
+    const Vec3 eye{0, 0, 0}, inside{0, 0, -1.3f};
+    write_image("evidence.png", draw(eye, closest_hit, turned));
+    write_image("index.png", draw(eye, closest_hit, index_color));
+    write_image("last.png", draw(eye, last_hit, turned));
+    write_image("inside.png", draw(inside, closest_hit, turned));
+    write_image("inside-outward.png", draw(inside, closest_hit, outward));
+    std::printf("%d rays, each tested against %zu spheres: %zu tests\n", kWidth * kHeight, kSpheres.size(),
+                kSpheres.size() * kWidth * kHeight);
 }

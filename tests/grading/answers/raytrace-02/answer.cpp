@@ -7,8 +7,8 @@ std::optional<float> hit_sphere(Vec3 center, float radius, const Ray& ray) {
     const Vec3 q = ray.origin - center;
     const float a = dot(ray.direction, ray.direction);
     const float b = dot(q, ray.direction);
-    const float k = dot(q, q) - radius * radius;
-    const float discriminant = b * b - a * k;
+    const float c = dot(q, q) - radius * radius;
+    const float discriminant = b * b - a * c;
     if (discriminant < 0) return std::nullopt;
     const float root = std::sqrt(discriminant);
     const float near = (-b - root) / a;
