@@ -6,5 +6,5 @@ compiler=$1
 cd "$2"
 find common raster raytrace compare models tests -name '*.h' -not -path '*/fuzz/*' | sort |
     xargs -P 2 -I{} sh -c '"$1" -std=c++20 -fsyntax-only -I. -isystem /usr/include/stb -DDUET_SOURCE_DIR=\"\" \
-        -DDUET_BINARY_DIR=\"\" -DDUET_VERSION=\"\" -x c++ -include "$2" /dev/null ||
+        -DDUET_BINARY_DIR=\"\" -DDUET_VERSION=\"\" -DDUET_MODELS=\"\" -x c++ -include "$2" /dev/null ||
         { echo "$2 does not compile alone"; exit 255; }' sh "$compiler" {}

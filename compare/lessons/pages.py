@@ -4,6 +4,7 @@ Every check that a page can fail is here: quotes equal their sources, the whole 
 sections are there, figures and links exist, commands name what exists, formulas parse, words are spelled right.
 """
 import argparse
+import os
 import pathlib
 import re
 import sys
@@ -141,18 +142,22 @@ def main():
     parser = argparse.ArgumentParser(description="Checks the pages of the course's lessons.")
     parser.add_argument("ids", nargs="*", metavar="ID", help="lessons such as raytrace-02 (default: all, and the other pages)")
     parser.add_argument("--write", action="store_true", help="fill in the quotes first")
-    parser.add_argument("--strict", action="store_true", help="fail where a check cannot be made, rather than say so")
+    parser.add_argument("--strict", action="store_true", default=os.environ.get("CI") == "1",
+                        help="fail where a check cannot be made, rather than say so (default: if CI=1 is set)")
     parser.add_argument("--programs", type=pathlib.Path, default=course.SOURCE / "build" / "release" / "bin",
                         metavar="FOLDER", help="where the built programs are, to check options (default: build/release/bin)")
+    parser.add_argument("--source", type=pathlib.Path, default=course.SOURCE, metavar="FOLDER",
+                        help="the repository whose pages are checked (default: that of this script)")
     options = parser.parse_args()
-    lessons = course.pick(options.ids)
+    source = options.source.resolve()
+    lessons = course.pick(options.ids, source)
     faults = [fault for lesson in lessons for fault in lesson_faults(lesson, options.write)]
-    pages = [lesson.page for lesson in lessons] + ([] if options.ids else course.other_pages())
-    more, skipped = text_faults(pages, course.SOURCE, options.programs)
+    pages = [lesson.page for lesson in lessons] + ([] if options.ids else course.other_pages(source))
+    more, skipped = text_faults(pages, source, options.programs)
     faults = sorted(faults + more, key=lambda fault: (str(fault[0]), fault[1]))
     print(table(lessons))
     for path, line, what in faults:
-        print(f"{path.relative_to(course.SOURCE)}:{line}: {what}")
+        print(f"{path.relative_to(source)}:{line}: {what}")
     for missing in skipped:
         print(("failed: " if options.strict else "skipped: ") + missing)
     sys.exit(1 if faults or (skipped and options.strict) else 0)

@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 
+import course
+
 
 def main():
     lesson_id, folder, program, out = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3], pathlib.Path(sys.argv[4])
@@ -21,15 +23,9 @@ def main():
         sys.exit(f"lesson {lesson_id}: its program {program} ended with exit code {status}; expected 0")
     if not any((out / f"evidence{ending}").exists() for ending in (".png", ".svg")):
         sys.exit(f"lesson {lesson_id}: its program wrote no evidence.png (or .svg) into {out}")
-    lines = sum(len(path.read_text().splitlines()) for path in program_files(folder))
+    lines = course.Lesson(folder).program_lines()
     (out / "lesson.json").write_text(json.dumps({"id": lesson_id, "folder": str(folder), "seconds": round(seconds, 2),
                                                  "lines": lines}))
-
-
-def program_files(folder):
-    """The files of a lesson's program: lesson.cpp and the headers that it adds, without those of the lab."""
-    return sorted(path for path in folder.iterdir()
-                  if path.suffix in (".cpp", ".h") and not path.name.startswith("lab"))
 
 
 if __name__ == "__main__":

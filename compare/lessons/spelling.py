@@ -19,7 +19,8 @@ WORD = re.compile(r"[^\W\d_]+(?:['’][^\W\d_]+)*")
 def own_words():
     """The project's words: one a line, # begins a comment."""
     lines = (line.split("#")[0].strip() for line in WORDS.read_text(encoding="utf-8").splitlines())
-    return sorted({line for line in lines if line})
+    words = {line for line in lines if line}
+    return sorted(words | {word + "'s" for word in words})
 
 
 def words_of(text):

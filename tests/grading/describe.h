@@ -6,6 +6,7 @@
 #include "common/image/rgb.h"
 #include "common/vec/matrix.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -63,16 +64,24 @@ template <typename T> std::string describe(const T& value) {
     }
 }
 
-/// As many components, and each within the tolerance; two that are not numbers, or equally infinite, count as near.
+/// Two that are not numbers, or equally infinite, count as near.
+inline bool is_near(double a, double b, double tolerance) {
+    return a == b || (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= tolerance;
+}
+/// As many components, and each within the tolerance.
 template <typename T> bool is_near(const T& a, const T& b, double tolerance) {
     std::vector<double> left, right;
     append_components(a, left), append_components(b, right);
-    if (left.size() != right.size()) return false;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-        const bool same = left[i] == right[i] || (std::isnan(left[i]) && std::isnan(right[i]));
-        if (!same && !(std::abs(left[i] - right[i]) <= tolerance)) return false;
-    }
-    return true;
+    return std::equal(left.begin(), left.end(), right.begin(), right.end(),
+                      [tolerance](double x, double y) { return is_near(x, y, tolerance); });
+}
+
+/// What can be said of the difference when no typical mistake explains it; may be empty.
+std::string explain_components(const std::vector<double>& found, const std::vector<double>& expected, double tolerance);
+template <typename T> std::string explain_difference(const T& found, const T& expected, double tolerance) {
+    std::vector<double> left, right;
+    append_components(found, left), append_components(expected, right);
+    return explain_components(left, right, tolerance);
 }
 
 } // namespace duet::grading

@@ -1,5 +1,12 @@
 #!/usr/bin/env python3
-"""Grades a lab of the course: compiles a submission, examines it in a process of its own, prints points per item."""
+"""Grades a lab of the course: compiles a submission, examines it in a process of its own, prints points per item.
+
+examples:
+  grade raytrace-05 lab.cpp
+  grade raytrace-05 lab.cpp --page report --seed 7
+  grade raytrace-05 --class submissions -o results
+  grade --all
+"""
 import argparse
 import json
 import pathlib
@@ -8,81 +15,60 @@ import subprocess
 import sys
 import tempfile
 
+import compiling
 import labs
 import page
+import report
 
 DEFAULT_BUILD = labs.SOURCE / "build" / "release"
-JUDGE_SECONDS = 600
+JUDGE_SECONDS = 1800
 
 
 def judge_of(lab_id, build):
     """The examiner's program of a lab; it is built where it is missing."""
     program = build / "lessons" / "bin" / f"judge-{lab_id}"
     if not program.exists():
+        if not (labs.folder_of(lab_id) / "lab_test.cpp").exists():
+            raise labs.Unusable(f"{lab_id} has no lab_test.cpp here: your instructor grades it")
         if not (build / "build.ninja").exists():
             raise labs.Unusable(f"{build} is no build folder yet; run: cmake --preset release")
-        subprocess.run(["cmake", "--build", str(build), "--target", f"judge-{lab_id}"], check=True, stdout=sys.stderr)
+        command = ["cmake", "--build", str(build), "--target", f"judge-{lab_id}"]
+        if subprocess.run(command, stdout=sys.stderr, check=False).returncode != 0:
+            raise labs.Unusable(f"the examiner of {lab_id} could not be built: {' '.join(command)}")
     return program
 
 
-def not_compiled(lab_id, program, text):
-    """The result of a submission that is no program: every item failed. The titles come from a run of the examiner."""
-    with tempfile.TemporaryDirectory() as out:
-        subprocess.run([program, "--worker", "/bin/false", "--out", out], check=True, timeout=JUDGE_SECONDS)
-        result = json.loads(pathlib.Path(out, "result.json").read_text())
+def examine(program, out, *arguments):
+    """Runs the examiner; its result, and the pictures that it names, are in the folder `out`."""
+    subprocess.run([program, "--out", out, *arguments], check=True, timeout=JUDGE_SECONDS)
+    return json.loads((out / "result.json").read_text(encoding="utf-8"))
+
+
+def not_compiled(program, out, reason):
+    """The result of a submission that is no program: every item failed. The titles come from the examiner."""
+    result = examine(program, out)
     for item in result["items"]:
-        for key in ("expected", "found", "map", "printed", "images"):
-            item.pop(key, None)
-        item.update(status="failed", earned=0, message="Not examined: the submission isn't a program.")
-    result.update(earned=0, error=text, lab=lab_id)
-    return result
+        item["message"] = "Not examined: the submission could not be compiled."
+    return {**result, "error": reason}
 
 
 def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, trusted=False):
     """The result of one submission as a dictionary (tests/grading/README.md lists its keys)."""
-    labs.folder_of(lab_id)
     program = judge_of(lab_id, build)
+    path = pathlib.Path(path)
     with tempfile.TemporaryDirectory(prefix="duet-grade-") as name:
         out = pathlib.Path(name)
         try:
-            worker = labs.build_worker(lab_id, pathlib.Path(path), build, out, trusted)
-            command = [program, "--worker", worker, "--out", out, "--seed", str(seed)] + (["--trusted"] if trusted else [])
-            subprocess.run(command, check=True, timeout=JUDGE_SECONDS)
-            result = json.loads((out / "result.json").read_text())
-        except labs.Refused as refused:
-            result = not_compiled(lab_id, program, str(refused))
+            make = compiling.build_trusted_worker if trusted else compiling.build_worker
+            worker = make(lab_id, path, build, out)
+            result = examine(program, out, "--worker", worker, "--seed", str(seed), *(["--trusted"] if trusted else []))
+        except compiling.Refused as refused:
+            result = not_compiled(program, out, str(refused))
         result["submission"] = str(path)
+        result = report.printable(result)
         if page_folder is not None:
             page.write(result, out, pathlib.Path(page_folder))
     return result
-
-
-def indent(text):
-    return "\n".join("      " + line for line in text.rstrip("\n").split("\n"))
-
-
-def print_result(result):
-    """Points per item, and for those that were lost: what was expected, what was found, and why that may be."""
-    print(f"{result['lab']} · {result['title']}\n")
-    if "error" in result:
-        print(indent(result["error"]) + "\n")
-    marks = {"passed": "ok", "failed": "WRONG", "not_attempted": "not attempted"}
-    for item in result["items"]:
-        if item["points"] == 0 and item["status"] == "passed":
-            continue
-        print(f"{item['earned']:4d} / {item['points']:<3d} {item['title']}: {marks[item['status']]}")
-        if "error" in result:
-            continue
-        if item["status"] != "passed" and "message" in item:
-            print(indent(item["message"]))
-        for key in ("expected", "found"):
-            if key in item:
-                print(indent(f"{key + ':':10}{item[key]}"))
-        if "map" in item:
-            print(indent(item["map"]))
-        if item.get("printed"):
-            print(indent("Your program printed:\n" + item["printed"][:500]))
-    print(f"\n{result['earned']} of {result['points']} points")
 
 
 def start(lab_id):
@@ -95,34 +81,77 @@ def start(lab_id):
     return path
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, epilog="example: grade raytrace-05 lab.cpp --page report")
-    parser.add_argument("lab", help="the lab's id, such as raytrace-05 or assignment-2")
-    parser.add_argument("submission", nargs="?", help="a .cpp file, or a folder of .cpp and .h files")
+def grade_one(arguments):
+    """Grades one submission and writes what was asked for."""
+    path = start(arguments.lab) if arguments.start else arguments.submission
+    if path is None:
+        raise labs.Unusable("no submission was named; expected a .cpp file, a folder, or --start")
+    folder = arguments.page
+    if folder is None and arguments.start:
+        folder = arguments.build / "lessons" / f"{arguments.lab}-lab"
+    result = grade(arguments.lab, path, arguments.build, arguments.seed, folder)
+    report.write_files(result, arguments)
+    if arguments.json == "-":
+        return
+    print(report.as_text(result))
+    if folder:
+        print(f"The page: {folder / 'index.html'} (open it in a browser)")
+
+
+def grade_all(arguments):
+    """A line for each lab: the points of the lab.cpp beside its starter."""
+    for lab_id, folder in labs.all_folders().items():
+        if (folder / "lab.cpp").exists():
+            result = grade(lab_id, folder / "lab.cpp", arguments.build, arguments.seed)
+            points = f"{result['earned']:3d} of {result['points']}"
+        else:
+            points = "not begun"
+        print(f"{lab_id:13} {points:>10}  {labs.title_of(lab_id)}")
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(prog="grade", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("lab", nargs="?", help="the lab's id, such as raytrace-05 or assignment-2")
+    parser.add_argument("submission", nargs="?", type=pathlib.Path, help="a .cpp file, or a folder of .cpp and .h files")
     parser.add_argument("--start", action="store_true", help="grade lab.cpp beside the starter, which it is made from")
+    parser.add_argument("--all", action="store_true", help="grade every lab.cpp beside a starter, a line each")
+    parser.add_argument("--class", dest="class_folder", metavar="FOLDER", type=pathlib.Path,
+                        help="grade a whole class: a file or folder for each student")
+    parser.add_argument("-o", "--out", metavar="FOLDER", type=pathlib.Path, default=pathlib.Path("grades"),
+                        help="where --class writes the CSV, the histogram and a page for each student (default: grades)")
     parser.add_argument("--seed", type=int, default=1, help="another number gives other test values (default: 1)")
-    parser.add_argument("--json", metavar="FILE", help="write the result as JSON (-: standard output, nothing else)")
-    parser.add_argument("--page", metavar="FOLDER", help="write a page with expected, found and difference")
-    parser.add_argument("--build", type=pathlib.Path, default=DEFAULT_BUILD, help="build folder (default: build/release)")
+    parser.add_argument("--json", metavar="FILE", help="write the result as JSON (-: to standard output, and nothing else)")
+    parser.add_argument("--page", metavar="FOLDER", type=pathlib.Path, help="write a page with expected, found and difference")
+    parser.add_argument("--gradescope", metavar="FILE", help="write the result as Gradescope's results.json")
+    parser.add_argument("--autolab", metavar="FILE", help="write the points as the line of JSON that Autolab reads")
+    parser.add_argument("--build", metavar="FOLDER", type=lambda path: pathlib.Path(path).resolve(), default=DEFAULT_BUILD,
+                        help="the build folder (default: build/release)")
     arguments = parser.parse_args()
+    if arguments.lab is None and not arguments.all:
+        parser.error("no lab was named; expected an id such as raytrace-05, or --all")
+    if arguments.seed < 0:
+        parser.error(f"--seed {arguments.seed} is negative; expected a whole number from 0")
+    return arguments
+
+
+def main():
+    arguments = parse_arguments()
     try:
-        path = start(arguments.lab) if arguments.start else arguments.submission
-        if path is None:
-            raise labs.Unusable("no submission was named; expected a .cpp file or a folder, or --start")
-        folder = arguments.page or (arguments.build / "lessons" / f"{arguments.lab}-lab" if arguments.start else None)
-        result = grade(arguments.lab, path, arguments.build.resolve(), arguments.seed, folder)
+        if arguments.all:
+            grade_all(arguments)
+        elif arguments.class_folder:
+            import classes # it imports this file
+            classes.grade_class(arguments)
+        else:
+            grade_one(arguments)
     except labs.Unusable as error:
         print(f"grade: {error}", file=sys.stderr)
-        sys.exit(2)
-    if arguments.json == "-":
-        print(json.dumps(result, indent=1))
-        return
-    print_result(result)
-    if arguments.json:
-        pathlib.Path(arguments.json).write_text(json.dumps(result, indent=1))
-    if folder:
-        print(f"The page: {pathlib.Path(folder) / 'index.html'} (open it in a browser)")
+        return 2
+    except (subprocess.SubprocessError, OSError) as error:
+        print(f"grade: the grader itself failed, this is no fault of the submission: {error}", file=sys.stderr)
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -9,6 +9,8 @@ namespace duet::grading {
 
 namespace {
 
+/// The largest side of an image that goes to the page.
+constexpr int kMostShownSide = 2048;
 /// The largest map that is printed; a larger picture is reduced, and a character stands for the worst of its pixels.
 constexpr int kMapWidth = 64, kMapHeight = 32;
 
@@ -46,6 +48,13 @@ void require_size(const std::string& name, const Image<Pixel>& found, const Imag
     throw ItemFailed{name + " has the wrong size.", message(expected.width(), " x ", expected.height()),
                      message(found.width(), " x ", found.height()), ""};
 }
+template <typename Pixel>
+std::string hint_of(const Image<Pixel>& found, const std::vector<Mistake<Image<Pixel>>>& mistakes,
+                    const auto& is_like) {
+    for (const auto& mistake : mistakes)
+        if (mistake.value.size() == found.size() && is_like(mistake.value)) return " " + mistake.text;
+    return "";
+}
 
 } // namespace
 
@@ -63,8 +72,27 @@ Vec3d Rng::unit_vector() {
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
+std::string explain_components(const std::vector<double>& found, const std::vector<double>& expected,
+                               double tolerance) {
+    const auto count = [](const std::vector<double>& values, auto is) { return std::ranges::count_if(values, is); };
+    const auto is_nan = [](double x) { return std::isnan(x); };
+    const auto is_infinite = [](double x) { return std::isinf(x); };
+    if (count(found, is_nan) > count(expected, is_nan))
+        return "It is not a number (NaN): is 0 divided by 0, or the root of a negative number taken?";
+    if (count(found, is_infinite) > count(expected, is_infinite)) return "It is infinite: is something divided by 0?";
+    if (found.size() != expected.size() || found.empty()) return "";
+    std::size_t i = 0;
+    while (i + 1 < found.size() && is_near(found[i], expected[i], tolerance)) ++i;
+    if (found.size() > 4)
+        return message("The first wrong value is number ", i + 1, " of ", found.size(), ": expected ",
+                       describe(expected[i]), ", found ", describe(found[i]), ".");
+    if (describe(found[i]) != describe(expected[i])) return "";
+    return message("The values differ by ", describe(std::abs(found[i] - expected[i])), ", and at most ",
+                   describe(tolerance), " is allowed.");
+}
+
 void Item::show(const std::string& name, const ImageRgb& image) {
-    if (image.empty()) return;
+    if (image.empty() || std::max(image.width(), image.height()) > kMostShownSide) return;
     const std::string file = message("item", index_, "-", images_.size(), ".png");
     ImageRgb finite = image;
     for (Rgb& pixel : finite.pixels())
@@ -75,28 +103,29 @@ void Item::show(const std::string& name, const ImageRgb& image) {
 
 void Item::image(const std::string& name, const ImageRgb& found, const ImageRgb& expected, double tolerance,
                  const std::vector<Mistake<ImageRgb>>& mistakes) {
+    show(name + ": found", found);
+    show(name + ": expected", expected);
     require_size(name, found, expected);
     const auto wrong = [&](int x, int y) { return distance(found(x, y), expected(x, y)) > tolerance; };
     ImageRgb difference(found.width(), found.height());
+    double largest = 0;
     std::size_t count = 0;
     std::string first;
     for (int y = 0; y < found.height(); ++y)
         for (int x = 0; x < found.width(); ++x) {
-            difference(x, y) = Rgb(static_cast<float>(std::min(distance(found(x, y), expected(x, y)), 1.0)));
-            if (!wrong(x, y)) continue;
-            if (count++ == 0)
+            const double d = std::min(distance(found(x, y), expected(x, y)), 1.0);
+            difference(x, y) = Rgb(static_cast<float>(d));
+            largest = std::max(largest, d);
+            if (wrong(x, y) && count++ == 0)
                 first = message(", first at (", x, ", ", y, "): expected ", describe(expected(x, y)), ", found ",
                                 describe(found(x, y)));
         }
-    show(name + ": found", found);
-    show(name + ": expected", expected);
     if (count == 0) return;
-    show(name + ": difference", difference);
-    std::string hint;
-    for (const auto& mistake : mistakes)
-        if (hint.empty() && mistake.value.size() == found.size() &&
-            mean_distance(found, mistake.value) < 0.3 * mean_distance(found, expected))
-            hint = " " + mistake.text;
+    for (Rgb& pixel : difference.pixels()) pixel = pixel / static_cast<float>(largest);
+    show(message(name, ": difference (white is ", describe_number(largest), ")"), difference);
+    const std::string hint = hint_of(found, mistakes, [&](const ImageRgb& mistake) {
+        return mean_distance(found, mistake) < 0.3 * mean_distance(found, expected);
+    });
     throw ItemFailed{message(name, " has ", count, " wrong pixels of ", found.size(), first, ".", hint), "", "",
                      draw_map(
                          found.width(), found.height(), [&](int x, int y) { return wrong(x, y) ? '#' : '.'; },
@@ -111,16 +140,20 @@ void Item::coverage(const std::string& name, const Image<int>& found, const Imag
         return f == e ? (e ? 'o' : '.') : f < e ? '-' : e == 0 ? '+' : '2';
     };
     std::size_t missing = 0, doubled = 0, extra = 0;
+    ImageRgb picture(found.width(), found.height(), Rgb(0.02f));
     for (int y = 0; y < found.height(); ++y)
         for (int x = 0; x < found.width(); ++x) {
-            missing += symbol(x, y) == '-';
-            doubled += symbol(x, y) == '2';
-            extra += symbol(x, y) == '+';
+            const char c = symbol(x, y);
+            missing += c == '-', doubled += c == '2', extra += c == '+';
+            if (c == 'o') picture(x, y) = Rgb(0.4f);
+            if (c == '-') picture(x, y) = Rgb(1, 0, 0);
+            if (c == '2') picture(x, y) = Rgb(1, 0.8f, 0);
+            if (c == '+') picture(x, y) = Rgb(0, 0.3f, 1);
         }
     if (missing + doubled + extra == 0) return;
-    std::string hint;
-    for (const auto& mistake : mistakes)
-        if (hint.empty() && mistake.value.pixels() == found.pixels()) hint = " " + mistake.text;
+    show(name + ": red is missing, yellow doubled, blue too much", picture);
+    const std::string hint =
+        hint_of(found, mistakes, [&](const Image<int>& mistake) { return mistake.pixels() == found.pixels(); });
     throw ItemFailed{message(name, ": ", missing, " pixels missing (-), ", doubled,
                              " covered more often than they should be (2), ", extra, " where nothing is (+).", hint),
                      "", "", draw_map(found.width(), found.height(), symbol, [](char c) {

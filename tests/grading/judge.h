@@ -59,14 +59,16 @@ public:
         : rng_(seed), out_(std::move(out_folder)), index_(index) {}
 
     Rng& random() { return rng_; }
-    /// The time that each following call may take, in seconds (2 unless told).
+    /// The time that each following call may take, in seconds of processor time (2 unless told).
     void limit(double seconds) { session().limit(seconds); }
+    /// The processor time of the last call. Compare it with processor time (std::clock), not with a clock on the wall.
+    double seconds() const { return session().last_seconds(); }
 
     void require(bool ok, const std::string& text) {
         if (!ok) throw ItemFailed{text, "", "", ""};
     }
-    /// All components of `found` within `tolerance` of those of `expected`: numbers, vectors, colors, optionals of
-    /// them.
+    /// All components of `found` within `tolerance` of those of `expected`: numbers, vectors, colors, optionals and
+    /// lists of them.
     template <typename T>
     void near(const std::string& what, const T& found, const std::type_identity_t<T>& expected, double tolerance,
               const std::vector<Mistake<std::type_identity_t<T>>>& mistakes = {}) {
@@ -74,8 +76,7 @@ public:
         std::string hint;
         for (const auto& mistake : mistakes)
             if (hint.empty() && is_near(found, mistake.value, tolerance)) hint = mistake.text;
-        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found),
-                         ""};
+        fail(what, hint.empty() ? explain_difference(found, expected, tolerance) : hint, expected, found);
     }
     /// Exactly equal.
     template <typename T>
@@ -85,8 +86,7 @@ public:
         std::string hint;
         for (const auto& mistake : mistakes)
             if (hint.empty() && found == mistake.value) hint = mistake.text;
-        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found),
-                         ""};
+        fail(what, hint, expected, found);
     }
     /// Each pixel's components within `tolerance`. Found, expected and difference go to the page, and the message has a
     /// map of the wrong pixels. A mistake's image need only be nearer to what was found than the expected one is.
@@ -100,6 +100,11 @@ public:
     const std::vector<ShownImage>& images() const { return images_; }
 
 private:
+    template <typename T>
+    [[noreturn]] void fail(const std::string& what, const std::string& hint, const T& expected, const T& found) {
+        throw ItemFailed{what + " is wrong." + (hint.empty() ? "" : " " + hint), describe(expected), describe(found),
+                         ""};
+    }
     Rng rng_;
     std::string out_;
     int index_;

@@ -1,11 +1,17 @@
 // The program that examines one lab: runs its items and writes what came of them as JSON.
+#include "tests/grading/channel.h"
 #include "tests/grading/judge.h"
+#include "tests/grading/sandbox.h"
 
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <cstring>
+#include <fcntl.h>
 #include <fstream>
 #include <iostream>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 
 namespace {
 
@@ -35,18 +41,36 @@ Arguments read_arguments(int count, char** values) {
         else
             throw duet::Error("judge: unknown option " + option + "; expected --worker, --out, --seed or --trusted");
     }
-    if (arguments.worker.empty() || arguments.out.empty())
-        throw duet::Error("usage: judge --worker PROGRAM --out FOLDER [--seed N] [--trusted]");
+    if (arguments.out.empty()) throw duet::Error("usage: judge --out FOLDER [--worker PROGRAM] [--seed N] [--trusted]");
     return arguments;
 }
 
-/// Text of unknown origin as valid UTF-8: JSON refuses other bytes, and terminals obey control characters.
+/// Text of unknown origin as valid UTF-8, which JSON asks for.
 std::string clean(const std::string& text) {
-    const Json repaired = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
-    std::string result;
-    for (const char c : repaired.get<std::string>())
-        if (c == '\n' || c == '\t' || !(static_cast<unsigned char>(c) < 0x20 || c == 0x7f)) result += c;
-    return result;
+    return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
+Json failed_result(const ItemDefinition& definition, const std::string& text) {
+    return {{"title", definition.title},
+            {"points", definition.points},
+            {"earned", 0},
+            {"status", "failed"},
+            {"message", text}};
+}
+
+/// A function that says not_attempted() has no answer yet: not even where what the starter returns happens to be right.
+void tell_not_attempted(Json& result, const std::vector<std::string>& functions) {
+    if (functions.empty() || (result["status"] == "passed" && result["points"] == 0)) return;
+    std::string text = "Not attempted yet: ";
+    for (const std::string& function : functions) text += (&function == &functions[0] ? "" : ", ") + function;
+    if (result["status"] == "passed") {
+        text += ". What the starter returns happens to be right here. Remove not_attempted() where you have begun.";
+    } else {
+        text += ". " + result["message"].get<std::string>();
+    }
+    result["status"] = "not_attempted";
+    result["message"] = text;
+    result["not_attempted"] = functions;
 }
 
 /// Runs one item in a worker of its own.
@@ -56,41 +80,74 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     Session session(arguments.worker, limits);
     set_session(&session);
     Item item(arguments.seed * 1'000'003 + static_cast<std::uint64_t>(index), arguments.out, index);
-    Json result{{"title", definition.title}, {"points", definition.points}, {"status", "passed"}};
+    Json result{{"title", definition.title},
+                {"points", definition.points},
+                {"earned", definition.points},
+                {"status", "passed"}};
     try {
         definition.run(item);
     } catch (const ItemFailed& failed) {
-        result["status"] = "failed";
-        result["message"] = clean(failed.text);
+        result = failed_result(definition, clean(failed.text));
         for (const auto& [key, text] :
              {std::pair{"expected", &failed.expected}, {"found", &failed.found}, {"map", &failed.map}})
             if (!text->empty()) result[key] = clean(*text);
     } catch (const CallFailed& failed) {
-        result["status"] = "failed";
-        result["message"] = clean(failed.text);
+        result = failed_result(definition, clean(failed.text));
     }
-    if (result["status"] == "failed" && session.not_attempted()) result["status"] = "not_attempted";
-    if (session.not_attempted() && result["status"] == "passed" && definition.points > 0) {
-        result["status"] = "not_attempted"; // a starter that happens to be right isn't an answer
-        result["message"] =
-            "What the starter returns happens to be right here; remove not_attempted() where you have begun.";
-    }
-    result["earned"] = result["status"] == "passed" ? definition.points : 0;
+    tell_not_attempted(result, session.not_attempted());
+    if (result["status"] != "passed") result["earned"] = 0;
     if (const std::string printed = clean(session.printed()); !printed.empty()) result["printed"] = printed;
     for (const ShownImage& image : item.images())
-        result["images"].push_back({{"name", image.name}, {"file", image.file}});
-    result["guarded"] = session.guarded();
+        result["images"].push_back({{"name", clean(image.name)}, {"file", image.file}});
     return result;
 }
 
+/// The item's process: writes its result to the pipe. What an answer could do to the examiner (an index that is out of
+/// range, a list without end) ends this process alone.
+[[noreturn]] void run_item_process(const Arguments& arguments, int index, const ItemDefinition& definition, int pipe) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    try {
+        const std::string text = run_item(arguments, index, definition).dump();
+        ::_exit(send(pipe, text) ? 0 : 1);
+    } catch (const std::exception& error) {
+        std::cerr << "judge: " << definition.title << ": " << error.what() << '\n';
+        ::_exit(1);
+    }
+}
+
+Json run_item_apart(const Arguments& arguments, int index, const ItemDefinition& definition) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw duet::Error("the grader can't make a pipe", 1);
+    const pid_t child = ::fork();
+    if (child < 0) throw duet::Error("the grader can't start a process", 1);
+    if (child == 0) run_item_process(arguments, index, definition, ends[1]);
+    ::close(ends[1]);
+    std::string text;
+    const bool complete = receive(ends[0], text);
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (complete) return Json::parse(text);
+    const std::string how = WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "an error";
+    return failed_result(definition, "The examiner could not judge this answer (" + how +
+                                         "). Does a list or an image that you return have the wrong size?");
+}
+
 int judge(const Arguments& arguments) {
-    Json report{
-        {"lab", lab_title().id}, {"title", lab_title().title}, {"seed", arguments.seed}, {"items", Json::array()}};
-    int earned = 0, points = 0;
+    Json report{{"lab", lab_title().id},
+                {"title", lab_title().title},
+                {"seed", arguments.seed},
+                {"earned", 0},
+                {"points", 0},
+                {"guarded", arguments.trusted || sandbox_available()},
+                {"items", Json::array()}};
+    int earned = 0, points = 0, index = 0;
     for (const ItemDefinition& definition : items()) {
-        report["items"].push_back(run_item(arguments, static_cast<int>(report["items"].size()), definition));
-        earned += report["items"].back()["earned"].get<int>();
+        Json result = arguments.worker.empty() ? failed_result(definition, "Not examined.")
+                                               : run_item_apart(arguments, index++, definition);
+        earned += result["earned"].get<int>();
         points += definition.points;
+        report["items"].push_back(std::move(result));
     }
     report["earned"] = earned;
     report["points"] = points;

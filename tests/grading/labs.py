@@ -1,65 +1,97 @@
-"""The labs of the course: where each lies, and how a submission becomes a program that the examiner can call."""
-import hashlib
+"""The labs of the course: where each lies, and which headers its submissions may include."""
+import functools
 import os
 import pathlib
 import re
-import resource
 import shutil
-import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COMPILER = os.environ.get("CXX", "g++")
-COMPILE_SECONDS = 60
-COMPILE_MEMORY = 3 << 30
-INCLUDE = re.compile(r"^[ \t]*(?:#|%:|\?\?=)[ \t]*(include|include_next|import|embed)\b[ \t]*(.*)", re.MULTILINE)
+ROOMS = ("raytrace", "raster", "compare")
+# Headers of the repository that need no library: what a submission may include beside the lab's contract.
+HEADER_ONLY = re.compile(r"common/vec/|common/image/(image|rgb)\.h|common/system/(error|cache_aligned)\.h|\w+/lessons/")
 
 
 class Unusable(Exception):
     """Arguments that can't be graded: what was found, what was expected."""
 
 
-class Refused(Exception):
-    """A submission that can't be compiled, or may not be: the reason, for the student."""
+def all_folders():
+    """Each lab's folder by its id, in the order of the course."""
+    folders = {}
+    for room in ROOMS:
+        for contract in sorted(SOURCE.glob(f"{room}/lessons/[0-9][0-9]-*/lab.h")):
+            folders[f"{room}-{contract.parent.name[:2]}"] = contract.parent
+    for contract in sorted(SOURCE.glob("compare/lessons/assignments/[0-9]-*/lab.h")):
+        folders[f"assignment-{contract.parent.name[0]}"] = contract.parent
+    return folders
 
 
 def folder_of(lab_id):
     """The folder of a lab such as raytrace-05 or assignment-2."""
-    room, _, number = lab_id.rpartition("-")
-    base = SOURCE / ("compare/lessons/assignments" if room == "assignment" else f"{room}/lessons")
-    found = sorted(base.glob(f"{number}-*")) if number else []
-    if not found or not (found[0] / "lab.h").exists():
-        raise Unusable(f"there is no lab {lab_id}; the labs are: {', '.join(all_ids())}")
-    return found[0]
+    folders = all_folders()
+    if lab_id not in folders:
+        raise Unusable(f"there is no lab '{lab_id}'; the labs are: {', '.join(folders)}")
+    return folders[lab_id]
 
 
-def all_ids():
-    """The ids of all labs."""
-    ids = []
-    for room in ("raytrace", "raster", "compare"):
-        ids += [f"{room}-{path.parent.name[:2]}" for path in sorted(SOURCE.glob(f"{room}/lessons/[0-9][0-9]-*/lab.h"))]
-    assignments = sorted(SOURCE.glob("compare/lessons/assignments/[0-9]-*/lab.h"))
-    return ids + [f"assignment-{path.parent.name.split('-')[0]}" for path in assignments]
+def title_of(lab_id):
+    """The title that the lab's examiner has."""
+    test = folder_of(lab_id) / "lab_test.cpp"
+    match = re.search(r'LAB_TITLE\("[^"]*",\s*"([^"]*)"\)', test.read_text(encoding="utf-8")) if test.exists() else None
+    return match[1] if match else lab_id
 
 
-def headers_of(path, known=None):
+@functools.lru_cache(maxsize=None)
+def headers_of(path):
     """A header of the repository and all that it includes, as paths from the top of the repository."""
-    known = set() if known is None else known
-    if path not in known:
-        known.add(path)
-        for name in re.findall(r'^#include "([^"]+)"', (SOURCE / path).read_text(), re.MULTILINE):
-            headers_of(name, known)
-    return known
+    known, waiting = set(), [path]
+    while waiting:
+        name = waiting.pop()
+        if name not in known and (SOURCE / name).is_file():
+            known.add(name)
+            waiting += re.findall(r'^#include "([^"]+)"', (SOURCE / name).read_text(encoding="utf-8"), re.MULTILINE)
+    return frozenset(known)
 
 
+def stands_alone(path):
+    """Whether a header can be used without a library of the project or of others."""
+    text = "".join((SOURCE / name).read_text(encoding="utf-8") for name in headers_of(path))
+    return all(HEADER_ONLY.match(name) for name in headers_of(path)) and "xsimd" not in text
+
+
+def earlier_lessons(folder):
+    """The folders of the same room's earlier lessons; for labs in compare/, none: their contract names what they use."""
+    if folder.parent.parent.name == "compare":
+        return []
+    return [other for other in sorted(folder.parent.iterdir()) if other.is_dir() and other.name[:2] < folder.name[:2]]
+
+
+def allowed_headers(lab_id):
+    """What a submission may include: the contract and its includes, vectors, images, and earlier lessons' headers."""
+    folder = folder_of(lab_id)
+    contract = str((folder / "lab.h").relative_to(SOURCE))
+    candidates = [*(SOURCE / "common" / "vec").glob("*.h"), SOURCE / "common" / "image" / "image.h"]
+    for earlier in earlier_lessons(folder):
+        candidates += [path for path in earlier.glob("*.h") if not path.name.startswith("lab")]
+    names = [str(path.relative_to(SOURCE)) for path in candidates]
+    return headers_of(contract).union(*(headers_of(name) for name in names if stands_alone(name)))
+
+
+@functools.lru_cache(maxsize=None)
 def stage(lab_id, folder):
-    """Copies what a submission may include, and nothing else, into a folder of its own."""
-    contract = str((folder_of(lab_id) / "lab.h").relative_to(SOURCE))
-    for name in headers_of(contract) | headers_of("common/image/image.h") | headers_of("common/vec/matrix.h"):
+    """Copies what a submission may include, and nothing else, into a folder of its own. Returns the contract's path."""
+    allowed = allowed_headers(lab_id)
+    for path in list(folder.rglob("*.h")):
+        if str(path.relative_to(folder)) not in allowed:
+            path.unlink()
+    for name in allowed:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != (SOURCE / name).read_bytes():
-            shutil.copyfile(SOURCE / name, target)
-    return contract
+            partial = target.with_suffix(f".{os.getpid()}")
+            shutil.copyfile(SOURCE / name, partial)
+            partial.replace(target)
+    return str((folder_of(lab_id) / "lab.h").relative_to(SOURCE))
 
 
 def submitted_files(path):
@@ -70,78 +102,3 @@ def submitted_files(path):
     if not any(file.suffix == ".cpp" for file in files):
         raise Unusable(f"{path}: found no .cpp file; expected a lab.cpp")
     return files
-
-
-def check_text(files, staged):
-    """Refuses includes of what a submission may not read, and assembler, which could embed any file."""
-    own = {file.name for file in files}
-    for file in files:
-        text = file.read_text(errors="replace").replace("\\\n", "")
-        for match in INCLUDE.finditer(text):
-            directive, name = match.group(1), match.group(2).strip()
-            system = re.fullmatch(r"<[a-z0-9_]+(\.h)?>\s*(//.*|/\*.*)?", name)
-            quoted = re.fullmatch(r'"([^"]+)"\s*(//.*|/\*.*)?', name)
-            ours = quoted and not re.match(r"/|.*\.\.", quoted[1]) and (quoted[1] in own or (staged / quoted[1]).exists())
-            if directive != "include" or not (system or ours):
-                raise Refused(f"{file.name} includes {name}, which a submission may not: expected the lab's lab.h, the "
-                              "headers that it includes, files of your own, or the standard library")
-        if re.search(r"\b(asm|__asm|__asm__)\b|\.incbin|_Pragma|#\s*pragma\s+GCC", text):
-            raise Refused(f"{file.name} uses assembler or compiler pragmas, which a submission may not")
-
-
-def limited():
-    """In the compiler's process: endless templates must not take the computer down."""
-    resource.setrlimit(resource.RLIMIT_AS, (COMPILE_MEMORY, COMPILE_MEMORY))
-    resource.setrlimit(resource.RLIMIT_CPU, (COMPILE_SECONDS, COMPILE_SECONDS))
-
-
-def compile_command(arguments, what):
-    """Runs the compiler. Raises Refused with its first error."""
-    try:
-        done = subprocess.run([COMPILER, "-std=c++20", "-O1", "-ffp-contract=off", "-w", *arguments], text=True,
-                              errors="replace", capture_output=True, timeout=COMPILE_SECONDS + 10, preexec_fn=limited,
-                              check=False)
-    except subprocess.TimeoutExpired as error:
-        raise Refused(f"{what}: the compiler needs more than {COMPILE_SECONDS} s; is there endless template recursion?"
-                      ) from error
-    if done.returncode != 0:
-        lines = done.stderr.splitlines()
-        first = next((i for i, line in enumerate(lines) if "error" in line or "undefined reference" in line), 0)
-        shown = "\n".join(line[:300] for line in lines[first:first + 4])
-        raise Refused(f"{what} doesn't compile. The compiler's first error:\n{shown}" if lines else
-                      f"{what} doesn't compile: the compiler was ended (too much memory or time)")
-
-
-def worker_object(lab_id, staged, contract):
-    """The worker's own half: it depends on the contract alone, and is compiled once for all submissions."""
-    sources = ["tests/grading/worker.cpp", "tests/grading/channel.h", "tests/grading/wire.h"]
-    digest = hashlib.sha256(b"".join((SOURCE / name).read_bytes() for name in sorted(headers_of(contract)) + sources))
-    target = staged.parent / f"worker-{digest.hexdigest()[:16]}.o"
-    if not target.exists():
-        partial = target.with_suffix(f".{os.getpid()}")
-        compile_command(["-I", str(SOURCE), f'-DDUET_LAB_HEADER="{contract}"', "-c", str(SOURCE / sources[0]), "-o",
-                         str(partial)], f"the contract of {lab_id}")
-        partial.rename(target)
-    return target
-
-
-def build_worker(lab_id, path, build, out, trusted=False):
-    """Compiles a submission into a worker program in `out`, and returns its path. `trusted` (for the repository's own
-    answers) may include and link the whole project."""
-    staged = build / "lessons" / "grading" / lab_id / "include"
-    contract = stage(lab_id, staged)
-    files = submitted_files(path)
-    if not trusted:
-        check_text(files, staged)
-    worker = worker_object(lab_id, staged, contract)
-    program = out / "worker"
-    sources = [str(file) for file in files if file.suffix == ".cpp"]
-    if trusted:
-        libraries = [str(build / name) for name in ("libduet_raster.a", "libduet_raytrace.a", "libduet_common.a",
-                                                    "libduet_image.a") if (build / name).exists()]
-        compile_command(["-march=native", "-I", str(SOURCE), *sources, str(worker), *libraries, "-ltbb", "-lOpenEXR-3_1",
-                         "-lpthread", "-o", str(program)], path.name)
-    else:
-        include = ["-I", str(staged)] + (["-I", str(path)] if path.is_dir() else [])
-        compile_command([*include, *sources, str(worker), "-static", "-o", str(program)], path.name)
-    return program

@@ -3,9 +3,11 @@
 #include "common/system/error.h"
 #include "tests/grading/sandbox.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -14,9 +16,9 @@ namespace duet::grading {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t kMostPrinted = 8192;
+constexpr int kPollMilliseconds = 20; ///< how often the worker's processor time is looked at
+constexpr double kWallFactor = 5;     ///< a worker that waits for nothing uses no processor time
 Session* g_session = nullptr;
 
 /// Thrown inside where the worker is gone or late.
@@ -24,28 +26,38 @@ struct Silence {
     bool late;
 };
 
-/// Waits until the descriptor is ready; while waiting takes what the student's code prints, so that it never blocks.
-void wait_for(int descriptor, short events, int output, std::string& printed, Clock::time_point deadline) {
-    for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-        if (left <= 0) throw Silence{true};
-        pollfd fds[2] = {{descriptor, events, 0}, {output, POLLIN, 0}};
-        if (::poll(fds, output >= 0 ? 2 : 1, static_cast<int>(left)) < 0 && errno != EINTR) throw Silence{false};
-        if (output >= 0 && fds[1].revents) {
-            char buffer[4096];
-            const ssize_t got = ::read(output, buffer, sizeof buffer);
-            if (got > 0 && printed.size() < kMostPrinted)
-                printed.append(buffer, std::min(static_cast<std::size_t>(got), kMostPrinted - printed.size()));
-            else if (got == 0 && !(fds[0].revents))
-                output = -1; // closed; poll would report it again and again
-        }
-        if (fds[0].revents & (events | POLLHUP | POLLERR)) return;
-    }
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void close_if_open(int& descriptor) {
     if (descriptor >= 0) ::close(descriptor);
     descriptor = -1;
+}
+
+std::string describe_signal(int signal) {
+    switch (signal) {
+    case SIGSEGV:
+    case SIGBUS:
+        return "crashed (segmentation fault): an index out of range, a null pointer, or endless recursion?";
+    case SIGABRT:
+        return "aborted: a failed assertion, or an exception where none is allowed.";
+    case SIGFPE:
+        return "crashed: a whole number was divided by zero.";
+    case SIGILL:
+    case SIGTRAP:
+        return "crashed (illegal instruction): does the function end without a return?";
+    case SIGKILL:
+        return "was ended by the computer: it used too much memory or processor time.";
+    case SIGXCPU:
+        return "used more processor time than is allowed: an endless loop?";
+    case SIGXFSZ:
+        return "tried to write a file, which a submission may not.";
+    case SIGSYS:
+        return "asked the system for something that a submission may not do.";
+    default:
+        return message("was ended by signal ", signal, " (", ::strsignal(signal), ").");
+    }
 }
 
 } // namespace
@@ -54,6 +66,7 @@ Session& session() { return *g_session; }
 void set_session(Session* session) { g_session = session; }
 
 void Session::start() {
+    guarded_ = limits_.sandbox && sandbox_available();
     int requests[2], replies[2], output[2];
     if (::pipe2(requests, O_CLOEXEC) != 0 || ::pipe2(replies, O_CLOEXEC) != 0 || ::pipe2(output, O_CLOEXEC) != 0)
         throw Error(message("the grader can't make a pipe: ", std::strerror(errno)), 1);
@@ -62,10 +75,11 @@ void Session::start() {
     if (child_ == 0) run_sandboxed(worker_, limits_, requests[0], replies[1], output[1]);
     ::close(requests[0]), ::close(replies[1]), ::close(output[1]);
     requests_ = requests[1], replies_ = replies[0], output_ = output[0];
-    ::fcntl(requests_, F_SETFL, O_NONBLOCK);
-    ::fcntl(replies_, F_SETFL, O_NONBLOCK);
-    ::fcntl(output_, F_SETFL, O_NONBLOCK);
-    guarded_ = limits_.sandbox && sandbox_available();
+    for (const int descriptor : {requests_, replies_, output_}) ::fcntl(descriptor, F_SETFL, O_NONBLOCK);
+    if (guarded_ && !let_execute_once(child_)) {
+        child_ = -1;
+        throw Error("the grader can't start the program of the submission: " + worker_, 1);
+    }
 }
 
 void Session::stop() {
@@ -75,15 +89,45 @@ void Session::stop() {
         ::waitpid(child_, nullptr, 0);
     }
     child_ = -1;
+    take_printed();
     close_if_open(requests_), close_if_open(replies_), close_if_open(output_);
 }
 
+/// 0 where the worker has ended.
+double Session::processor_seconds() const {
+    clockid_t clock;
+    timespec time{};
+    if (::clock_getcpuclockid(child_, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Takes what the student's code has printed, so that it never blocks, and drops what is too much.
+void Session::take_printed() {
+    char buffer[4096];
+    for (ssize_t got = 0; output_ >= 0 && (got = ::read(output_, buffer, sizeof buffer)) != 0;) {
+        if (got < 0) return; // nothing there now
+        printed_.append(buffer, std::min(static_cast<std::size_t>(got), kMostPrinted - printed_.size()));
+        if (wall_seconds() - call_began_at_ > kWallFactor * limits_.seconds) return; // it prints without end
+    }
+    close_if_open(output_);
+}
+
+/// Waits until the descriptor is ready.
+void Session::wait_for(int descriptor, short events) {
+    for (;;) {
+        pollfd fds[2] = {{descriptor, events, 0}, {output_, POLLIN, 0}};
+        if (::poll(fds, output_ >= 0 ? 2 : 1, kPollMilliseconds) < 0 && errno != EINTR) throw Silence{false};
+        if (output_ >= 0 && fds[1].revents) take_printed();
+        if (fds[0].revents & (events | POLLHUP | POLLERR)) return;
+        if (processor_seconds() - call_began_ > limits_.seconds) throw Silence{true};
+        if (wall_seconds() - call_began_at_ > kWallFactor * limits_.seconds) throw Silence{true};
+    }
+}
+
 std::string Session::exchange(const std::string& request) {
-    const auto deadline =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.seconds));
     const auto write_all = [&](const char* bytes, std::size_t size) {
         while (size > 0) {
-            wait_for(requests_, POLLOUT, output_, printed_, deadline);
+            wait_for(requests_, POLLOUT);
             const ssize_t written = ::write(requests_, bytes, size);
             if (written < 0 && (errno == EAGAIN || errno == EINTR)) continue;
             if (written <= 0) throw Silence{false};
@@ -92,7 +136,7 @@ std::string Session::exchange(const std::string& request) {
     };
     const auto read_all = [&](char* bytes, std::size_t size) {
         while (size > 0) {
-            wait_for(replies_, POLLIN, output_, printed_, deadline);
+            wait_for(replies_, POLLIN);
             const ssize_t got = ::read(replies_, bytes, size);
             if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
             if (got <= 0) throw Silence{false};
@@ -103,7 +147,7 @@ std::string Session::exchange(const std::string& request) {
     write_all(reinterpret_cast<const char*>(&size), sizeof size);
     write_all(request.data(), request.size());
     read_all(reinterpret_cast<char*>(&size), sizeof size);
-    if (size > kMaxMessage) throw CallFailed{"The answer is malformed: it claims to be larger than 256 MiB."};
+    if (size > kMaxMessage) throw WireError(message("it claims to be larger than ", kMaxMessage >> 20, " MiB"));
     std::string reply(size, '\0');
     read_all(reply.data(), reply.size());
     return reply;
@@ -112,36 +156,30 @@ std::string Session::exchange(const std::string& request) {
 /// What became of a worker whose pipes are closed.
 std::string Session::how_it_ended() {
     int status = 0;
-    const auto deadline = Clock::now() + std::chrono::milliseconds(500);
+    const double deadline = wall_seconds() + 0.5;
     pid_t ended = 0;
-    while ((ended = ::waitpid(child_, &status, WNOHANG)) == 0 && Clock::now() < deadline) ::usleep(2000);
+    while ((ended = ::waitpid(child_, &status, WNOHANG)) == 0 && wall_seconds() < deadline) ::usleep(2000);
     if (ended != child_) return "closed its connection to the grader and went on running.";
     child_ = -1;
-    if (WIFEXITED(status))
-        return message("ended the program (exit code ", WEXITSTATUS(status), "): a function must return its result.");
-    switch (const int signal = WTERMSIG(status)) {
-    case SIGSEGV:
-        return "crashed (segmentation fault): an index out of range, a null pointer, or endless recursion?";
-    case SIGABRT:
-        return "aborted: a failed assertion, or an exception where none is allowed.";
-    case SIGFPE:
-        return "crashed (a division of a whole number by zero).";
-    case SIGXCPU:
-        return "used more processor time than is allowed: an endless loop?";
-    case SIGSYS:
-        return "asked the system for something that a submission may not do.";
-    default:
-        return message("was ended by signal ", signal, " (", ::strsignal(signal), ").");
-    }
+    if (!WIFEXITED(status)) return describe_signal(WTERMSIG(status));
+    return message("ended the program by itself (exit code ", WEXITSTATUS(status),
+                   "): a function must return its result.");
 }
 
 std::string Session::call(const char* function, const std::string& request) {
     if (child_ < 0) start();
+    call_began_ = processor_seconds(), call_began_at_ = wall_seconds();
     try {
         const std::string reply = exchange(request);
+        last_seconds_ = processor_seconds() - call_began_;
+        item_seconds_ += last_seconds_;
+        if (item_seconds_ > std::max(limits_.item_seconds, 3 * limits_.seconds))
+            throw CallFailed{message(function, " is far too slow: the calls of this item took more than ",
+                                     limits_.item_seconds, " s together.")};
         Reader in(reply);
         const auto outcome = in.get<Outcome>();
-        not_attempted_ = in.get<bool>() || not_attempted_;
+        if (in.get<bool>() && std::count(not_attempted_.begin(), not_attempted_.end(), function) == 0)
+            not_attempted_.emplace_back(function);
         const auto text = in.get<std::string>();
         if (outcome == Outcome::kReturned) return text;
         if (outcome == Outcome::kOutOfMemory)
@@ -161,12 +199,7 @@ std::string Session::call(const char* function, const std::string& request) {
 }
 
 std::string Session::printed() {
-    if (output_ >= 0) {
-        char buffer[4096];
-        for (ssize_t got = 0; printed_.size() < kMostPrinted && (got = ::read(output_, buffer, sizeof buffer)) > 0;)
-            printed_.append(buffer, static_cast<std::size_t>(got));
-    }
-    if (printed_.size() > kMostPrinted) printed_.resize(kMostPrinted);
+    take_printed();
     return printed_;
 }
 

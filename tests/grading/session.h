@@ -15,7 +15,8 @@ struct CallFailed {
 
 /// What a worker may use.
 struct Limits {
-    double seconds = 2;                              ///< for each call
+    double seconds = 2;                              ///< of processor time for each call; in real time five times that
+    double item_seconds = 90;                        ///< of processor time for all calls of an item
     std::size_t memory_bytes = std::size_t{1} << 30; ///< address space; of trusted workers ignored
     bool sandbox = true; ///< off for the repository's own answers, which are linked with its libraries
 };
@@ -32,8 +33,10 @@ public:
     /// then it is gone, and the next call starts another.
     std::string call(const char* function, const std::string& request);
     void limit(double seconds) { limits_.seconds = seconds; }
-    /// Whether a function that was called since the start said not_attempted().
-    bool not_attempted() const { return not_attempted_; }
+    /// The processor time of the last call: unlike a clock on the wall it doesn't count what else the computer does.
+    double last_seconds() const { return last_seconds_; }
+    /// The functions, called since the start, that said not_attempted().
+    const std::vector<std::string>& not_attempted() const { return not_attempted_; }
     /// Whether the kernel let the worker be shut off from files (seccomp).
     bool guarded() const { return guarded_; }
     /// What the student's code printed, at most 8 KiB.
@@ -44,13 +47,19 @@ private:
     void stop();
     std::string exchange(const std::string& request);
     std::string how_it_ended();
+    double processor_seconds() const;
+    void wait_for(int descriptor, short events);
+    void take_printed();
 
     std::string worker_;
     Limits limits_;
     pid_t child_ = -1;
     int requests_ = -1, replies_ = -1, output_ = -1;
-    bool not_attempted_ = false, guarded_ = false;
+    bool guarded_ = false;
+    std::vector<std::string> not_attempted_;
     std::string printed_;
+    double call_began_ = 0, call_began_at_ = 0; ///< processor time of the worker, and time on the wall
+    double last_seconds_ = 0, item_seconds_ = 0;
 };
 
 /// The session of the item that runs.

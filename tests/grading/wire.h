@@ -21,7 +21,7 @@
 namespace duet::grading {
 
 /// The most bytes that one call or one answer may have.
-inline constexpr std::size_t kMaxMessage = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxMessage = std::size_t{64} << 20;
 
 /// Bytes that don't hold what is read from them.
 struct WireError : std::runtime_error {

@@ -28,16 +28,15 @@ struct Fragment {
 template <typename Shade>
 void draw_triangles(Framebuffer& target, const std::vector<Triangle>& triangles, const Shade& shade) {
     for (const Triangle& triangle : triangles)
-        for_each_fragment(triangle, target.color.width(), target.color.height(),
-                          [&](int x, int y, float depth, const Triangle& part, Vec3 weights) {
-                              if (!(depth < target.depth(x, y))) return; // shading is dear: look at the depth first
-                              const Vec3 w = perspective_weights(part, weights);
-                              const auto& [a, b, c] = part;
-                              const Vec3 p = a.p * w.x + b.p * w.y + c.p * w.z;
-                              const Vec3 n = normalize(a.n * w.x + b.n * w.y + c.n * w.z);
-                              const Vec2 uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
-                              target.write(x, y, depth, shade(Fragment{x, y, p, n, uv, triangle}));
-                          });
+        for (const Triangle& part : clip_near(triangle))
+            for_each_fragment(part, target.color.width(), target.color.height(), [&](int x, int y, float z, Vec3 w) {
+                if (!(z < target.depth(x, y))) return; // it is hidden: spare the shading
+                w = perspective_weights(part, w);
+                const auto& [a, b, c] = part;
+                const Vec3 p = a.p * w.x + b.p * w.y + c.p * w.z, n = a.n * w.x + b.n * w.y + c.n * w.z;
+                const Vec2 uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
+                target.write(x, y, z, shade(Fragment{x, y, p, normalize(n), uv, triangle}));
+            });
 }
 
 } // namespace duet::lesson

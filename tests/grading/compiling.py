@@ -1,0 +1,167 @@
+"""How a submission becomes a program that the examiner can call, or is refused with a reason.
+
+The compiler runs without a sandbox, with limits. What it reads is checked: by the list of files that it opened, before
+any message about their content is shown, and by the assembly, which could embed a file (.incbin).
+"""
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import labs
+
+COMPILE_SECONDS = 60
+COMPILE_MEMORY = 2 << 30
+LARGEST_SOURCE = 1 << 20
+LARGEST_OUTPUT = 256 << 20
+FLAGS = ["-std=c++20", "-O1", "-ffp-contract=off", "-w"]
+WORKER = ["tests/grading/worker.cpp", "common/system/error.cpp"]
+TEXT_DATA = re.compile(r'\s*\.(?:string|ascii|asciz)\s+"(?:[^"\\]|\\.)*"\s*')
+FILE_DIRECTIVES = re.compile(r"\.(?:incbin|include|macro|irpc?|rept|altmacro)\b")
+HINTS = [
+    (r"undefined reference to `duet::lab::(\w+)", r"Your file doesn't define \1 as lab.h declares it: the same name and "
+     "arguments, inside namespace duet::lab."),
+    (r"multiple definition of `main'", "Your file has a main(); remove it, the grader has its own."),
+    (r"multiple definition of `([^']+)'", r"\1 is defined twice: in your file, and in the grader or another of your files."),
+    (r"template instantiation depth", "A template uses itself without an end."),
+]
+
+
+class Refused(Exception):
+    """A submission that can't be compiled, or may not be: the reason, for the student."""
+
+
+@functools.lru_cache(maxsize=None)
+def build_settings(build):
+    """What CMake wrote down for the grader: the compiler, and the libraries of the repository's own answers."""
+    file = build / "lessons" / "grading" / "build.json"
+    if not file.exists():
+        raise labs.Unusable(f"{build} is no build folder with a grader; run: cmake --preset release")
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+@functools.lru_cache(maxsize=None)
+def system_folders(compiler):
+    """Where the compiler's own headers lie."""
+    said = subprocess.run([compiler, "-E", "-v", "-x", "c++", "/dev/null"], text=True, capture_output=True, check=True).stderr
+    listed = said.split("#include <...> search starts here:")[1].split("End of search list.")[0]
+    return [pathlib.Path(line.strip()).resolve() for line in listed.strip().splitlines()]
+
+
+def plain_error(text, folder):
+    """The compiler's first error, as short as it is useful, with a hint where the cause is a common one."""
+    lines = [line.replace(f"{folder}/", "").removeprefix("./") for line in text.splitlines()]
+    is_error = re.compile(r"error:|undefined reference|multiple definition")
+    first = next((i for i, line in enumerate(lines) if is_error.search(line)), 0)
+    lines[first] = re.sub(r"^.*/ld: (?:\S+: in function [^:]*: ?)?", "", lines[first]) if lines else ""
+    shown = "\n".join(line[:300] for line in lines[first:first + 4])
+    hints = [match.expand(hint) for pattern, hint in HINTS if (match := re.search(pattern, shown))]
+    return shown + ("\n" + hints[0] if hints else "")
+
+
+def run_compiler(build, arguments, what, folder):
+    """Runs the compiler with limits. Raises Refused with its first error."""
+    limits = ["prlimit", f"--as={COMPILE_MEMORY}", f"--cpu={COMPILE_SECONDS}", f"--fsize={LARGEST_OUTPUT}", "--core=0"]
+    done = subprocess.run([*limits, build_settings(build)["compiler"], *FLAGS, *arguments], cwd=folder, text=True,
+                          errors="replace", capture_output=True, check=False)
+    if done.returncode == 0:
+        return
+    if re.search(r"signal terminated program|memory exhausted|out of memory", done.stderr):
+        raise Refused(f"{what} can't be compiled within {COMPILE_SECONDS} s, {COMPILE_MEMORY >> 30} GiB of memory and "
+                      f"{LARGEST_OUTPUT >> 20} MiB of program. Is there a template without end, or a huge array?")
+    missing = re.search(r"^(?:\./)?(\S+?):(\d+):\d+: fatal error: (.*): (?:No such file|Permission|Is a dir)", done.stderr, re.MULTILINE)
+    if missing:
+        raise Refused(f"{missing[1]}, line {missing[2]}, includes {missing[3]}, which a submission may not. {ALLOWED}")
+    raise Refused(f"{what} doesn't compile. The compiler's first error:\n{plain_error(done.stderr, folder)}")
+
+
+ALLOWED = "Allowed are: the lab's lab.h and what it includes, common/vec, common/image/image.h, headers of earlier " \
+    "lessons, files of your own, and the standard library."
+
+
+def copy_submission(files, folder):
+    """Copies the submitted files, so that nothing beside them can be included by a relative path or a link."""
+    folder.mkdir()
+    for file in files:
+        if file.is_symlink() or not file.is_file():
+            raise Refused(f"{file.name} is no plain file; a submission may hold no links or devices")
+        if file.stat().st_size > LARGEST_SOURCE:
+            raise Refused(f"{file.name} has {file.stat().st_size} bytes; at most {LARGEST_SOURCE} are compiled")
+        shutil.copyfile(file, folder / file.name)
+
+
+def check_files_read(listing, allowed):
+    """Refuses a submission for which the compiler opened a file outside the allowed folders."""
+    names = re.split(r"(?<!\\)\s+", listing.read_text(errors="replace").replace("\\\n", " ").partition(":")[2].strip())
+    for name in names:
+        path = (listing.parent / name.replace("\\ ", " ").replace("\\#", "#").replace("$$", "$")).resolve()
+        if not any(path.is_relative_to(folder) for folder in allowed):
+            raise Refused(f"The submission includes {name}, which a submission may not. {ALLOWED}")
+
+
+def check_assembly(file):
+    """Refuses assembler of the student's: its directives could embed any file into the program."""
+    for line in file.read_text(errors="replace").splitlines():
+        if line.startswith("#APP") or (FILE_DIRECTIVES.search(line) and not TEXT_DATA.fullmatch(line)):
+            raise Refused("The submission uses assembler, which a submission may not.")
+
+
+def compile_source(build, source, include, allowed):
+    """Preprocesses, compiles and checks one of the student's files. Returns the assembly file."""
+    folder, name = source.parent, source.name
+    listing, preprocessed, assembly = (source.with_suffix(suffix) for suffix in (".d", ".ii", ".s"))
+    try:
+        run_compiler(build, [*include, "-E", "-MD", "-MF", f"./{listing.name}", f"./{name}", "-o",
+                             f"./{preprocessed.name}"], name, folder)
+    except Refused as refused: # an error in a file that may not be read must not show its content
+        where = re.search(r"first error:\n(/[^:]*):", str(refused))
+        if where and not any(pathlib.Path(where[1]).resolve().is_relative_to(path) for path in allowed):
+            raise Refused(f"The submission includes {where[1]}, which a submission may not. {ALLOWED}") from None
+        raise
+    check_files_read(listing, allowed)
+    run_compiler(build, ["-S", f"./{preprocessed.name}", "-o", f"./{assembly.name}"], name, folder)
+    check_assembly(assembly)
+    return assembly
+
+
+def worker_object(lab_id, build, folder, contract):
+    """The worker's own half: it depends on the contract alone, and is compiled once for all submissions."""
+    read = sorted(labs.headers_of(contract)) + WORKER + ["tests/grading/channel.h", "tests/grading/wire.h"]
+    digest = hashlib.sha256(b"".join((labs.SOURCE / name).read_bytes() for name in read)).hexdigest()[:16]
+    target = folder / f"worker-{digest}.o"
+    if not target.exists():
+        partial = target.with_suffix(f".{os.getpid()}")
+        run_compiler(build, ["-I", str(labs.SOURCE), f'-DDUET_LAB_HEADER="{contract}"', "-r", "-nostdlib",
+                             *(str(labs.SOURCE / name) for name in WORKER), "-o", str(partial)],
+                     f"the contract of {lab_id}", folder)
+        partial.rename(target)
+    return target
+
+
+def build_worker(lab_id, path, build, out):
+    """Compiles a submission into a worker program in the empty folder `out`, and returns the program's path."""
+    shared = build / "lessons" / "grading" / lab_id
+    contract = labs.stage(lab_id, shared / "include")
+    files = labs.submitted_files(path)
+    own = out / "submission"
+    copy_submission(files, own)
+    allowed = [own.resolve(), (shared / "include").resolve(), *system_folders(build_settings(build)["compiler"])]
+    include = ["-I", str(shared / "include"), "-iquote", str(own)]
+    assembled = [compile_source(build, own / file.name, include, allowed) for file in files if file.suffix == ".cpp"]
+    worker = worker_object(lab_id, build, shared, contract)
+    run_compiler(build, ["-static", str(worker), *map(str, assembled), "-o", str(out / "worker")], path.name, own)
+    return out / "worker"
+
+
+def build_trusted_worker(lab_id, path, build, out):
+    """Compiles one of the repository's own answers, which may include and link the whole project."""
+    shared = build / "lessons" / "grading" / lab_id
+    worker = worker_object(lab_id, build, shared, labs.stage(lab_id, shared / "include"))
+    libraries = [name for name in build_settings(build)["libraries"] if name.startswith("-") or pathlib.Path(name).exists()]
+    run_compiler(build, ["-march=native", "-I", str(labs.SOURCE), str(path.resolve()), str(worker), *libraries, "-o",
+                         str(out / "worker")], path.name, out)
+    return out / "worker"
