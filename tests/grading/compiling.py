@@ -142,6 +142,12 @@ def worker_object(lab_id, build, folder, contract):
     return target
 
 
+def prepare(lab_id, build):
+    """Makes what all submissions of a lab share, before several are compiled at the same time."""
+    shared = build / "lessons" / "grading" / lab_id
+    worker_object(lab_id, build, shared, labs.stage(lab_id, shared / "include"))
+
+
 def build_worker(lab_id, path, build, out):
     """Compiles a submission into a worker program in the empty folder `out`, and returns the program's path."""
     shared = build / "lessons" / "grading" / lab_id

@@ -22,9 +22,9 @@ Rgb normal_color(Vec3) { return Rgb(0); }
 # name: (includes and declarations, body of hit_sphere, what the result must say)
 SUBMISSIONS = {
     "endless loop": ("", "for (volatile int i = 0;; ++i) {}", "an endless loop"),
-    "exit": ("#include <cstdlib>", "std::exit(0);", "ended the program (exit code 0)"),
+    "exit": ("#include <cstdlib>", "std::exit(0);", "ended the program by itself (exit code 0)"),
     "exit before main": ("#include <cstdlib>\nstatic const int quit = (std::exit(0), 1);", "return 2.0f;",
-                         "ended the program (exit code 0)"),
+                         "ended the program by itself (exit code 0)"),
     "abort": ("#include <cstdlib>", "std::abort();", "aborted"),
     "null pointer": ("", "volatile int* p = nullptr; *p = 1; return 2.0f;", "segmentation fault"),
     "endless recursion": ("static int deep(volatile int n) { volatile char a[4096]; a[0] = char(n); return deep(n + 1) + a[0]; }",
@@ -38,6 +38,16 @@ SUBMISSIONS = {
                           ""),
     "writes a file": ("#include <fstream>", 'std::ofstream f("/tmp/duet-hostile"); f << "100"; f.close(); '
                       "return f.good() ? 2.0f : 9.0f;", "is wrong"),
+    "writes to the report": ("#include <fstream>",
+                             'for (const char* name : {"result.json", "../result.json", "/tmp/duet-hostile"}) '
+                             '{ std::ofstream f(name); f << "{\\"earned\\": 100}"; '
+                             'if (f.good()) return 2.0f; } return 9.0f;', "is wrong"),
+    "reads the examiner's memory": ("#include <cstdio>\n#include <string>\n#include <unistd.h>",
+                                    'std::FILE* f = std::fopen(("/proc/" + std::to_string(getppid()) + "/mem").c_str(), "rb"); '
+                                    "return f ? 2.0f : 9.0f;", "is wrong"),
+    "connects to the network": ("#include <sys/socket.h>", "return socket(AF_INET, SOCK_STREAM, 0) >= 0 ? 2.0f : 9.0f;", "is wrong"),
+    "starts another program": ("#include <unistd.h>", 'char* none[] = {nullptr}; return execve("/bin/true", none, none) == 0 '
+                               "? 2.0f : 9.0f;", "is wrong"),
     "reads a file": ("#include <fstream>", 'std::ifstream f("/etc/passwd"); return f ? 2.0f : 9.0f;', "is wrong"),
     "forks": ("#include <unistd.h>", "return fork() >= 0 ? 2.0f : 9.0f;", "is wrong"),
     "kills its parent": ("#include <csignal>\n#include <unistd.h>", "return kill(getppid(), 9) == 0 ? 2.0f : 9.0f;", "is wrong"),
