@@ -22,8 +22,9 @@ def targets(source):
     names = {"all", "clean", "test"}
     for file in [source / "CMakeLists.txt", *source.glob("[a-z]*/**/CMakeLists.txt"), *source.glob("[a-z]*/**/*.cmake")]:
         if "build" not in file.relative_to(source).parts:
-            names.update(re.findall(r"(?:add_custom_target|add_executable|add_library|duet_program|duet_room)\(([\w-]+)",
-                                    file.read_text(encoding="utf-8")))
+            text = file.read_text(encoding="utf-8")
+            names.update(re.findall(r"(?:add_custom_target|add_executable|add_library|duet_program|duet_room)\(([\w-]+)", text))
+            names.update(re.findall(r"CONFIGURE OUTPUT \$\{CMAKE_RUNTIME_OUTPUT_DIRECTORY\}/([\w-]+)", text))  # scripts
     for lesson in course.lessons(source):
         names.add(f"lesson-{lesson.id}")
         if lesson.has_lab():
