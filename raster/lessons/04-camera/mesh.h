@@ -18,8 +18,7 @@ struct MeshVertex {
 /// Three vertices a triangle, counter-clockwise seen from outside.
 using Mesh = std::vector<MeshVertex>;
 
-/// Reads an OBJ file whose faces are such as "f 1/1/1 2/2/2 3/3/3": each corner's point, texture coordinate and normal.
-/// Throws a std::exception where the file is missing, or a face names what it doesn't have.
+/// Reads an OBJ file with faces such as "f 1/1/1 2/2/2 3/3/3". Throws a std::exception where it is missing or wrong.
 inline Mesh read_obj(const std::string& path) {
     std::ifstream file(path);
     if (!file) throw std::runtime_error(path + ": can't be opened");

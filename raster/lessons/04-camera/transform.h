@@ -1,4 +1,4 @@
-// From the world to the picture: three matrices and a division.
+// From the world to the image: two matrices and a division.
 #pragma once
 
 #include "common/vec/matrix.h"
@@ -27,9 +27,9 @@ inline Mat4 perspective(float fov, float aspect, float near, float far) {
     return m;
 }
 
-/// Clip space to the picture: x and y in pixels from the upper left corner, z the depth, and in w what the division
+/// Clip space to the image: x and y in pixels from the upper left corner, z the depth, and in w what the division
 /// divided by. w must be positive (the clipping lesson sees to that).
-inline Vec4 to_picture(Vec4 clip, int width, int height) {
+inline Vec4 to_image(Vec4 clip, int width, int height) {
     const float x = (1 + clip.x / clip.w) / 2, y = (1 - clip.y / clip.w) / 2;
     return {x * static_cast<float>(width), y * static_cast<float>(height), clip.z / clip.w, clip.w};
 }

@@ -17,7 +17,7 @@ Pinhole pinhole(const View& v, int width, int height) {
 
 Mat4 look_at(Vec3 eye, Vec3 target, Vec3 up) {
     // With a field of view of 90 degrees and 2 × 2 pixels, pixel_x = 1 + x / w and pixel_y = 1 - y / w.
-    const Mat4d pixel = pinhole({eye, target, up, radians(90.0f), 0.1f, 1}, 2, 2).world_to_pixel;
+    const Mat4d pixel = pinhole({eye, target, up, kPi / 2, 0.1f, 1}, 2, 2).world_to_pixel;
     Mat4d m;
     for (std::size_t i = 0; i < 4; ++i) {
         m[0][i] = pixel[0][i] - pixel[3][i];
@@ -39,10 +39,10 @@ Mat4 perspective(float fov, float aspect, float near, float far) {
 
 Vec3 to_image(Vec4 clip, int width, int height) {
     // The point at distance w whose x and y are those of clip, seen by a camera whose field of view makes f = 1.
-    const View view{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, radians(90.0f), 0.1f, 1};
+    const View view{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, kPi / 2, 0.1f, 1};
     const double aspect = static_cast<double>(width) / height;
-    const Vec4d c(clip);
-    const Vec3d p = pinhole(view, width, height).project({c.x * aspect, c.y, -c.w});
+    const double x = static_cast<double>(clip.x), y = static_cast<double>(clip.y), w = static_cast<double>(clip.w);
+    const Vec3d p = pinhole(view, width, height).project({x * aspect, y, -w});
     return {static_cast<float>(p.x), static_cast<float>(p.y), clip.z / clip.w};
 }
 
