@@ -49,7 +49,7 @@ ImageRgb gradient() {
     return image;
 }
 
-/// What a viewer shows that takes a file's bytes, from number `begin` on, for the pixels of a P6 file.
+/// What a viewer shows that takes the bytes of a file, from byte `begin` on, for the pixels of a P6 file.
 ImageRgb misread(const std::string& file, std::size_t begin) {
     ImageRgb image(480, 270);
     for (Rgb& pixel : image.pixels())
@@ -58,7 +58,7 @@ ImageRgb misread(const std::string& file, std::size_t begin) {
     return image;
 }
 
-/// A file as a program for Windows writes it that forgets std::ios::binary: each byte 10 becomes the two bytes 13 10.
+/// What a program on Windows writes that forgets std::ios::binary: each byte 10 becomes the two bytes 13 and 10.
 std::string written_as_text(const std::string& file) {
     std::string changed;
     for (const char byte : file) changed += byte == '\n' ? std::string("\r\n") : std::string(1, byte);
@@ -82,21 +82,31 @@ Rgb step_color(float value) {
     return lerp(Rgb(0.9f), value > 0 ? Rgb(0.8f, 0.16f, 0.01f) : Rgb(0.01f, 0.1f, 0.5f), clamp(step, 0.0f, 1.0f));
 }
 
-/// Four fields: the length of p, a·p, a·(p/|p|), and z of a × p, at each point p of the plane z = 0. The arrow is a.
+/// Four fields: the length of p, a·p, a·(p / |p|), and z of a × p, at each point p of the plane z = 0. The arrow is a.
 ImageRgb fields() {
-    constexpr int kSide = 200;
-    ImageRgb image(4 * kSide, kSide);
+    ImageRgb image(800, 200); // four squares
     const Vec3 a{0.8f, 0.6f, 0};
-    for (int row = 0; row < kSide; ++row)
-        for (int column = 0; column < 4 * kSide; ++column) {
-            const float x = (static_cast<float>(column % kSide) + 0.5f) / kSide * 3 - 1.5f;
-            const Vec3 p{x, 1.5f - (static_cast<float>(row) + 0.5f) / kSide * 3, 0};
+    for (int row = 0; row < 200; ++row)
+        for (int column = 0; column < 800; ++column) {
+            const Vec3 p{(static_cast<float>(column % 200) - 99.5f) / 66, (99.5f - static_cast<float>(row)) / 66, 0};
             const float along = dot(a, p), beside = std::abs(cross(a, p).z);
-            const bool shaft = along > 0 && along < 0.8f && beside < 0.025f;
-            const bool head = along >= 0.75f && along < 1 && beside < 0.5f * (1 - along);
+            const bool arrow = along > 0 && beside < (along < 0.75f ? 0.025f : 0.5f * (1 - along));
             const float value[] = {length(p), along, dot(a, normalize(p)), cross(a, p).z};
-            const bool frame = column % kSide == 0 && column > 0;
-            image(column, row) = frame ? Rgb(1) : shaft || head ? Rgb(0.01f) : step_color(value[column / kSide]);
+            image(column, row) = arrow ? Rgb(0.01f) : step_color(value[column / 200]);
+        }
+    return image;
+}
+
+/// A spotlight at the origin that points along a lights each point whose direction makes an angle of less than 25
+/// degrees with a. On the left the direction is p / |p|, on the right it is p itself: the mistake.
+ImageRgb spotlights() {
+    ImageRgb image(472, 200);
+    for (int row = 0; row < 200; ++row)
+        for (int column = 0; column < 472; ++column) {
+            const Vec3 p{static_cast<float>(column % 240 - 10) / 100, static_cast<float>(10 - row) / 100, 0};
+            const float cosine = dot(Vec3{0.8f, -0.6f, 0}, column < 240 ? normalize(p) : p);
+            const Rgb color = cosine > std::cos(radians(25.0f)) ? Rgb(1, 0.7f, 0.25f) : Rgb(0.01f, 0.02f, 0.06f);
+            image(column, row) = column % 240 < 232 ? color : Rgb(1);
         }
     return image;
 }
@@ -110,10 +120,8 @@ ImageRgb grays() {
             const float step = static_cast<float>(column / 30) / 15;
             const bool left = std::abs(column - 140) < 50, right = std::abs(column - 340) < 50;
             Rgb& pixel = image(column, row);
-            if (row < 75)
-                pixel = Rgb(step);
-            else if (row < 150)
-                pixel = Rgb(srgb_decode(step));
+            if (row < 150)
+                pixel = Rgb(row < 75 ? step : srgb_decode(step));
             else if (row > 170 && row < 250 && (left || right))
                 pixel = Rgb(left ? 0.5f : srgb_decode(0.5f));
             else
@@ -124,16 +132,17 @@ ImageRgb grays() {
 
 int main() {
     const Vec3 a{1, 2, 3}, b{4, -5, 6}, c = cross(a, b), u = normalize(Vec3{3, 4, 0});
-    std::printf("a·b = %g, a×b = (%g, %g, %g), unit(3, 4, 0) = (%g, %g, %g)\n", dot(a, b), c.x, c.y, c.z, u.x, u.y,
-                u.z);
+    std::printf("a·b = %g, a×b = (%g, %g, %g), unit = (%g, %g, %g)\n", dot(a, b), c.x, c.y, c.z, u.x, u.y, u.z);
     const std::string text = ppm_text(gradient()), binary = ppm_binary(gradient());
     save("gradient-p3.ppm", text);
     save("gradient-p6.ppm", binary);
     const bool same = read_image("gradient-p3.ppm").pixels() == read_image("gradient-p6.ppm").pixels();
-    std::printf("P3: %zu bytes, P6: %zu bytes; %s\n", text.size(), binary.size(), same ? "same pixels" : "they differ");
+    std::printf("P3: %zu bytes, P6: %zu bytes\n", text.size(), binary.size());
     write_image("evidence.png", gradient());
     write_image("fields.png", fields());
     write_image("grays.png", grays());
+    write_image("spotlights.png", spotlights());
+    write_image("digits.png", misread(text, 15));
     write_image("text-mode.png", misread(written_as_text(binary), 17));
     write_image("overflow.png", overflowing());
     return same ? 0 : 1;
