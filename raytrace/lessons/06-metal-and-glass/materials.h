@@ -20,8 +20,8 @@ inline Material glass(float ior) { return {Material::Kind::kGlass, Rgb(1), 0, io
 /// The direction d mirrored at a surface of unit normal n. Unlike duet::reflect, d points toward the surface.
 inline Vec3 mirror(Vec3 d, Vec3 n) { return d - n * (2 * dot(d, n)); }
 
-/// Snell's law: the unit direction d, pointing toward the surface, bent where the index of refraction changes by
-/// ratio = outside / inside as seen from d; nothing where all light is reflected. (Ray Tracing in One Weekend, §11.2)
+/// Snell's law: the unit vector d bends at a surface whose unit normal n is on the side that d comes from. ratio: the
+/// index there over the index beyond. Nothing where all light is reflected. (Ray Tracing in One Weekend, §11.2)
 inline std::optional<Vec3> refract(Vec3 d, Vec3 n, float ratio) {
     const float cosine = -dot(d, n);
     const float sine2 = ratio * ratio * (1 - cosine * cosine); // the squared sine of the refracted ray's angle
@@ -29,7 +29,8 @@ inline std::optional<Vec3> refract(Vec3 d, Vec3 n, float ratio) {
     return d * ratio + n * (ratio * cosine - std::sqrt(1 - sine2));
 }
 
-/// The fraction of light that glass reflects; the cosine is taken in the thinner medium. (Schlick 1994, eq. 15)
+/// The fraction of light that glass reflects. The cosine is that of the ray in the medium of the smaller index.
+/// (Schlick 1994, eq. 15)
 inline float schlick(float cosine, float ior) {
     const float r0 = (1 - ior) / (1 + ior);
     return r0 * r0 + (1 - r0 * r0) * std::pow(1 - cosine, 5.0f);
@@ -52,8 +53,7 @@ inline std::optional<Scattered> scatter(const Material& material, const Ray& ray
     }
     if (material.kind == Material::Kind::kGlass)
         if (const auto refracted = refract(d, hit.n, hit.front ? 1 / material.ior : material.ior)) {
-            const bool in_thinner = hit.front == (material.ior > 1); // whether the ray comes through the thinner medium
-            const float cosine = -dot(in_thinner ? d : *refracted, hit.n);
+            const float cosine = -dot(hit.front == (material.ior > 1) ? d : *refracted, hit.n); // at the smaller index
             if (random.next() >= schlick(cosine, material.ior)) direction = *refracted;
         }
     return Scattered{{hit.p, direction, 1e-3f}, material.albedo};
