@@ -25,12 +25,12 @@ struct Surface {
     float specular = 0.4f, shininess = 60;
 };
 
-/// The light of one white lamp that a surface sends to the eye. n is the normal; to_light and to_eye lead away from the
-/// surface; all three have length 1. (Phong 1975, "Illumination for Computer Generated Pictures", with the half vector
-/// of Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures")
+/// The light of one white light source that a surface reflects to the eye. n is the normal; to_light and to_eye lead
+/// away from the surface; all three have length 1. (Phong 1975, "Illumination for Computer Generated Pictures", with
+/// the half vector of Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures")
 inline Rgb blinn_phong(Vec3 n, Vec3 to_light, Vec3 to_eye, const Surface& surface) {
     const float cosine = dot(n, to_light);
-    if (cosine <= 0) return Rgb(0); // the lamp is behind the surface
+    if (cosine <= 0) return Rgb(0); // the light source is behind the surface
     const Vec3 half = normalize(to_light + to_eye);
     const float highlight = surface.specular * std::pow(max(dot(n, half), 0.0f), surface.shininess);
     return surface.diffuse * cosine + Rgb(highlight);
