@@ -6,9 +6,8 @@
 
 namespace duet::lesson {
 
-/// Calls visit(x, y, depth, weights) for each pixel of a width × height image whose center the triangle covers. All
-/// of the triangle must be in front of the near plane. Depth is linear in the image, so that the weights serve for
-/// it.
+/// Calls visit(x, y, depth, weights) for each pixel of a width × height image whose center the triangle covers. All of
+/// it must be in front of the near plane. Depth is linear in the image, so the weights serve for it.
 template <typename Visit> void for_each_fragment(const Triangle& part, int width, int height, const Visit& visit) {
     const auto corner = [&](std::size_t i) { return to_image(part[i].clip, width, height); };
     const Vec4 a = corner(0), b = corner(1), c = corner(2);

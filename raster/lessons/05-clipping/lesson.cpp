@@ -8,12 +8,14 @@
 using namespace duet;
 using namespace duet::lesson;
 
-constexpr int kWidth = 396, kHeight = 300; // their ratio is 1.32
-
-/// Two wrong ways to get the parts of a triangle that are drawn. The right one is clip_near.
-std::vector<Triangle> no_clipping(const Triangle& triangle) { return {triangle}; }
+/// Three wrong ways to get the parts of a triangle that are drawn. The right one is clip_near.
+std::vector<Triangle> no_clipping(const Triangle& t) { return {t}; }
 std::vector<Triangle> drop_whole(const Triangle& t) {
     return t[0].clip.z < 0 || t[1].clip.z < 0 || t[2].clip.z < 0 ? std::vector<Triangle>() : std::vector{t};
+}
+std::vector<Triangle> divide_first(const Triangle& t) {
+    const auto divided = [](Vertex v) { return Vertex{v.clip * (1 / v.clip.w), v.p, v.n, v.uv}; };
+    return clip_near({divided(t[0]), divided(t[1]), divided(t[2])});
 }
 using Clip = std::vector<Triangle>(const Triangle&);
 
@@ -29,39 +31,38 @@ void draw(Framebuffer& target, const std::vector<Triangle>& triangles, Clip& cli
 
 /// A floor of planks, and two rows of amphorae on it. They begin behind the eye.
 ImageRgb lane(const Mesh& amphora, const Mat4& camera, Clip& clip) {
-    Framebuffer large(4 * kWidth, 4 * kHeight, Rgb(0.3f, 0.5f, 0.8f));
+    Framebuffer large(3 * 330, 3 * 250, Rgb(0.3f, 0.5f, 0.8f));
     for (int i = 0; i < 24 * 8; ++i) {
-        const float x = static_cast<float>(i / 8 - 12) * 0.4f,
-                    z = 5.4f - 2.5f * static_cast<float>(i % 8) + static_cast<float>(i / 8 % 3);
-        const auto corner = [&](float dx, float dz) { return MeshVertex{{x + dx, 0, z + dz}, {0, 1, 0}, {}}; };
+        const float wear = 0.0005f * static_cast<float>(i * 11 % 7), x = 0.4f * static_cast<float>(i / 8 - 12),
+                    z = 0.5f * static_cast<float>(i / 8 % 3 * 2 - i % 8 * 5 + 11);
+        const auto corner = [&](float dx, float dz) { return MeshVertex{{x + dx, wear, z + dz}, {}, {}}; };
         const MeshVertex a = corner(0, 0), b = corner(0.4f, 0), c = corner(0.4f, -2.5f), d = corner(0, -2.5f);
-        const Rgb wood = Rgb(0.3f, 0.16f, 0.07f) * (0.5f + 0.2f * static_cast<float>(i * 11 % 7));
+        const Rgb wood = Rgb(0.3f, 0.16f, 0.07f) * (0.5f + 400 * wear);
         draw(large, in_clip_space({a, b, c, a, c, d}, camera), clip, wood);
     }
     for (int i = 0; i < 18; ++i) {
-        Mesh placed = amphora;
-        for (MeshVertex& v : placed) v.p += Vec3{i % 2 ? 0.8f : -0.8f, 0, 3.2f - 1.2f * static_cast<float>(i / 2)};
-        draw(large, in_clip_space(placed, camera), clip, Rgb(0));
+        const Mat4 place = translation(Vec3{i % 2 ? 0.8f : -0.8f, 0, 3.2f - 1.2f * static_cast<float>(i / 2)});
+        draw(large, in_clip_space(amphora, camera * place), clip, Rgb(0));
     }
-    return shrink(large.color, 4);
+    return shrink(large.color, 3);
 }
 
 /// Four triangles and a plane seen from the side: what is above the plane is in front of it. Whole triangles are gray.
 ImageRgb cuts() {
-    Framebuffer image(480, 160, Rgb(1));
+    ImageRgb image(480, 160, Rgb(1));
+    const auto paint = [&](const Triangle& t, Rgb color) {
+        for_each_fragment(t, 480, 160, [&](int x, int y, float, Vec3) { image(x, y) = color; });
+    };
     const auto corner = [](float x, float y) { return Vertex{{x, y, y, 1}, {}, {}, {}}; };
     for (int i = 0; i < 4; ++i) {
         const float x = -0.77f + 0.5f * static_cast<float>(i), y = 0.52f - 0.31f * static_cast<float>(i);
         const Triangle t{corner(x - 0.15f, y + 0.3f), corner(x + 0.2f, y), corner(x - 0.1f, y - 0.5f)};
-        for_each_fragment(t, 480, 160, [&](int px, int py, float, Vec3) { image.color(px, py) = Rgb(0.7f); });
-        Rgb color = rainbow(0.1f);
-        for (const Triangle& part : clip_near(t)) {
-            for_each_fragment(part, 480, 160, [&](int px, int py, float, Vec3) { image.color(px, py) = color; });
-            color = rainbow(0.55f); // of the second part
-        }
+        paint(t, Rgb(0.7f));
+        const std::vector<Triangle> parts = clip_near(t);
+        for (std::size_t k = 0; k < parts.size(); ++k) paint(parts[k], rainbow(k == 0 ? 0.1f : 0.55f));
     }
-    draw_path(image.color, {{0, 80}, {480, 80}}, 1, Rgb(0));
-    return image.color;
+    draw_path(image, {{0, 80}, {480, 80}}, 1, Rgb(0));
+    return image;
 }
 
 int main() {
@@ -70,6 +71,7 @@ int main() {
     const Mat4 camera = perspective(1.25f, 1.32f, 0.05f, 30) * view, far = perspective(1.25f, 1.32f, 1.6f, 30) * view;
     write_image("evidence.png", beside({lane(amphora, camera, clip_near), lane(amphora, camera, no_clipping)}));
     write_image("mistakes.png", beside({lane(amphora, camera, drop_whole), lane(amphora, far, clip_near)}));
+    write_image("divided.png", lane(amphora, camera, divide_first));
     write_image("cuts.png", cuts());
     std::vector<Vec2d> behind, before; // points of a floor 1 m below the eye
     for (double w = 4; w > 0.2; w -= 0.05) behind.push_back({-w, 1 / w}), before.push_back({w, -1 / w});
