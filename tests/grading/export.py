@@ -66,8 +66,9 @@ def write_template(folder):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(labs.SOURCE / name, folder / name)
     for path in labs.all_folders().values():
-        place = folder / path.relative_to(labs.SOURCE)
-        shutil.copyfile(place / "lab_starter.cpp", place / "lab.cpp")
+        starter = folder / path.relative_to(labs.SOURCE) / "lab_starter.cpp"
+        if starter.exists():  # git tracks this lab
+            shutil.copyfile(starter, starter.with_name("lab.cpp"))
     ignored = folder / ".gitignore"  # the project ignores lab.cpp, students hand it in
     lines = ignored.read_text().splitlines(keepends=True)
     ignored.write_text("".join(line for line in lines if line.strip() != "lab.cpp"))

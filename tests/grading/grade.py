@@ -52,7 +52,7 @@ def not_compiled(program, out, reason):
     return {**result, "error": reason}
 
 
-def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, trusted=False):
+def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_folder=None, trusted=False):
     """The result of one submission as a dictionary (tests/grading/README.md lists its keys)."""
     program = judge_of(lab_id, build)
     path = pathlib.Path(path)
@@ -68,6 +68,8 @@ def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, trusted=F
         result = report.printable(result)
         if page_folder is not None:
             page.write(result, out, pathlib.Path(page_folder))
+        if images_folder is not None:
+            page.write_images(result, out, pathlib.Path(images_folder))
     return result
 
 
@@ -89,7 +91,7 @@ def grade_one(arguments):
     folder = arguments.page
     if folder is None and arguments.start:
         folder = arguments.build / "lessons" / f"{arguments.lab}-lab"
-    result = grade(arguments.lab, path, arguments.build, arguments.seed, folder)
+    result = grade(arguments.lab, path, arguments.build, arguments.seed, folder, arguments.images)
     report.write_files(result, arguments)
     if arguments.json == "-":
         return
@@ -122,6 +124,8 @@ def parse_arguments():
     parser.add_argument("--seed", type=int, default=1, help="another number gives other test values (default: 1)")
     parser.add_argument("--json", metavar="FILE", help="write the result as JSON (-: to standard output, and nothing else)")
     parser.add_argument("--page", metavar="FOLDER", type=pathlib.Path, help="write a page with expected, found and difference")
+    parser.add_argument("--images", metavar="FOLDER", type=pathlib.Path,
+                        help="write the images of that page as PNG files, named by what they show")
     parser.add_argument("--gradescope", metavar="FILE", help="write the result as Gradescope's results.json")
     parser.add_argument("--autolab", metavar="FILE", help="write the points as the line of JSON that Autolab reads")
     parser.add_argument("--build", metavar="FOLDER", type=lambda path: pathlib.Path(path).resolve(), default=DEFAULT_BUILD,

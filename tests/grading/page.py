@@ -2,6 +2,8 @@
 import base64
 import html
 import pathlib
+import re
+import shutil
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
 section{border-left:6px solid #0a7d4f;padding:.2rem 1rem;margin:1rem 0;background:#f6f7f8}
@@ -27,6 +29,16 @@ def section(folder, item):
     parts += [f"<p>Your program printed:</p><pre>{html.escape(item['printed'])}</pre>"] if item.get("printed") else []
     parts += [picture(folder, image) for image in item.get("images", []) if (folder / image["file"]).exists()]
     return "\n".join(parts) + "</section>"
+
+
+def write_images(result, images_folder, folder):
+    """Every image of a result as a file, named by what it shows: "your rasterizer" becomes your-rasterizer.png."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for item in result["items"]:
+        for image in item.get("images", []):
+            name = re.sub(r"[^a-z0-9]+", "-", image["name"].lower()).strip("-")
+            if (images_folder / image["file"]).exists():
+                shutil.copyfile(images_folder / image["file"], folder / f"{name}.png")
 
 
 def write(result, images_folder, folder):
