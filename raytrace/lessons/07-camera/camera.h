@@ -14,6 +14,12 @@ struct View {
     float focus_distance = 1;  ///< from the eye to the plane that is sharp
 };
 
+/// A random point of the disk of radius 1 around (0, 0), all equally likely.
+inline Vec2 random_in_disk(Random& random) {
+    const float r = std::sqrt(random.next()), angle = 2 * kPi * random.next();
+    return {r * std::cos(angle), r * std::sin(angle)};
+}
+
 /// Turns points of the picture into rays. (Ray Tracing in One Weekend, §12 and §13)
 class Camera {
 public:
@@ -23,28 +29,27 @@ public:
         up_ = cross(back_, right_);
         const float half = std::tan(static_cast<float>(radians(view.fov_degrees)) / 2) * view.focus_distance;
         pixel_ = 2 * half / static_cast<float>(height);
-        center_x_ = 0.5f * static_cast<float>(width);
-        center_y_ = 0.5f * static_cast<float>(height);
+        center_ = {0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height)};
     }
 
-    /// A ray through the point (x, y) of the picture, in pixels from its upper left corner, from a random point of the
-    /// lens. All rays of one point meet in the plane at the focus distance.
-    Ray ray(float x, float y, Random& random) const {
-        const Vec3 target = view_.eye - back_ * view_.focus_distance + right_ * ((x - center_x_) * pixel_) +
-                            up_ * ((center_y_ - y) * pixel_);
-        Vec3 origin = view_.eye;
-        if (view_.aperture_radius > 0) {
-            const float r = view_.aperture_radius * std::sqrt(random.next());
-            const float angle = 2 * kPi * random.next();
-            origin += right_ * (r * std::cos(angle)) + up_ * (r * std::sin(angle));
-        }
+    /// The ray through the point (x, y) of the picture, in pixels from its upper left corner. It starts at a point of
+    /// the lens, given in the disk of radius 1. All rays of one (x, y) meet in the plane at the focus distance.
+    Ray ray(float x, float y, Vec2 lens) const {
+        const Vec3 target = view_.eye - back_ * view_.focus_distance + right_ * ((x - center_.x) * pixel_) +
+                            up_ * ((center_.y - y) * pixel_);
+        const Vec3 origin = view_.eye + (right_ * lens.x + up_ * lens.y) * view_.aperture_radius;
         return {origin, normalize(target - origin)};
+    }
+    /// The same from a random point of the lens.
+    Ray ray(float x, float y, Random& random) const {
+        return ray(x, y, view_.aperture_radius > 0 ? random_in_disk(random) : Vec2(0, 0));
     }
 
 private:
     View view_;
     Vec3 right_, up_, back_; ///< the camera's axes, of unit length
-    float pixel_, center_x_, center_y_;
+    float pixel_;            ///< the side of a pixel in the plane at the focus distance
+    Vec2 center_;            ///< of the picture, in pixels
 };
 
 } // namespace duet::lesson
