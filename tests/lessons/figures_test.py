@@ -15,7 +15,7 @@ MOST_SECONDS = 300  # of all programs together, one after the other
 
 
 def faults_of(lesson, out, compare):
-    written = {path.name: path for path in out.iterdir() if path.suffix != ".json"}
+    written = {path.name: path for path in out.iterdir() if path.suffix in (".png", ".svg")}
     committed = {path.name: path for path in lesson.figures()}
     faults = [f"{name} is written but not committed in figures/" for name in sorted(written.keys() - committed.keys())]
     faults += [f"figures/{name} is not written by the program" for name in sorted(committed.keys() - written.keys())]
