@@ -69,7 +69,7 @@ TEST_SUITE("lesson") {
 #else
         constexpr int kPerPixel = 100;
 #endif
-        const Scene scene = load_scene(DUET_MODELS "spheres.json");
+        const Scene scene = load_scene(DUET_SOURCE_DIR "/models/spheres.json");
         raytrace::Settings settings;
         settings.samples_per_pixel = kPerPixel;
         const raytrace::Prepared prepared = raytrace::prepare(scene, settings);
