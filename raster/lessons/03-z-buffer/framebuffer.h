@@ -1,4 +1,4 @@
-// A picture that knows how far away each of its pixels is.
+// An image that knows how far away each of its pixels is.
 #pragma once
 
 #include "common/image/image.h"
@@ -13,8 +13,7 @@ struct Framebuffer {
     Framebuffer(int width, int height, Rgb background)
         : color(width, height, background), depth(width, height, kInfinity) {}
 
-    /// Writes the pixel if nothing nearer was written there before. (Catmull 1974, "A Subdivision Algorithm for Computer
-    /// Display of Curved Surfaces", whose z-buffer this is)
+    /// Writes the pixel if nothing as near was written there before: the z-buffer of Catmull 1974.
     void write(int x, int y, float z, Rgb value) {
         if (!(z < depth(x, y))) return;
         depth(x, y) = z;
@@ -22,7 +21,7 @@ struct Framebuffer {
     }
 };
 
-/// Smooth edges: a picture that was drawn n times too wide and high, with each block of n × n pixels averaged to one.
+/// Smooth edges: of an image that was drawn n times too wide and high, each block of n × n pixels becomes their mean.
 inline ImageRgb shrink(const ImageRgb& large, int n) {
     ImageRgb small(large.width() / n, large.height() / n);
     for (int y = 0; y < small.height() * n; ++y)
