@@ -1,0 +1,574 @@
+// The examiner of assignment 1. Its own renderer computes in double; only coverage comes from lesson raster-02. It can
+// make each of the typical mistakes, so that a wrong picture is recognized by its likeness. The time budget is a
+// multiple of the time that this plain renderer takes in the same run.
+#include "common/image/image_file.h"
+#include "compare/lessons/assignments/1-rasterizer/lab.h"
+#include "raster/lessons/02-triangles/triangle.h"
+#include "tests/grading/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+
+using namespace duet;
+using namespace duet::grading;
+using lab::Camera;
+using lab::Corner;
+using lab::Mesh;
+using lab::Triangle;
+using lab::Vertex;
+
+LAB_TITLE("assignment-1", "A rasterizer that draws the amphora")
+
+namespace {
+
+/// What the examiner's renderer can do wrong.
+struct Wrong {
+    bool depth_unused = false, farthest_wins = false, affine = false, v_flipped = false, unclipped = false,
+         dropped = false, pixel_corners = false, upside_down = false, mirrored = false, aspect_ignored = false,
+         one_side_only = false, nearest_texel = false;
+};
+
+double d(float x) { return static_cast<double>(x); }
+
+Vec4d clip_point(Vec3 point, const Camera& camera, double aspect) {
+    const Vec3d eye(camera.eye), back = normalize(eye - Vec3d(camera.target)),
+                                 right = normalize(cross(Vec3d(camera.up), back)), top = cross(back, right);
+    const Vec3d q = Vec3d(point) - eye;
+    const double w = -dot(back, q), f = 1 / std::tan(d(camera.fov) / 2);
+    return {f * dot(right, q) / aspect, f * dot(top, q), w - d(camera.near), w};
+}
+
+Rgb texel(const ImageRgb& texture, int x, int y) {
+    const int width = texture.width(), height = texture.height();
+    return texture(((x % width) + width) % width, height - 1 - ((y % height) + height) % height);
+}
+Rgb look_up(const ImageRgb& texture, Vec2d uv, bool nearest = false) {
+    const double x = uv.x * texture.width() - 0.5, y = uv.y * texture.height() - 0.5;
+    if (nearest) return texel(texture, static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
+    const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+    const auto s = static_cast<float>(x - i), t = static_cast<float>(y - j);
+    return (texel(texture, i, j) * (1 - s) + texel(texture, i + 1, j) * s) * (1 - t) +
+           (texel(texture, i, j + 1) * (1 - s) + texel(texture, i + 1, j + 1) * s) * t;
+}
+
+struct Point {
+    Vec4d clip;
+    Vec2d uv;
+};
+std::vector<std::array<Point, 3>> clipped(const std::array<Point, 3>& t, const Wrong& wrong) {
+    if (wrong.unclipped) return {t};
+    std::vector<Point> outline;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point &a = t[i], &b = t[(i + 1) % 3];
+        if (a.clip.z >= 0) outline.push_back(a);
+        if ((a.clip.z >= 0) == (b.clip.z >= 0)) continue;
+        if (wrong.dropped) return {};
+        const Point &in = a.clip.z >= 0 ? a : b, &out = a.clip.z >= 0 ? b : a;
+        const double s = in.clip.z / (in.clip.z - out.clip.z);
+        outline.push_back({in.clip * (1 - s) + out.clip * s, in.uv * (1 - s) + out.uv * s});
+    }
+    std::vector<std::array<Point, 3>> parts;
+    for (std::size_t i = 2; i < outline.size(); ++i) parts.push_back({outline[0], outline[i - 1], outline[i]});
+    return parts;
+}
+
+ImageRgb render(const Mesh& mesh, const Camera& camera, const ImageRgb& texture, int width, int height, Rgb background,
+                const Wrong& wrong = {}) {
+    ImageRgb image(width, height, background);
+    Image<double> depth(width, height, wrong.farthest_wins ? -1e30 : 1e30);
+    const double aspect = wrong.aspect_ignored ? 1 : static_cast<double>(width) / height;
+    for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+        std::array<Point, 3> triangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Corner corner = mesh.corners[i + k];
+            triangle[k] = {clip_point(mesh.points[static_cast<std::size_t>(corner.point)], camera, aspect),
+                           Vec2d(mesh.uvs[static_cast<std::size_t>(corner.uv)])};
+        }
+        for (const auto& part : clipped(triangle, wrong)) {
+            std::array<Vec2, 3> p;
+            bool far_out = false;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec4d& c = part[k].clip;
+                const Vec2d at((1 + (wrong.mirrored ? -c.x : c.x) / c.w) / 2 * width,
+                               (1 - (wrong.upside_down ? -c.y : c.y) / c.w) / 2 * height);
+                p[k] = Vec2(at) + Vec2{1, 1} * (wrong.pixel_corners ? 0.5f : 0.0f);
+                far_out = far_out || !(std::abs(at.x) < 4e6 && std::abs(at.y) < 4e6);
+            }
+            if (far_out) continue;
+            if (wrong.one_side_only &&
+                lesson::edge_function(lesson::snap(p[0]), lesson::snap(p[1]), lesson::snap(p[2])) > 0)
+                continue;
+            lesson::for_each_pixel(p[0], p[1], p[2], width, height, [&](int x, int y, Vec3 weights) {
+                Vec3d b(weights);
+                const double z = b.x * part[0].clip.z / part[0].clip.w + b.y * part[1].clip.z / part[1].clip.w +
+                                 b.z * part[2].clip.z / part[2].clip.w;
+                if (!wrong.depth_unused && !(wrong.farthest_wins ? z > depth(x, y) : z < depth(x, y))) return;
+                depth(x, y) = z;
+                if (!wrong.affine) {
+                    b = {b.x / part[0].clip.w, b.y / part[1].clip.w, b.z / part[2].clip.w};
+                    b = b / (b.x + b.y + b.z);
+                }
+                Vec2d uv = part[0].uv * b.x + part[1].uv * b.y + part[2].uv * b.z;
+                if (wrong.v_flipped) uv.y = 1 - uv.y;
+                image(x, y) = look_up(texture, uv, wrong.nearest_texel);
+            });
+        }
+    }
+    return image;
+}
+
+/// Pixels whose color differs by more than a tolerance. A few may: those whose center is within rounding of an outline.
+std::size_t wrong_pixels(const ImageRgb& a, const ImageRgb& b, double tolerance) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        count += !(std::max({std::abs(a[i].r - b[i].r), std::abs(a[i].g - b[i].g), std::abs(a[i].b - b[i].b)}) <=
+                   static_cast<float>(tolerance));
+    return count;
+}
+
+constexpr double kTolerance = 0.03;
+
+/// Draws by the student's code and compares. Up to 1 pixel in 200 may differ.
+void check_picture(Item& item, const std::string& name, const Mesh& mesh, const Camera& camera, const ImageRgb& texture,
+                   int width, int height) {
+    const Rgb background(0.02f, 0.03f, 0.06f);
+    item.limit(20);
+    const ImageRgb found = STUDENT(draw)(mesh, camera, texture, width, height, background);
+    const ImageRgb expected = render(mesh, camera, texture, width, height, background);
+    if (found.width() == width && found.height() == height &&
+        wrong_pixels(found, expected, kTolerance) <= expected.size() / 200) {
+        item.show(name + ": found", found);
+        return;
+    }
+    std::vector<Mistake<ImageRgb>> mistakes;
+    const auto add = [&](const std::string& text, bool Wrong::*flag) {
+        Wrong wrong;
+        wrong.*flag = true;
+        const ImageRgb image = render(mesh, camera, texture, width, height, background, wrong);
+        if (wrong_pixels(image, expected, kTolerance) > expected.size() / 200) mistakes.push_back({image, text});
+    };
+    add("It looks as if depth were not compared: what is drawn last covers what is nearer. Keep the smallest depth of "
+        "each "
+        "pixel.",
+        &Wrong::depth_unused);
+    add("The farthest surface wins: keep the smallest depth, and begin with infinity.", &Wrong::farthest_wins);
+    add("The texture is interpolated evenly over the image, so it bends at the diagonals: use perspective_weights for "
+        "uv.",
+        &Wrong::affine);
+    add("The texture stands on its head: v = 0 is its bottom row, and row 0 of an image is its top row.",
+        &Wrong::v_flipped);
+    add("Triangles are not clipped: what is behind the eye is drawn in front of it.", &Wrong::unclipped);
+    add("Triangles that cross the near plane are missing: draw the part of them that is in front.", &Wrong::dropped);
+    add("Everything is half a pixel too far to the lower right: the center of pixel (0, 0) is at (0.5, 0.5).",
+        &Wrong::pixel_corners);
+    add("The picture is upside down: y points up in clip space, and down in the image.", &Wrong::upside_down);
+    add("The picture is mirrored: x points right in clip space and in the image.", &Wrong::mirrored);
+    add("The aspect is not that of the image, width / height. Of two int this is a whole number: convert them first.",
+        &Wrong::aspect_ignored);
+    add("Triangles are visible from one side only: both windings must be drawn.", &Wrong::one_side_only);
+    add("The texture has hard squares: mix the four nearest texels.", &Wrong::nearest_texel);
+    mistakes.push_back({ImageRgb(width, height, background), "Nothing is drawn."});
+    item.image(name, found, expected, kTolerance, mistakes);
+}
+
+std::string amphora_text() {
+    std::ifstream file(DUET_MODELS "meshes/amphora.obj");
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+/// The amphora, read by the examiner (all its faces are triangles "p/t/n").
+const Mesh& amphora() {
+    static const Mesh mesh = [] {
+        Mesh m;
+        std::istringstream text(amphora_text());
+        for (std::string key; text >> key;) {
+            float x = 0, y = 0, z = 0;
+            if (key == "v" && text >> x >> y >> z) m.points.push_back({x, y, z});
+            if (key == "vt" && text >> x >> y) m.uvs.push_back({x, y});
+            char slash = 0;
+            int normal = 0;
+            Corner c;
+            for (int k = 0; key == "f" && k < 3 && text >> c.point >> slash >> c.uv >> slash >> normal; ++k)
+                m.corners.push_back({c.point - 1, c.uv - 1});
+            if (key[0] == '#' || key == "vn") text.ignore(1000, '\n');
+        }
+        return m;
+    }();
+    return mesh;
+}
+/// Its texture, 256 × 256 texels.
+const ImageRgb& amphora_texture() {
+    static const ImageRgb texture = [] {
+        const ImageRgb large = read_image(DUET_MODELS "textures/amphora.png");
+        const int n = large.width() / 256;
+        ImageRgb small(256, 256);
+        for (int y = 0; y < 256 * n; ++y)
+            for (int x = 0; x < 256 * n; ++x) small(x / n, y / n) += large(x, y) / static_cast<float>(n * n);
+        return small;
+    }();
+    return texture;
+}
+
+/// A checkerboard whose corners have colors of their own, so that a turned or flipped one is seen.
+ImageRgb board(int squares, int size) {
+    ImageRgb image(squares * size, squares * size);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const float u = static_cast<float>(x) / static_cast<float>(image.width()),
+                        v = static_cast<float>(y) / static_cast<float>(image.height());
+            image(x, y) = Rgb(0.2f + 0.7f * u, 0.3f, 0.2f + 0.7f * v) * ((x / size + y / size) % 2 ? 1.0f : 0.35f);
+        }
+    return image;
+}
+
+/// Two triangles a quad, corners counter-clockwise from the lower left of the texture.
+void add_quad(Mesh& mesh, const std::array<Vec3, 4>& corners) {
+    const int p = static_cast<int>(mesh.points.size()), t = static_cast<int>(mesh.uvs.size());
+    mesh.points.insert(mesh.points.end(), corners.begin(), corners.end());
+    for (const Vec2 uv : {Vec2{0, 0}, Vec2{1, 0}, Vec2{1, 1}, Vec2{0, 1}}) mesh.uvs.push_back(uv);
+    for (const int k : {0, 1, 2, 0, 2, 3}) mesh.corners.push_back({p + k, t + k});
+}
+
+/// How often the triangles hub, rim[i], rim[i + 1] cover each pixel by another rule than the top-left one: inside(w, a,
+/// b) for a center with the value w at the edge from a to b.
+template <typename Inside>
+Image<int> fan_by(Vec2 hub, const std::vector<Vec2>& rim, int width, int height, const Inside& inside) {
+    Image<int> image(width, height, 0);
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+        const std::array p{lesson::snap(hub), lesson::snap(rim[i]), lesson::snap(rim[(i + 1) % rim.size()])};
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                bool covered = true;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto a = p[k], b = p[(k + 1) % 3];
+                    covered = covered && inside(lesson::edge_function(a, b, lesson::pixel_center(x, y)), a, b);
+                }
+                image(x, y) += covered;
+            }
+    }
+    return image;
+}
+
+/// The pixels that a triangle covers if 32 bits hold its edge functions.
+Image<int> overflowed(Vec2 pa, Vec2 pb, Vec2 pc, int width, int height) {
+    lesson::FixedPoint a = lesson::snap(pa), b = lesson::snap(pb), c = lesson::snap(pc);
+    const auto edge = [](auto p, auto q, auto r) { return static_cast<std::int32_t>(lesson::edge_function(p, q, r)); };
+    if (edge(a, b, c) < 0) std::swap(b, c);
+    Image<int> image(width, height, 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const lesson::FixedPoint p = lesson::pixel_center(x, y);
+            image(x, y) = lesson::is_inside(edge(a, b, p), a, b) && lesson::is_inside(edge(b, c, p), b, c) &&
+                          lesson::is_inside(edge(c, a, p), c, a);
+        }
+    return image;
+}
+
+Image<int> counts_of(Item& item, const std::vector<lab::Fragment>& fragments, int width, int height) {
+    Image<int> image(width, height, 0);
+    for (const auto& f : fragments) {
+        item.require(f.x >= 0 && f.x < width && f.y >= 0 && f.y < height,
+                     message("There is a fragment at (", f.x, ", ", f.y, "), outside of the image of ", width, " × ",
+                             height, " pixels."));
+        ++image(f.x, f.y);
+    }
+    return image;
+}
+
+} // namespace
+
+LAB_ITEM(0, "the picture: your amphora") {
+    item.limit(20);
+    const Camera camera{{0.75f, 0.95f, 1.5f}, {0, 0.43f, 0}, {0, 1, 0}, 0.62f, 0.1f};
+    item.show("the amphora", STUDENT(draw)(amphora(), camera, amphora_texture(), 300, 360, Rgb(0.02f, 0.03f, 0.06f)));
+}
+
+LAB_ITEM(10, "parse_obj") {
+    const Mesh small = STUDENT(parse_obj)("# a quad and a triangle\nv 0 0 0\nv 1 0 0\nv 1 1.5 -2e-1\nv  0 1 0\n"
+                                          "vt 0 0\nvt 1 0\nvt 1 0.5\nvn 0 0 1\no thing\nf 1/1/1 2/2/1 3/3/1 4/1/1\n"
+                                          "s off\nf 1/3 3/2 2/1\n");
+    item.equal("the number of points", small.points.size(), 4,
+               {{5, "A line \"vn\" is a normal, not a point: compare the whole word."},
+                {8, "Lines \"vt\" and \"vn\" are no points: compare the whole word."},
+                {7, "Lines \"vt\" are no points: compare the whole word."}});
+    item.equal("the number of uvs", small.uvs.size(), 3, {{0, "Lines \"vt\" have the texture coordinates."}});
+    item.near("the third point", small.points[2], Vec3{1, 1.5f, -0.2f}, 1e-6);
+    item.near("the third uv", small.uvs[2], Vec2{1, 0.5f}, 1e-6);
+    item.equal("the number of corners", small.corners.size(), 9,
+               {{6, "A face of four corners becomes two triangles: 0 1 2 and 0 2 3."},
+                {7, "A face of four corners becomes two triangles, six corners: 0 1 2 and 0 2 3."},
+                {12, "A face of n corners becomes n - 2 triangles."}});
+    const auto points_of = [](const Mesh& mesh) {
+        std::vector<int> list;
+        for (const Corner& c : mesh.corners) list.push_back(c.point);
+        return list;
+    };
+    item.near("the points of the corners", points_of(small), std::vector<int>{0, 1, 2, 0, 2, 3, 0, 2, 1}, 0,
+              {{{1, 2, 3, 1, 3, 4, 1, 3, 2}, "An OBJ file counts from 1, a std::vector from 0: subtract 1."},
+               {{0, 1, 2, 1, 2, 3, 0, 2, 1}, "The second triangle of a quad has the corners 0 2 3, not 1 2 3."}});
+    std::vector<int> uvs;
+    for (const Corner& c : small.corners) uvs.push_back(c.uv);
+    item.near(
+        "the uvs of the corners", uvs, std::vector<int>{0, 1, 2, 0, 2, 0, 2, 1, 0}, 0,
+        {{{0, 1, 2, 0, 2, 3, 0, 2, 1}, "These are the numbers of the points: the second number is that of the uv."},
+         {{1, 2, 3, 1, 3, 1, 3, 2, 1}, "The uvs are counted from 1, too: subtract 1."}});
+    item.limit(20);
+    const Mesh found = STUDENT(parse_obj)(amphora_text());
+    item.equal("the number of points of the amphora", found.points.size(), amphora().points.size());
+    item.equal("the number of corners of the amphora", found.corners.size(), amphora().corners.size());
+    for (std::size_t i = 0; i < found.corners.size(); i += 97) {
+        const auto [point, uv] = found.corners[i];
+        item.require(point >= 0 && point < static_cast<int>(found.points.size()) && uv >= 0 &&
+                         uv < static_cast<int>(found.uvs.size()),
+                     message("Corner ", i, " names point ", point, " and uv ", uv, ", which don't exist."));
+        const Corner right = amphora().corners[i];
+        item.near(message("the point of corner ", i, " of the amphora"), found.points[static_cast<std::size_t>(point)],
+                  amphora().points[static_cast<std::size_t>(right.point)], 1e-6);
+        item.near(message("the uv of corner ", i, " of the amphora"), found.uvs[static_cast<std::size_t>(uv)],
+                  amphora().uvs[static_cast<std::size_t>(right.uv)], 1e-6);
+    }
+}
+
+LAB_ITEM(10, "to_clip") {
+    const Camera front{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, kPi / 2, 1};
+    item.near("the point (1, 2, -4) of the page of lesson 04, in clip space,",
+              STUDENT(to_clip)({1, 2, -4}, front, 1.5f), Vec4(2 / 3.0f, 2, 3, 4), 1e-5,
+              {{Vec4(1 / 6.0f, 0.5f, 0.75f, 1), "This is after the division by w. Leave the division to draw."},
+               {Vec4(1.5f, 2, 3, 4), "x must be divided by the aspect, not multiplied."},
+               {Vec4(1, 2, 3, 4), "The aspect plays no part: x is divided by it."},
+               {Vec4(-2 / 3.0f, 2, 3, 4), "The camera's x axis points left: it is up × back, in this order."},
+               {Vec4(2 / 3.0f, -2, 3, 4), "y points up in clip space."},
+               {Vec4(2 / 3.0f, 2, 4, 4), "z is w - near."},
+               {Vec4(2 / 3.0f, 2, -5, -4), "w is the distance in front of the eye, which looks along -z: w = -z."}});
+    for (int i = 0; i < 100; ++i) {
+        Rng& rng = item.random();
+        const Vec3d back = rng.unit_vector();
+        Vec3d up = rng.unit_vector();
+        while (length(cross(up, back)) < 0.4) up = rng.unit_vector();
+        const Vec3 target(rng.unit_vector() * rng.uniform(0, 3)), p(rng.unit_vector() * rng.uniform(0, 5));
+        const Camera camera{target + Vec3(back * rng.uniform(0.5, 5)), target, Vec3(up * rng.uniform(0.5, 2)),
+                            static_cast<float>(rng.uniform(0.4, 2)), static_cast<float>(rng.uniform(0.05, 1))};
+        const auto aspect = static_cast<float>(rng.uniform(0.5, 2));
+        const auto as_float = [](Vec4d v) {
+            const Vec3 xyz(Vec3d(v.x, v.y, v.z));
+            return Vec4(xyz, static_cast<float>(v.w));
+        };
+        const Vec4d right = clip_point(p, camera, d(aspect));
+        item.near(message("the point ", describe(p), " seen from ", describe(camera.eye), " toward ",
+                          describe(camera.target), ", up ", describe(camera.up), ","),
+                  STUDENT(to_clip)(p, camera, aspect), as_float(right), 1e-3,
+                  {{as_float({-right.x, right.y, right.z, right.w}),
+                    "The camera's x axis points left: it is up × back, in this order."},
+                   {as_float({right.x, -right.y, right.z, right.w}), "y points up in clip space."}});
+    }
+}
+
+LAB_ITEM(10, "clip_near") {
+    // The uv of the whole triangle are (0, 0), (1, 0), (0, 1), so areas can be measured by them.
+    const auto area = [](const Triangle& t) {
+        const Vec2d ab = Vec2d(t[1].uv) - Vec2d(t[0].uv), ac = Vec2d(t[2].uv) - Vec2d(t[0].uv);
+        return ab.x * ac.y - ab.y * ac.x;
+    };
+    for (int i = 0; i < 240; ++i) {
+        Rng& rng = item.random();
+        const auto corner = [&](int k) {
+            const double z = rng.uniform(0.1, 3) * ((i >> k) % 2 ? 1 : -1), x = rng.uniform(-2, 2);
+            return Vec4(Vec3(Vec3d(x, rng.uniform(-2, 2), z)), static_cast<float>(z + 0.2));
+        };
+        const Vec4 a = corner(0), b = corner(1), c = corner(2);
+        const Triangle t{Vertex{a, {0, 0}}, Vertex{b, {1, 0}}, Vertex{c, {0, 1}}};
+        const auto parts = STUDENT(clip_near)(t);
+        double whole = 0, sum = 0, absolute = 0; // what the examiner's own clipping leaves, and the student's
+        for (const auto& part : clipped({Point{Vec4d(d(a.x), d(a.y), d(a.z), d(a.w)), {0, 0}},
+                                         Point{Vec4d(d(b.x), d(b.y), d(b.z), d(b.w)), {1, 0}},
+                                         Point{Vec4d(d(c.x), d(c.y), d(c.z), d(c.w)), {0, 1}}},
+                                        {})) {
+            const Vec2d ab = part[1].uv - part[0].uv, ac = part[2].uv - part[0].uv;
+            whole += ab.x * ac.y - ab.y * ac.x;
+        }
+        const std::string name = message("For the triangle with z = ", a.z, ", ", b.z, ", ", c.z, " ");
+        item.require(parts.size() <= 2, message(name, "there are ", parts.size(), " parts, at most 2 are possible."));
+        for (const Triangle& part : parts) {
+            sum += area(part), absolute += std::abs(area(part));
+            for (const Vertex& v : part) {
+                item.require(v.clip.z > -1e-4f,
+                             message(name, "a part has a corner with z = ", v.clip.z, ", behind the near plane."));
+                const float u = v.uv.x, w = v.uv.y;
+                item.near(message("the place of the new corner with uv ", describe(v.uv)), v.clip,
+                          a * (1 - u - w) + b * u + c * w, 1e-3);
+            }
+        }
+        item.require(parts.size() > 0 || whole < 1e-4,
+                     message(name, "nothing is left, but a part of it is in front: draw that part."));
+        item.require(std::abs(absolute - whole) < 1e-3,
+                     message(name, "the part in front has ", describe_number(100 * whole),
+                             " % of the area, and yours has ", describe_number(100 * absolute),
+                             " %. An outline of four corners 0, 1, 2, 3 becomes the triangles 0 1 2 and 0 2 3."));
+        item.require(sum > whole - 1e-3, message(name, "a part has the opposite winding of the original."));
+    }
+}
+
+LAB_ITEM(15, "rasterize: every pixel once, with its weights") {
+    constexpr int kWidth = 48, kHeight = 36;
+    Rng& rng = item.random();
+    // A fan whose corners lie on centers of pixels, so that its edges pass through others.
+    const auto center = [&](int x, int y) { return Vec2{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}; };
+    const Vec2 hub = center(24, 18);
+    const std::vector<Vec2> rim{center(4, 2),   center(24, 1),  center(44, 2), center(46, 18),
+                                center(44, 34), center(24, 35), center(4, 34), center(1, 18)};
+    Image<int> found(kWidth, kHeight, 0), expected(kWidth, kHeight, 0), clockwise(kWidth, kHeight, 0),
+        moved(kWidth, kHeight, 0);
+    const Vec2 half{0.5f, 0.5f};
+    const std::string corners = "Pixels are tested at their upper left corners: their centers are at +0.5.";
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+        const Vec2 b = rim[i], c = rim[(i + 1) % rim.size()];
+        const bool turned = i % 3 == 0;
+        const auto fragments = STUDENT(rasterize)(hub, turned ? c : b, turned ? b : c, kWidth, kHeight);
+        const Image<int> one = counts_of(item, fragments, kWidth, kHeight);
+        for (std::size_t k = 0; k < one.size(); ++k) found[k] += one[k];
+        lesson::for_each_pixel(hub, b, c, kWidth, kHeight, [&](int x, int y, Vec3) {
+            ++expected(x, y);
+            clockwise(x, y) += !turned;
+        });
+        lesson::for_each_pixel(hub + half, b + half, c + half, kWidth, kHeight,
+                               [&](int x, int y, Vec3) { ++moved(x, y); });
+    }
+    item.coverage(
+        "a fan of eight triangles, three of them counter-clockwise", found, expected,
+        {{clockwise, "Triangles with counter-clockwise corners are missing: where the area is negative, swap two "
+                     "corners."},
+         {moved, corners},
+         {fan_by(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w >= 0; }),
+          "Both triangles at an edge take the centers on it: w == 0 counts for a left or top edge only."},
+         {fan_by(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w > 0; }),
+          "No triangle takes the centers on an edge: w == 0 counts for a left or top edge."},
+         {fan_by(hub, rim, kWidth, kHeight,
+                 [](auto w, auto a, auto b) { return w > 0 || (w == 0 && !lesson::is_top_left(a, b)); }),
+          "The rule is turned around: the bottom and right edges take the centers on them."},
+         {Image<int>(kWidth, kHeight, 0), "Nothing is covered at all."}});
+    for (int i = 0; i < 60; ++i) {
+        const double reach = i % 3 == 0 ? 20000 : i % 3 == 1 ? 30 : 2;
+        const double x = rng.uniform(0, kWidth), y = rng.uniform(0, kHeight);
+        const auto corner = [&] { // on the grid
+            const double px = std::round((x + rng.uniform(-reach, reach)) * 256) / 256;
+            return Vec2(Vec2d(px, std::round((y + rng.uniform(-reach, reach)) * 256) / 256));
+        };
+        const Vec2 a = corner(), b = corner(), c = corner();
+        const std::string name = message("the triangle ", describe(a), ", ", describe(b), ", ", describe(c));
+        Image<int> right(kWidth, kHeight, 0), shifted(kWidth, kHeight, 0);
+        Image<Vec3> weights(kWidth, kHeight);
+        lesson::for_each_pixel(a, b, c, kWidth, kHeight,
+                               [&](int px, int py, Vec3 w) { ++right(px, py), weights(px, py) = w; });
+        lesson::for_each_pixel(a + half, b + half, c + half, kWidth, kHeight,
+                               [&](int px, int py, Vec3) { ++shifted(px, py); });
+        const auto fragments = STUDENT(rasterize)(a, b, c, kWidth, kHeight);
+        const std::string overflow =
+            "This is what edge functions of 32 bits give: compute them, and the area, in 64 bits.";
+        item.coverage(name, counts_of(item, fragments, kWidth, kHeight), right,
+                      {{shifted, corners},
+                       {overflowed(a, b, c, kWidth, kHeight), overflow},
+                       {Image<int>(kWidth, kHeight, 0), "Nothing is covered."}});
+        for (const auto& f : fragments) {
+            const Vec3 w = weights(f.x, f.y);
+            item.near(
+                message("the weights at (", f.x, ", ", f.y, ") of ", name), f.weights, w, 2e-3,
+                {{Vec3{w.x, w.z, w.y}, "Where two corners were swapped, their weights must be swapped back."},
+                 {Vec3{w.z, w.x, w.y}, "Each weight is at the wrong corner: that of a comes from the edge b c."},
+                 {Vec3{w.y, w.z, w.x}, "Each weight is at the wrong corner: that of a comes from the edge b c."}});
+        }
+    }
+    item.require(STUDENT(rasterize)({1, 1}, {20, 20}, {10, 10}, kWidth, kHeight).empty(),
+                 "A triangle whose corners lie on one line covers nothing.");
+}
+
+LAB_ITEM(10, "perspective_weights") {
+    item.near("the middle of an edge from w = 1 to w = 3", STUDENT(perspective_weights)({0.5f, 0.5f, 0}, {1, 3, 7}),
+              Vec3{0.75f, 0.25f, 0}, 1e-6,
+              {{Vec3{0.5f, 0.5f, 0}, "These are the weights in the image. In space the nearer end has more weight."},
+               {Vec3{0.25f, 0.75f, 0}, "The nearer end must get more weight: divide by w, don't multiply."},
+               {Vec3{0.5f, 1 / 6.0f, 0}, "They must sum to 1: divide by their sum."}});
+    for (int i = 0; i < 100; ++i) {
+        // A point on a triangle in space by its weights there; the weights in the image follow from them.
+        Rng& rng = item.random();
+        Vec3d b(rng.uniform(0, 1), rng.uniform(0, 1), rng.uniform(0, 1));
+        b = b / (b.x + b.y + b.z);
+        const Vec3d w(rng.uniform(0.2, 5), rng.uniform(0.2, 5), rng.uniform(0.2, 5));
+        const double at = dot(b, w);
+        item.near(message("the weights for w = ", describe(Vec3(w))),
+                  STUDENT(perspective_weights)(Vec3(b * w / at), Vec3(w)), Vec3(b), 1e-4);
+    }
+}
+
+LAB_ITEM(10, "sample") {
+    ImageRgb texture(4, 2);
+    for (int x = 0; x < 4; ++x)
+        texture(x, 0) = Rgb(static_cast<float>(x), 1, 0), texture(x, 1) = Rgb(static_cast<float>(x), 0, 0);
+    const auto at = [&](float u, float v) { return STUDENT(sample)(texture, {u, v}); };
+    const std::string flipped =
+        "The texture stands on its head: v = 0 is the bottom, which is the last row of the image.";
+    item.near("the center of the lower left texel", at(0.125f, 0.25f), Rgb(0, 0, 0), 1e-5,
+              {{Rgb(0, 1, 0), flipped},
+               {Rgb(0.5f, 0.5f, 0), "A texel's center is half a texel from its corner: subtract 0.5."}});
+    item.near("the center of the third texel above", at(0.625f, 0.75f), Rgb(2, 1, 0), 1e-5, {{Rgb(2, 0, 0), flipped}});
+    item.near("a point between two texels", at(0.25f, 0.25f), Rgb(0.5f, 0, 0), 1e-5,
+              {{Rgb(1, 0, 0), "This is the nearest texel: mix the four around the point."},
+               {Rgb(0, 0, 0), "This is the nearest texel: mix the four around the point."}});
+    item.near("the middle of the texture", at(0.5f, 0.5f), Rgb(1.5f, 0.5f, 0), 1e-5);
+    item.near("the left edge, halfway between the first texel and the last", at(0, 0.25f), Rgb(1.5f, 0, 0), 1e-5,
+              {{Rgb(0, 0, 0), "The texture repeats: left of the first texel is the last one."}});
+    item.near("u = -0.875, which is u = 0.125,", at(-0.875f, 0.25f), Rgb(0, 0, 0), 1e-5);
+    item.near("v = 1.75, which is v = 0.75,", at(0.625f, 1.75f), Rgb(2, 1, 0), 1e-5);
+    const ImageRgb random = board(5, 3);
+    for (int i = 0; i < 200; ++i) {
+        const Vec2d uv(item.random().uniform(-2, 3), item.random().uniform(-2, 3));
+        item.near(message("the texture at ", describe(Vec2(uv))), STUDENT(sample)(random, Vec2(uv)),
+                  look_up(random, Vec2d(Vec2(uv))), 1e-3);
+    }
+}
+
+LAB_ITEM(10, "draw: a floor that passes below the eye, and walls that cross") {
+    Mesh mesh;
+    add_quad(mesh, {Vec3{-3, 0, 3}, Vec3{3, 0, 3}, Vec3{3, 0, -5}, Vec3{-3, 0, -5}});
+    const Camera camera{{0.4f, 0.9f, 1}, {-0.2f, 0.3f, -1.5f}, {0, 1, 0}, 1.1f, 0.05f};
+    check_picture(item, "a floor", mesh, camera, board(8, 4), 160, 120);
+    add_quad(mesh, {Vec3{-1.5f, 0, -2.5f}, Vec3{1.2f, 0, -0.7f}, Vec3{1.2f, 1.2f, -0.7f}, Vec3{-1.5f, 1.2f, -2.5f}});
+    add_quad(mesh,
+             {Vec3{1.4f, -0.2f, -2.6f}, Vec3{-1.3f, -0.2f, -0.9f}, Vec3{-1.3f, 0.9f, -0.9f}, Vec3{1.4f, 0.9f, -2.6f}});
+    check_picture(item, "a floor and two walls that cross", mesh, camera, board(8, 4), 160, 120);
+}
+
+LAB_ITEM(15, "draw: the amphora from three places") {
+    check_picture(item, "the amphora", amphora(), {{0.75f, 0.95f, 1.5f}, {0, 0.43f, 0}, {0, 1, 0}, 0.62f, 0.1f},
+                  amphora_texture(), 150, 180);
+    check_picture(item, "the amphora from above", amphora(), {{0.3f, 1.7f, 0.5f}, {0, 0.6f, 0}, {0, 1, 0}, 0.6f, 0.1f},
+                  amphora_texture(), 180, 150);
+    check_picture(item, "the amphora from inside, with a checkerboard for its texture", amphora(),
+                  {{0.05f, 0.3f, 0.04f}, {0, 0.75f, 0}, {0, 0, 1}, 1.7f, 0.02f}, board(16, 8), 150, 150);
+}
+
+LAB_ITEM(10, "the time budget: a large picture of the amphora") {
+    constexpr int kWidth = 480, kHeight = 600;
+    const Camera camera{{0.5f, 0.8f, 1.5f}, {0, 0.45f, 0}, {0, 1, 0}, 0.65f, 0.1f};
+    const Rgb background(0.02f, 0.03f, 0.06f);
+    item.limit(60);
+    const ImageRgb found = STUDENT(draw)(amphora(), camera, amphora_texture(), kWidth, kHeight, background);
+    const double seconds = item.seconds();
+    double plain = 0; // processor time of the slower of two runs: a budget that is too large harms nobody
+    ImageRgb expected;
+    for (int run = 0; run < 2; ++run) {
+        const std::clock_t start = std::clock();
+        expected = render(amphora(), camera, amphora_texture(), kWidth, kHeight, background);
+        plain = std::max(plain, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    }
+    item.require(found.size() == expected.size() && wrong_pixels(found, expected, kTolerance) <= expected.size() / 100,
+                 "The large picture is not right: mend the items above first.");
+    item.require(seconds <= 20 * plain,
+                 message("Your picture took ", describe_number(seconds), " s of processor time, and the budget is ",
+                         describe_number(20 * plain),
+                         " s, 20 times what the examiner's plain renderer takes here. Does "
+                         "rasterize look at every pixel of the image, rather than at those around the triangle?"));
+}
