@@ -240,10 +240,11 @@ LAB_ITEM(0, "your images") {
 
 LAB_ITEM(15, "the ray tracer sees the nearest triangle, and its distance") {
     const Scene scene = random_scene(item.random());
-    for (const Camera& camera : {kFront, kTilted}) {
+    for (const bool aside : {false, true}) {
+        const Camera& camera = aside ? kTilted : kFront;
         const Rendering found = STUDENT(ray_trace)(scene, camera, kWidth, kHeight, false);
-        check_triangles(item, &camera == &kFront ? "the ray tracer's image" : "the ray tracer's image from aside",
-                        found, scene, camera, 1e-3);
+        check_triangles(item, aside ? "the ray tracer's image from aside" : "the ray tracer's image", found, scene,
+                        camera, 1e-3);
         const View view(camera, kWidth, kHeight);
         for (const auto& [x, y] : {std::array{48, 40}, {20, 60}, {90, 55}, {5, 50}}) {
             const Seen seen = see(scene, view, x + 0.5, y + 0.5);
@@ -271,10 +272,11 @@ LAB_ITEM(15, "the ray tracer sees the nearest triangle, and its distance") {
 
 LAB_ITEM(20, "the rasterizer sees the same") {
     const Scene scene = random_scene(item.random());
-    for (const Camera& camera : {kFront, kTilted}) {
+    for (const bool aside : {false, true}) {
+        const Camera& camera = aside ? kTilted : kFront;
         const Rendering found = STUDENT(rasterize)(scene, camera, kWidth, kHeight);
-        check_triangles(item, &camera == &kFront ? "the rasterizer's image" : "the rasterizer's image from aside",
-                        found, scene, camera, 1.0 / 128);
+        check_triangles(item, aside ? "the rasterizer's image from aside" : "the rasterizer's image", found, scene,
+                        camera, 1.0 / 128);
         const View view(camera, kWidth, kHeight);
         for (int y = 3; y < kHeight; y += 5)
             for (int x = 2; x < kWidth; x += 7) {
