@@ -1,37 +1,13 @@
-// The published means of the Cornell box (tests/golden/README.md), and how far a lesson's paths are from them.
+// How far the paths of a lesson are from the published means of the Cornell box.
 #pragma once
 
 #include "raytrace/lessons/07-camera/camera.h"
 #include "raytrace/lessons/10-cornell-box/quads.h"
-
-#include <doctest/doctest.h>
+#include "tests/support/cornell_means.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 namespace duet {
-
-/// A block of 32 x 32 pixels of the picture of 512 x 512 pixels, and the published mean.
-struct CornellBlock {
-    int row = 0, column = 0;
-    Rgbd mean;
-};
-
-inline std::vector<CornellBlock> published_means() {
-    std::ifstream in(DUET_SOURCE_DIR "/tests/golden/cornell-box-means.csv");
-    std::vector<CornellBlock> blocks;
-    for (std::string line; std::getline(in, line);) {
-        if (line.empty() || line[0] == '#' || line[0] == 'b') continue;
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream fields(line);
-        CornellBlock b;
-        fields >> b.row >> b.column >> b.mean.r >> b.mean.g >> b.mean.b;
-        REQUIRE(fields);
-        blocks.push_back(b);
-    }
-    return blocks;
-}
 
 /// The camera of the published picture, which is 1 wide and high here.
 inline lesson::Camera published_camera() {
@@ -59,9 +35,9 @@ template <typename Path> CornellComparison compare_with_published(int paths_a_bl
             sum += light, squares += light * light;
         }
         const double n = paths_a_block;
-        const Rgbd mean = sum / n, variance = (squares / n - mean * mean) / (n - 1);         // of the mean
-        const bool holds_light = block.row == 4 && (block.column == 7 || block.column == 8); // its edges are noisy
-        if (!holds_light) difference += mean - block.mean, error2 += variance, published += block.mean;
+        const Rgbd mean = sum / n, variance = (squares / n - mean * mean) / (n - 1); // of the mean
+        if (!block.holds_light())                                                    // its edges are noisy
+            difference += mean - block.mean, error2 += variance, published += block.mean;
         for (std::size_t c = 0; c < 3; ++c) {
             const double off = std::abs(mean[c] - block.mean[c]) - 0.005 * block.mean[c];
             result.block = std::max(result.block, off / std::sqrt(variance[c]));

@@ -1,40 +1,13 @@
 // The Cornell box against the mean radiances that two independent renderers agree on (tests/golden/README.md).
 #include "common/scene/scene.h"
 #include "raytrace/render.h"
+#include "tests/support/cornell_means.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 using namespace duet;
 
 namespace {
-
-struct Block {
-    int row, column;
-    Rgbd mean;
-};
-
-std::vector<Block> published_means() {
-    std::ifstream in(DUET_SOURCE_DIR "/tests/golden/cornell-box-means.csv");
-    std::vector<Block> blocks;
-    std::string line;
-    while (std::getline(in, line)) {
-        if (line.empty() || line[0] == '#' || line[0] == 'b') continue;
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream fields(line);
-        Block b{};
-        fields >> b.row >> b.column >> b.mean.r >> b.mean.g >> b.mean.b;
-        REQUIRE(fields);
-        blocks.push_back(b);
-    }
-    return blocks;
-}
 
 Rgbd block_mean(const ImageRgb& image, int row, int column) {
     Rgbd sum;
@@ -42,8 +15,6 @@ Rgbd block_mean(const ImageRgb& image, int row, int column) {
         for (int x = column * 32; x < column * 32 + 32; ++x) sum += Rgbd(image(x, y));
     return sum / 1024.0;
 }
-
-bool holds_lamp(int row, int column) { return row == 4 && (column == 7 || column == 8); }
 
 } // namespace
 
@@ -63,14 +34,14 @@ TEST_SUITE("statistical") {
             raytrace::render(raytrace::prepare(scene, settings), {scene.camera, 512, 512}, settings, control);
         CHECK(rendering.statistics.invalid_samples == 0);
 
-        const std::vector<Block> blocks = published_means();
+        const std::vector<CornellBlock> blocks = published_means();
         REQUIRE(blocks.size() > 50);
         Rgbd ours, theirs, ours_without_lamp, theirs_without_lamp;
-        for (const Block& block : blocks) {
+        for (const CornellBlock& block : blocks) {
             const Rgbd mean = block_mean(rendering.radiance, block.row, block.column);
             ours += mean;
             theirs += block.mean;
-            if (!holds_lamp(block.row, block.column)) {
+            if (!block.holds_light()) {
                 ours_without_lamp += mean;
                 theirs_without_lamp += block.mean;
             }
