@@ -4,7 +4,6 @@ import csv
 import html
 import io
 import os
-import pathlib
 import subprocess
 import sys
 import time
@@ -13,6 +12,7 @@ import compiling
 import grade
 import labs
 import page
+import report
 
 BINS = 10  # of the histogram; the last one holds full points, too
 STYLE = page.STYLE + """
@@ -49,7 +49,7 @@ def grade_student(lab_id, path, build, seed, folder):
                 "ungraded": True}
 
 
-def grade_all(lab_id, found, build, seed, out):
+def grade_students(lab_id, found, build, seed, out):
     """The results by student, graded on all processors, with progress where someone watches."""
     results, begun = {}, time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -137,13 +137,6 @@ def as_page(title, results, svg):
             f"{''.join(items)}</table><h2>Students</h2><table><tr><th>student<th>points<th>note{''.join(rows)}</table></html>\n")
 
 
-def write_whole(path, text):
-    """The file is whole or absent."""
-    partial = path.with_suffix(path.suffix + f".{os.getpid()}")
-    partial.write_text(text, encoding="utf-8")
-    partial.replace(path)
-
-
 def grade_class(arguments):
     """Grades all submissions of a folder and writes grades.csv, histogram.svg and index.html, and a page a student."""
     found, empty = submissions(arguments.class_folder)
@@ -153,12 +146,13 @@ def grade_class(arguments):
     out.mkdir(parents=True, exist_ok=True)
     grade.judge_of(arguments.lab, arguments.build)
     compiling.prepare(arguments.lab, arguments.build)
-    results = grade_all(arguments.lab, found, arguments.build, arguments.seed, out)
+    results = grade_students(arguments.lab, found, arguments.build, arguments.seed, out)
     title = f"{arguments.lab} · {labs.title_of(arguments.lab)}: {len(results)} submissions"
     counts = bin_counts(results)
-    write_whole(out / "grades.csv", as_csv(results, empty))
-    write_whole(out / "histogram.svg", histogram_svg(counts, title))
-    write_whole(out / "index.html", as_page(title, results, histogram_svg(counts, title)))
+    report.write_whole(out / "grades.csv", as_csv(results, empty))
+    svg = histogram_svg(counts, title)
+    report.write_whole(out / "histogram.svg", svg)
+    report.write_whole(out / "index.html", as_page(title, results, svg))
     print(f"{title}\n\n{histogram_text(counts)}\n")
     for student, result in results.items():
         if result.get("ungraded"):

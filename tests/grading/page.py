@@ -1,9 +1,10 @@
 """The page of a graded submission: points, hints, and the pictures expected and found."""
 import base64
 import html
-import pathlib
 import re
 import shutil
+
+import report
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
 section{border-left:6px solid #0a7d4f;padding:.2rem 1rem;margin:1rem 0;background:#f6f7f8}
@@ -32,13 +33,15 @@ def section(folder, item):
 
 
 def write_images(result, images_folder, folder):
-    """Every image of a result as a file, named by what it shows: "your rasterizer" becomes your-rasterizer.png."""
+    """Every image of a result as a file, named by what it shows: "your rasterizer" becomes your-rasterizer.png, and a
+    second one of that name your-rasterizer-2.png."""
     folder.mkdir(parents=True, exist_ok=True)
-    for item in result["items"]:
-        for image in item.get("images", []):
-            name = re.sub(r"[^a-z0-9]+", "-", image["name"].lower()).strip("-")
-            if (images_folder / image["file"]).exists():
-                shutil.copyfile(images_folder / image["file"], folder / f"{name}.png")
+    names = []
+    for image in (image for item in result["items"] for image in item.get("images", [])):
+        names.append(re.sub(r"[^a-z0-9]+", "-", image["name"].lower()).strip("-"))
+        number = f"-{names.count(names[-1])}" if names.count(names[-1]) > 1 else ""
+        if (images_folder / image["file"]).exists():
+            shutil.copyfile(images_folder / image["file"], folder / f"{names[-1]}{number}.png")
 
 
 def write(result, images_folder, folder):
@@ -50,4 +53,4 @@ def write(result, images_folder, folder):
     if "error" in result:
         body.append(f"<pre>{html.escape(result['error'])}</pre>")
     body += [section(images_folder, item) for item in result["items"]]
-    pathlib.Path(folder, "index.html").write_text("\n".join(body) + "</html>\n")
+    report.write_whole(folder / "index.html", "\n".join(body) + "</html>\n")

@@ -1,5 +1,6 @@
 """A result as text for a terminal, and as the files that gradebooks read."""
 import json
+import os
 import pathlib
 import unicodedata
 
@@ -64,14 +65,24 @@ def as_autolab(result):
     return {"scores": {item["title"]: item["earned"] for item in result["items"] if item["points"] > 0}}
 
 
+def write_whole(path, text):
+    """Writes a file that is whole or absent, whatever ends the grader."""
+    partial = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(path)
+
+
+def write_json(path, value, indent=1):
+    write_whole(pathlib.Path(path), json.dumps(value, indent=indent, ensure_ascii=False) + "\n")
+
+
 def write_files(result, arguments):
     """Writes the files that the command line asks for."""
     if arguments.json == "-":
         print(json.dumps(result, indent=1, ensure_ascii=False))
     elif arguments.json:
-        pathlib.Path(arguments.json).write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        write_json(arguments.json, result)
     if arguments.gradescope:
-        text = json.dumps(as_gradescope(result), indent=1, ensure_ascii=False)
-        pathlib.Path(arguments.gradescope).write_text(text + "\n", encoding="utf-8")
+        write_json(arguments.gradescope, as_gradescope(result))
     if arguments.autolab:
-        pathlib.Path(arguments.autolab).write_text(json.dumps(as_autolab(result), ensure_ascii=False) + "\n", encoding="utf-8")
+        write_json(arguments.autolab, as_autolab(result), indent=None)

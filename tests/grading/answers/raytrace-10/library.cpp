@@ -1,7 +1,9 @@
-// The library's quads (common/geometry/quad.h), boxes (common/geometry/shape.h) and lights (common/light/light.h).
+// The library's quads (common/geometry/quad.h), boxes (common/geometry/shape.h) and lights (common/light/light.h);
+// paths as in the lesson.
 #include "common/geometry/quad.h"
 #include "common/light/light.h"
 #include "raytrace/lessons/10-cornell-box/lab.h"
+#include "raytrace/lessons/10-cornell-box/quads.h"
 
 namespace duet::lab {
 
@@ -32,16 +34,11 @@ std::optional<lesson::Hit> closest_hit(const std::vector<Quad>& quads, const Ray
 }
 
 Rgb path_color(const std::vector<Quad>& quads, const Ray& ray, int bounces, int seed) {
+    std::vector<lesson::Quad> placed;
+    for (const Quad& quad : quads)
+        placed.push_back({quad.corner, quad.u, quad.v, lesson::matte(quad.albedo), quad.emission});
     lesson::Random random(static_cast<std::uint64_t>(seed));
-    Rgb light(0), weight(1);
-    Ray next = ray;
-    for (int i = 0; i <= bounces; ++i) {
-        const auto hit = closest_hit(quads, next);
-        if (!hit) break;
-        light += weight * emitted(quads[hit->index], next.direction), weight *= quads[hit->index].albedo;
-        next = Ray{hit->p, lesson::random_diffuse_direction(hit->n, random), 0.001f};
-    }
-    return light;
+    return lesson::path_color(placed, ray, bounces, random);
 }
 
 } // namespace duet::lab
