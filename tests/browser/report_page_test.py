@@ -119,7 +119,16 @@ class ReportPage(support.PageTest):
             one.settle()
         self.assertEqual(again.js(view), page.js(view))
         again.front()
-        again.js("location.hash = ''")
+        # The page writes its state, which it does a moment late, before it has read the new address: the new one must win.
+        again.js("""(() => {
+            const setTimeoutOfBrowser = window.setTimeout;
+            let write = null;
+            window.setTimeout = act => { write = act; return 0; };
+            exposure.dispatchEvent(new Event('input'));
+            window.setTimeout = setTimeoutOfBrowser;
+            location.hash = '';
+            write();
+        })()""")
         again.wait("document.querySelector('[data-mode=split]').getAttribute('aria-pressed') === 'true'")
 
     def test_hostile_addresses_do_no_harm(self):

@@ -24,16 +24,26 @@ function showTheme(theme) {
   element("theme").textContent = `Theme: ${themeNow()}`;
 }
 
-// Replaces the part of the address behind the # by these [key, value] pairs, and the theme where one is chosen.
+// The part of the address behind the #, as it was last read or written by this page.
+let knownHash = location.hash;
+
+// Replaces the part of the address behind the # by these [key, value] pairs, and the theme where one is chosen. Does
+// nothing while an address that someone has just entered waits to be read: its hashchange event comes later.
 function setAddress(pairs) {
+  if (location.hash !== knownHash) return;
   const parts = [...pairs, ...(themeNow() === "auto" ? [] : [["theme", themeNow()]])].map(([key, value]) => `${key}=${encodeURIComponent(value)}`);
   history.replaceState(null, "", parts.length ? "#" + parts.join("&") : location.pathname + location.search);
+  knownHash = location.hash;
 }
 const addressPairs = () => [...new URLSearchParams(location.hash.slice(1))].filter(([key]) => key !== "theme");
 
 // `themeChanged` is called after the button has changed the theme: for pictures that are drawn in its colours.
 function startTheme(themeChanged = () => {}) {
-  const read = () => { showTheme(new URLSearchParams(location.hash.slice(1)).get("theme")); themeChanged(); };
+  const read = () => {
+    knownHash = location.hash;
+    showTheme(new URLSearchParams(location.hash.slice(1)).get("theme"));
+    themeChanged();
+  };
   read();
   window.addEventListener("hashchange", read);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => themeChanged());
