@@ -15,6 +15,17 @@ struct Object {
     std::function<std::optional<Hit>(const Ray&)> hit; ///< where a ray meets it, t_min < t < t_max
 };
 
+/// A triangle. Its corners come counter-clockwise, seen from outside. `index` is that of its hits.
+inline Object triangle_object(Vec3 a, Vec3 b, Vec3 c, std::size_t index = 0) {
+    const auto hit = [=, n = cross(b - a, c - a)](const Ray& ray) -> std::optional<Hit> {
+        const float t = dot(n, a - ray.origin) / dot(n, ray.direction); // where the ray meets the plane
+        const auto is_left = [&](Vec3 from, Vec3 to) { return dot(n, cross(to - from, ray.at(t) - from)) >= 0; };
+        if (!(t > ray.t_min && t < ray.t_max && is_left(a, b) && is_left(b, c) && is_left(c, a))) return std::nullopt;
+        return make_hit(ray, t, normalize(n), index);
+    };
+    return {{min(a, min(b, c)), max(a, max(b, c))}, hit};
+}
+
 /// Where a ray enters a box: the smallest t in [t_min, t_max] whose point is inside; nothing where it misses.
 /// (Kay and Kajiya 1986; the factor against rounding is that of Ize 2013, "Robust BVH Ray Traversal")
 inline std::optional<float> enter_box(const Box3& box, const Ray& ray) {

@@ -13,17 +13,6 @@ using namespace duet::lesson;
 constexpr int kWidth = 336, kHeight = 189;
 const Camera kCamera({.eye = {0, 1.5f, 4}, .look_at = {0, 0.38f, 0}, .fov_degrees = 24}, kWidth, kHeight);
 
-/// A triangle. Its corners come counter-clockwise, seen from outside.
-Object triangle_object(Vec3 a, Vec3 b, Vec3 c) {
-    const auto hit = [=, n = cross(b - a, c - a)](const Ray& ray) -> std::optional<Hit> {
-        const float t = dot(n, a - ray.origin) / dot(n, ray.direction); // where the ray meets the plane
-        const auto is_left = [&](Vec3 from, Vec3 to) { return dot(n, cross(to - from, ray.at(t) - from)) >= 0; };
-        if (!(t > ray.t_min && t < ray.t_max && is_left(a, b) && is_left(b, c) && is_left(c, a))) return std::nullopt;
-        return make_hit(ray, t, normalize(n), 0);
-    };
-    return {{min(a, min(b, c)), max(a, max(b, c))}, hit};
-}
-
 /// The mean time of a ray among more and more of the objects: in a tree of one leaf (a list), and in a real tree.
 Plot time_plot(std::span<Object> objects) {
     Series list{"list", {}}, tree{"tree", {}};
