@@ -1,9 +1,14 @@
 #!/bin/sh
 # Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then builds a preset.
-# Called by compare/demo.sh and tests/run.sh.
-# usage: common/setup.sh [PRESET [PACKAGE…]]        (default: release; PACKAGE: what the caller needs besides)
+# Called by compare/demo.sh and tests/run.sh. A lesson builds what it needs, so students configure the preset alone.
+# usage: common/setup.sh [--configure] [PRESET [PACKAGE…]]
+#   PRESET       release unless told
+#   PACKAGE      what the caller needs besides
+#   --configure  builds nothing
 set -eu
 cd "$(dirname "$0")/.."
+build=yes
+[ "${1:-}" != --configure ] || { build='' && shift; }
 preset=${1:-release}
 [ $# -gt 0 ] && shift
 
@@ -34,4 +39,4 @@ if [ -n "$missing" ]; then
 fi
 
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset"
-cmake --build --preset "$preset"
+[ -z "$build" ] || cmake --build --preset "$preset"
