@@ -119,6 +119,23 @@ TEST_SUITE("lesson") {
         CHECK(near(reflected(bubble, 80, false), expected(80)));
     }
 
+    TEST_CASE("raytrace-06: a scattered ray has a direction of length 1, so that its t_min is a length") {
+        lesson::Random random(6);
+        for (const lesson::Material& material :
+             {lesson::matte(Rgb(1)), lesson::metal(Rgb(1), 0.9f), lesson::glass(1.5f)}) {
+            double shortest = 9, longest = 0;
+            for (int i = 0; i < 20'000; ++i) {
+                const auto scattered =
+                    lesson::scatter(material, {{0, 0, 5}, {2, 0, -5}}, {1, {2, 0, 0}, {0, 0, 1}, true, 0}, random);
+                if (!scattered) continue; // metal may absorb
+                const double size = length(Vec3d(scattered->ray.direction));
+                shortest = std::min(shortest, size), longest = std::max(longest, size);
+            }
+            CHECK(shortest > 1 - 1e-6);
+            CHECK(longest < 1 + 1e-6);
+        }
+    }
+
     TEST_CASE("raytrace-06: between two mirrors that face each other a ray is reflected for ever") {
         const std::vector<lesson::Sphere> spheres{{{0, 0, -3}, 1}, {{0, 0, 3}, 1}};
         int tests = 0;

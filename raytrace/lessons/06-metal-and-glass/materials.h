@@ -29,8 +29,7 @@ inline std::optional<Vec3> refract(Vec3 d, Vec3 n, float ratio) {
     return d * ratio + n * (ratio * cosine - std::sqrt(1 - sine2));
 }
 
-/// The fraction of light that glass reflects. The cosine is that of the ray in the medium of the smaller index.
-/// (Schlick 1994, eq. 15)
+/// The fraction of light that glass reflects; cosine: of the ray in the medium of the smaller index. (Schlick 1994)
 inline float schlick(float cosine, float ior) {
     const float r0 = (1 - ior) / (1 + ior);
     return r0 * r0 + (1 - r0 * r0) * std::pow(1 - cosine, 5.0f);
@@ -56,7 +55,7 @@ inline std::optional<Scattered> scatter(const Material& material, const Ray& ray
             const float cosine = -dot(hit.front == (material.ior > 1) ? d : *refracted, hit.n); // at the smaller index
             if (random.next() >= schlick(cosine, material.ior)) direction = *refracted;
         }
-    return Scattered{{hit.p, direction, 1e-3f}, material.albedo};
+    return Scattered{{hit.p, normalize(direction), 1e-3f}, material.albedo}; // t_min = 1 mm
 }
 
 /// The light that a ray under the sky brings. closest(ray) finds the nearest hit, whose index names its material.
