@@ -24,8 +24,7 @@ inline std::optional<float> hit_quad(const Quad& quad, const Ray& ray) {
     if (!(t > ray.t_min && t < ray.t_max)) return std::nullopt; // also where the ray is parallel to the plane
     const Vec3 d = ray.at(t) - quad.corner;                     // = a·u + b·v
     const float a = dot(quad.to_a, d), b = dot(quad.to_b, d);
-    if (a < 0 || a > 1 || b < 0 || b > 1) return std::nullopt;
-    return t;
+    return a >= 0 && a <= 1 && b >= 0 && b <= 1 ? std::optional(t) : std::nullopt;
 }
 
 /// The nearest hit of any quad, or nothing. The hit is at the front where the ray comes against the normal.
@@ -39,10 +38,8 @@ inline std::optional<Hit> closest_hit(const std::vector<Quad>& quads, Ray ray) {
 /// The six sides of the box with the edges a, b and c at its corner, where a × b points to the side of c. All normals
 /// point outward.
 inline void add_box(std::vector<Quad>& quads, Vec3 corner, Vec3 a, Vec3 b, Vec3 c, const Material& material) {
-    for (const auto& [u, v, w] : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {
-        quads.push_back({corner, v, u, material});
-        quads.push_back({corner + w, u, v, material});
-    }
+    for (const auto& [u, v, w] : {std::array{a, b, c}, {b, c, a}, {c, a, b}})
+        quads.push_back({corner, v, u, material}), quads.push_back({corner + w, u, v, material});
 }
 
 /// The Cornell box, 2 m wide. Its first quad is the light. `side` scales the sides of the light and leaves the amount
