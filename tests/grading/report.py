@@ -29,7 +29,7 @@ def item_text(item):
     if item["status"] != "passed":
         parts.append(item.get("message", ""))
         parts += [f"{key + ':':10}{item[key]}" for key in ("expected", "found") if key in item]
-        parts += [item["map"]] if "map" in item else []
+        parts += [item["map"]] if "map" in item and item["status"] == "failed" else []
     if item.get("printed"):
         parts.append("Your program printed:\n" + item["printed"][:500])
     return "\n".join(part.rstrip("\n") for part in parts if part)

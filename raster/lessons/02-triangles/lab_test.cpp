@@ -100,7 +100,6 @@ Image<int> counts_by(const Triangles& triangles, int width, int height, bool tur
 Mistakes mistakes(const Triangles& triangles, int width, int height) {
     const auto by = [&](bool turn, const Inside& inside) { return counts_by(triangles, width, height, turn, inside); };
     return {
-        {Image<int>(width, height, 0), "Nothing is covered at all."},
         {by(true, [](auto w, auto, auto) { return w >= 0; }),
          "Both triangles at an edge take the centers on it: w == 0 counts for a left or top edge only."},
         {by(true, [](auto w, auto, auto) { return w > 0; }),
@@ -114,6 +113,7 @@ Mistakes mistakes(const Triangles& triangles, int width, int height) {
          "smaller y."},
         {by(false, [](auto w, auto a, auto b) { return lesson::is_inside(w, a, b); }),
          "Triangles with counter-clockwise corners are missing: where the area is negative, swap two corners."},
+        {Image<int>(width, height, 0), "Nothing is covered at all."},
         {by(false, [](auto w, auto a, auto b) { return lesson::is_inside(-w, b, a); }),
          "Only counter-clockwise triangles are drawn, and clockwise ones are not: the sign of the edge function, or of "
          "the area, is turned around."},
@@ -237,8 +237,11 @@ LAB_ITEM(15, "one triangle: which centers it covers") {
     check(item, "a triangle that reaches beyond the picture on all sides", {triangle({-9, -4}, {40, 3.3f}, {2.5f, 30})},
           26, 17);
     check(item, "a triangle outside of the picture", {triangle({-9, -4}, {-2, -8}, {-3, -1})}, 26, 17);
-    check(item, "a triangle whose corners lie on one line", {triangle({2.5f, 2.5f}, {6.5f, 6.5f}, {9.5f, 9.5f})}, 26,
-          17);
+    const Image<int> on_line = STUDENT(count_coverage)({triangle({2.5f, 2.5f}, {6.5f, 6.5f}, {9.5f, 9.5f})}, 26, 17);
+    item.coverage(
+        "a triangle whose corners lie on one line", on_line, Image<int>(26, 17, 0),
+        {{on_line, "It has no inside. The centers on the line have w = 0 for all three edges: w == 0 counts for "
+                   "a left or top edge only."}});
     Rng& rng = item.random();
     for (int i = 0; i < 60; ++i) {
         const auto point = [&] { return Vec2(Vec2d(rng.uniform(-12, 38), rng.uniform(-12, 29))); };
@@ -248,18 +251,13 @@ LAB_ITEM(15, "one triangle: which centers it covers") {
 }
 
 LAB_ITEM(20, "triangles that share edges cover each center once") {
-    const auto square = [](float half) { // eight triangles; all edges pass through centers
-        const Vec2 hub{12.5f, 12.5f};
-        const std::array<Vec2, 8> rim{{{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
-        Triangles triangles;
-        for (std::size_t i = 0; i < 8; ++i)
-            triangles.push_back(triangle(hub, hub + rim[i] * half, hub + rim[(i + 1) % 8] * half));
-        return triangles;
-    };
-    check(item, "a square of eight triangles about the center of a pixel", square(10), 25, 25);
-    Triangles mixed = square(10);
-    for (std::size_t i = 0; i < 8; i += 2) mixed[i] = reversed(mixed[i]);
-    check(item, "the same square, every other triangle with counter-clockwise corners", mixed, 25, 25);
+    const Vec2 hub{12.5f, 12.5f}; // all edges pass through centers
+    const std::array<Vec2, 8> rim{{{0, -10}, {10, -10}, {8, 0}, {9, 6}, {0, 10}, {-8, 8}, {-10, 0}, {-6, -9}}};
+    Triangles eight;
+    for (std::size_t i = 0; i < 8; ++i) eight.push_back(triangle(hub, hub + rim[i], hub + rim[(i + 1) % 8]));
+    check(item, "eight triangles about the center of a pixel", eight, 25, 25);
+    for (std::size_t i = 0; i < 8; i += 2) eight[i] = reversed(eight[i]);
+    check(item, "the same eight, every other one with counter-clockwise corners", eight, 25, 25);
     for (int i = 0; i < 20; ++i)
         check(item, "a mesh with corners on the centers of pixels", mesh(item.random(), 6, 5, 6, 1), 36, 30);
     for (int i = 0; i < 20; ++i) check(item, "a mesh over the picture", mesh(item.random(), 6, 5, 6, 256), 36, 30);
@@ -311,6 +309,9 @@ LAB_ITEM(15, "colors spread evenly from the corners") {
         return image;
     };
     const auto check_image = [&](const std::string& name, const Triangles& triangles) {
+        Triangles moved = triangles; // what a pixel's upper left corner sees, its center sees of these
+        for (Triangle& t : moved)
+            for (Vec2& corner : t.corners) corner = corner + Vec2{0.5f, 0.5f};
         item.image(name, STUDENT(draw)(triangles, kWidth, kHeight, background),
                    drawn(triangles, [](Vec3 w, bool) { return w; }), 2e-3,
                    {{drawn(triangles,
@@ -342,6 +343,13 @@ LAB_ITEM(15, "colors spread evenly from the corners") {
                                return Vec3{1, 1, 1} / 3.0f;
                            }),
                      "The triangle has one color, the mean: each pixel has weights of its own."},
+                    {drawn(triangles,
+                           [](Vec3, bool) {
+                               return Vec3{0, 0, 0};
+                           }),
+                     "The weights are 0: a whole number divided by a greater one is 0 in C++. Convert to float first."},
+                    {drawn(moved, [](Vec3 w, bool) { return w; }),
+                     "The weights belong to the upper left corners of the pixels: take their centers."},
                     {ImageRgb(kWidth, kHeight, background), "Nothing is drawn."}});
     };
     const Triangle primary{{Vec2{4, 35.5f}, {30, 3}, {55.2f, 33}}, {Rgb(1, 0, 0), {0, 1, 0}, {0, 0, 1}}};

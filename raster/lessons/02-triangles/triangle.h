@@ -54,7 +54,7 @@ void for_each_pixel(Vec2 a_pixels, Vec2 b_pixels, Vec2 c_pixels, int width, int 
             const FixedPoint p = pixel_center(x, y);
             const std::int64_t wa = edge_function(b, c, p), wb = edge_function(c, a, p), wc = edge_function(a, b, p);
             if (!is_inside(wa, b, c) || !is_inside(wb, c, a) || !is_inside(wc, a, b)) continue;
-            const Vec3 weights = Vec3(Vec3T<std::int64_t>(wa, wb, wc)) / area;
+            const Vec3 weights = Vec3{float(wa), float(wb), float(wc)} / area;
             visit(x, y, turned ? Vec3{weights.x, weights.z, weights.y} : weights);
         }
 }
