@@ -6,7 +6,7 @@
 using namespace duet;
 using namespace duet::lesson;
 
-// Four metal plates, from polished to rough, under four lights of the same power. (Veach 1997, §9.2)
+// Four metal plates, from polished to rough, under four lights of the same power. (Veach 1997, chapter 9)
 Scene plates() {
     const Vec3 eye{0, 2, 15}, lights{0, 3.3f, -1};
     std::vector<Quad> quads(4);
@@ -31,25 +31,26 @@ void draw(const std::string& name, Scene& scene, int samples, const Strategy& st
     std::printf("%s: %ld rays a pixel\n", name.c_str(), scene.rays / (128 * 128));
 }
 
-// Adds a curve: how far the mean of n sample(i, random) is off, measured by 1000 pairs i of means as in lesson 10.
+// Adds a curve: how far means of n samples are off. sample(p, random) is taken 128 times at each of 1500 points p.
 template <typename Sample> void measure(Plot& plot, const char* name, const Sample& sample) {
     plot.series.push_back({name, {}});
+    std::array<double, 4> difference{}, sum{}; // for n = 1, 4, 16 and 64
     Random random(11);
-    for (int n = 1; n <= 64; n *= 4) {
-        double sum = 0;
-        for (int i = 0; i < 1000; ++i) {
-            double difference = 0;
-            for (int k = 0; k < 2 * n; ++k) difference += sample(static_cast<float>(i), random) * (k % 2 ? 1 : -1);
-            sum += sqr(difference / n) / 2000;
+    for (int i = 0; i < 128 * 1500; ++i) {
+        const float point = static_cast<float>(i / 128);
+        const double light = sample({std::fmod(0.618034f * point, 1.0f), point / 1500}, random);
+        for (int c = 0, n = 1; c < 4; ++c, n *= 4) {
+            difference[c] += i % 2 ? light : -light; // of the sums of two times n samples
+            if ((i + 1) % (2 * n) == 0) sum[c] += sqr(difference[c]) / (128 * 1500), difference[c] = 0;
         }
-        plot.series.back().points.push_back({static_cast<double>(n), std::sqrt(sum)});
     }
+    for (int c = 0, n = 1; c < 4; ++c, n *= 4) plot.series.back().points.push_back({1.0 * n, std::sqrt(sum[c] / n)});
 }
 
 int main() {
     Plot integral{"The integral of 4x³ from 0 to 1", "samples", "error (root mean square)", true, true};
     for (const auto& [name, k] : {std::pair{"density 1", 0.0}, {"density 2x", 1.0}, {"density 3x²", 2.0}})
-        measure(integral, name, [k = k](float, Random& random) {
+        measure(integral, name, [k = k](Vec2, Random& random) {
             const double x = std::pow(1 - static_cast<double>(random.next()), 1 / (k + 1)); // density (k + 1)·xᵏ
             return 4 * x * x * x / ((k + 1) * std::pow(x, k));
         });
@@ -60,9 +61,8 @@ int main() {
     for (const auto& [name, scene] : {std::pair{"errors-box.svg", &box}, {"errors-plates.svg", &veach}}) {
         Plot plot{"Three ways to find light", "samples per pixel", "error of a pixel (root mean square)", true, true};
         for (const auto& [way, strategy] : {std::pair{"by chance", chance}, {"light sampling", light}, {"both", both}})
-            measure(plot, way, [&, &scene = scene, &strategy = strategy](float i, Random& random) {
-                const float x = std::fmod(0.618034f * i, 1.0f), y = 0.12f + 0.00088f * i; // spread over the picture
-                return average(Rgbd(path_color(*scene, x, y, strategy, random)));
+            measure(plot, way, [&, &scene = scene, &strategy = strategy](Vec2 p, Random& random) { // below the lights
+                return average(Rgbd(path_color(*scene, p.x, 0.12f + 0.88f * p.y, strategy, random)));
             });
         write_plot(name, plot);
     }

@@ -29,7 +29,7 @@ inline float quad_density(const Quad& quad, Vec3 p, Vec3 q) {
 using Share = float (*)(float own, float other);
 inline float all(float, float) { return 1; }
 inline float none(float, float) { return 0; }
-inline float power_heuristic(float own, float other) { return 1 / (1 + sqr(other / own)); } // (Veach 1997, §9.2.4)
+inline float power_heuristic(float own, float other) { return 1 / (1 + sqr(other / own)); } // (Veach 1997, chapter 9)
 struct Strategy {
     Share chance, light; ///< of a light that the path meets by chance, and of one of which a point is drawn
 };
