@@ -13,10 +13,11 @@ import labs
 
 LAB = "raytrace-02"
 HEAD = f'#include "{labs.folder_of(LAB).relative_to(labs.SOURCE)}/lab.h"\n'
-# Two functions do nothing; the first is the hostile one.
+# The other functions do nothing; the first is the hostile one.
 REST = """
 Vec3 sphere_normal(Vec3, float, Vec3) { return {0, 0, 0}; }
 Rgb normal_color(Vec3) { return Rgb(0); }
+std::optional<float> hit_cylinder(float, const Ray&) { return std::nullopt; }
 }
 """
 # name: (includes and declarations, body of hit_sphere, what the result must say)

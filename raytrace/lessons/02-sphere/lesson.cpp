@@ -27,8 +27,8 @@ template <typename Color> ImageRgb draw(const Color& color) {
     return image;
 }
 
-/// A unit normal as a color: each coordinate from [-1, 1] to [0, 1]. These are the numbers that the file shall hold, so
-/// they are decoded to linear light, which write_image expects.
+/// A unit normal as a color: each coordinate from [-1, 1] to [0, 1]. These are the numbers that the file shall hold.
+/// write_image expects light and encodes it, so the numbers are decoded here.
 Rgb normal_color(Vec3 n) {
     const auto channel = [](float coordinate) { return srgb_decode(0.5f * (coordinate + 1)); };
     return {channel(n.x), channel(n.y), channel(n.z)};
@@ -52,6 +52,14 @@ Rgb unnormalized_color(const Ray& ray) {
     return t ? normal_color(ray.at(*t) - kSphere.center) : sky_color(ray.direction);
 }
 
+/// Another: points with negative t count. The only sphere stands behind the eye, to its left and above it.
+Rgb behind_color(Ray ray) {
+    ray.t_min = -kInfinity;
+    const Sphere behind{{-0.4f, 0.2f, 1}, 0.5f};
+    const auto t = hit_sphere(behind, ray);
+    return t ? normal_color((ray.at(*t) - behind.center) / behind.radius) : sky_color(ray.direction);
+}
+
 /// Another: t is taken for the distance, though the ray's direction is longer than 1 off the middle of the picture.
 /// Shown is the distance, black at 0.5 and white at 0.87, where the rim of the sphere is.
 Rgb depth_color(const Ray& ray, bool unit_length) {
@@ -61,22 +69,22 @@ Rgb depth_color(const Ray& ray, bool unit_length) {
     return t ? Rgb(clamp((*t - 0.5f) / 0.37f, 0.0f, 1.0f)) : Rgb(0.1f, 0.1f, 0.3f);
 }
 
-/// How many points of the sphere lie on the ray, for all t: the sign of the discriminant says it.
-Rgb roots_color(Ray ray) {
-    ray.t_min = -kInfinity;
+/// How far the ray's way through the sphere is, from its first point on the sphere to its second.
+Rgb chord_color(Ray ray) {
     const auto first = hit_sphere(kSphere, ray);
     if (!first) return {0.1f, 0.1f, 0.3f};
     ray.t_min = *first; // what is left of the ray has the second point
     const auto second = hit_sphere(kSphere, ray);
-    const float chord = second ? (*second - *first) * length(ray.direction) : 0; // the way through the sphere
+    const float chord = second ? (*second - *first) * length(ray.direction) : 0; // 0 for a tangent
     return lerp(Rgb(0.9f, 0.5f, 0.1f), Rgb(1, 1, 0.8f), chord / (2 * kSphere.radius));
 }
 
 int main() {
     write_image("disk.png", draw(disk_color));
     write_image("evidence.png", draw(sphere_color));
-    write_image("chord.png", draw(roots_color));
+    write_image("chord.png", draw(chord_color));
     write_image("unnormalized.png", draw(unnormalized_color));
+    write_image("behind.png", draw(behind_color));
     write_image("depth.png", draw([](const Ray& ray) { return depth_color(ray, true); }));
     write_image("depth-wrong.png", draw([](const Ray& ray) { return depth_color(ray, false); }));
     int hits = 0;

@@ -22,4 +22,20 @@ Vec3 sphere_normal(Vec3 center, float radius, Vec3 p) { return (p - center) / ra
 
 Rgb normal_color(Vec3 n) { return {(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2}; }
 
+std::optional<float> hit_cylinder(float radius, const Ray& ray) {
+    const float ox = ray.origin.x, oz = ray.origin.z;
+    const float dx = ray.direction.x, dz = ray.direction.z;
+    const float k2 = dx * dx + dz * dz;
+    if (k2 == 0) return std::nullopt;
+    const float k1 = ox * dx + oz * dz;
+    const float k0 = ox * ox + oz * oz - radius * radius;
+    const float inside = k1 * k1 - k2 * k0;
+    if (inside < 0) return std::nullopt;
+    const float first = (-k1 - std::sqrt(inside)) / k2;
+    const float second = (-k1 + std::sqrt(inside)) / k2;
+    if (first > ray.t_min && first < ray.t_max) return first;
+    if (second > ray.t_min && second < ray.t_max) return second;
+    return std::nullopt;
+}
+
 } // namespace duet::lab
