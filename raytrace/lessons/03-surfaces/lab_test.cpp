@@ -25,8 +25,10 @@ std::vector<std::pair<float, int>> all_hits(const std::vector<Sphere>& spheres, 
     return hits;
 }
 
-std::vector<Sphere> random_spheres(Rng& rng, int count) {
+/// Spheres around the origin, which lies outside of all of them, or inside the first where `around`.
+std::vector<Sphere> random_spheres(Rng& rng, int count, bool around = false) {
     std::vector<Sphere> spheres;
+    if (around) spheres.push_back({Vec3(rng.unit_vector() * rng.uniform(0, 2)), static_cast<float>(rng.uniform(3, 6))});
     for (int i = 0; i < count; ++i)
         spheres.push_back({Vec3(rng.unit_vector() * rng.uniform(2, 8)), static_cast<float>(rng.uniform(0.2, 1.8))});
     return spheres;
@@ -72,7 +74,9 @@ LAB_ITEM(20, "the nearest of three spheres in a row") {
                       "the best so far."}});
     item.equal("the index of the nearest", hit->index, 1, {{0, "The index must be that of the sphere that was hit."}});
     item.near("the normal", hit->n, Vec3{0, 0, 1}, 1e-5,
-              {{Vec3{0, 0, 7}, "The normal was computed with the center of another sphere."}});
+              {{Vec3{0, 0, -1}, "It points along the ray: turn it against the ray, in make_hit alone."},
+               {Vec3{0, 0, 7}, "The normal was computed with the center of another sphere."},
+               {Vec3{0, 0, 4}, "The normal was computed with the center of another sphere."}});
 }
 
 LAB_ITEM(15, "the order of the list doesn't matter") {
@@ -90,7 +94,7 @@ LAB_ITEM(15, "the order of the list doesn't matter") {
 
 LAB_ITEM(20, "random scenes: distance, point, normal and index") {
     for (int i = 0; i < 300; ++i) {
-        const auto spheres = random_spheres(item.random(), 12);
+        const auto spheres = random_spheres(item.random(), 12, i % 3 == 0);
         const Ray ray{{0, 0, 0}, Vec3(item.random().unit_vector() * item.random().uniform(0.5, 2))};
         const auto hits = all_hits(spheres, ray);
         const auto found = STUDENT(closest_hit)(spheres, ray);
@@ -99,12 +103,18 @@ LAB_ITEM(20, "random scenes: distance, point, normal and index") {
         if (hits.empty()) continue;
         const Sphere& sphere = spheres[static_cast<std::size_t>(hits[0].second)];
         const Vec3 outward = (ray.at(hits[0].first) - sphere.center) / sphere.radius;
-        item.near("the distance", found->t, hits[0].first, 1e-5);
+        std::vector<Mistake<float>> farther; // other spheres that this ray meets
+        for (std::size_t k = 1; k < hits.size(); ++k)
+            farther.push_back({hits[k].first, "A sphere is hit there, but another one stands before it."});
+        item.near("the distance", found->t, hits[0].first, 1e-5, farther);
         item.equal("the index", found->index, hits[0].second);
         item.near("the point", found->p, ray.at(hits[0].first), 1e-4);
+        item.equal("`front`", found->front, dot(ray.direction, outward) < 0,
+                   {{true, "This ray starts inside of the sphere that it meets."}});
         item.near("the normal", found->n, dot(ray.direction, outward) < 0 ? outward : -outward, 1e-4,
                   {{dot(ray.direction, outward) < 0 ? -outward : outward, "It must be turned against the ray."},
-                   {outward * sphere.radius, "Its length is the radius: divide by it."}});
+                   {outward * sphere.radius, "Its length is the radius: divide by it."},
+                   {-outward * sphere.radius, "Its length is the radius: divide by it."}});
     }
 }
 
@@ -132,6 +142,9 @@ LAB_ITEM(15, "any hit, for shadows") {
     for (int i = 0; i < 100; ++i) {
         const auto spheres = random_spheres(item.random(), 6);
         const Ray ray{{0, 0, 0}, Vec3(item.random().unit_vector())};
-        item.equal("whether anything is hit", STUDENT(any_hit)(spheres, ray), !all_hits(spheres, ray).empty());
+        item.equal(
+            "whether anything is hit", STUDENT(any_hit)(spheres, ray), !all_hits(spheres, ray).empty(),
+            {{false, "This ray meets a sphere further down the list: a miss must not end the search, only a hit."},
+             {true, "This ray passes by all spheres."}});
     }
 }
