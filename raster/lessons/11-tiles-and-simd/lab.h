@@ -10,7 +10,7 @@
 
 namespace duet::lab {
 
-/// A point in steps of 1/256 pixel from the upper left corner of the picture; y points down. 0 to 524288 (2048 pixels).
+/// A point in steps of 1/256 pixel from the upper left corner of the image; y points down. 0 to 524288 (2048 pixels).
 struct GridPoint {
     std::int32_t x = 0, y = 0;
 };
@@ -19,7 +19,7 @@ struct GridPoint {
 struct Edge {
     int a = 0, b = 0, c = 0;
 };
-/// Of a triangle whose corners are clockwise in the picture. Their order does not matter.
+/// Of a triangle whose corners are clockwise in the image. Their order does not matter.
 using Edges = std::array<Edge, 3>;
 
 enum class Tile { kOutside, kPartial, kInside };
@@ -41,7 +41,7 @@ Tile test_tile(const Edges& edges, int x, int y, int size);
 /// Which of eight pixels are in the triangle: bit i (of the value 1 << i) is set if pixel (x + i, y) is.
 int mask_of_eight(const Edges& edges, int x, int y);
 
-/// 1 for the pixels of a width × height picture that the triangle covers, 0 for the others. Goes by tiles of 8 × 8
+/// 1 for the pixels of a width × height image that the triangle covers, 0 for the others. Goes by tiles of 8 × 8
 /// pixels. Width and height need not be multiples of 8. The corners are clockwise, and the area is not 0.
 Image<int> cover(const std::array<GridPoint, 3>& corners, int width, int height);
 

@@ -20,7 +20,6 @@ inline Edge make_edge(FixedPoint from, FixedPoint to) {
 }
 
 enum class Tile { kOutside, kPartial, kInside };
-
 /// What is known of the size × size pixels from (x, y) on: none is in the triangle, some may be, or all are.
 inline Tile test_tile(const std::array<Edge, 3>& edges, int x, int y, int size) {
     bool all = true;
