@@ -18,7 +18,7 @@ namespace duet::raytrace {
 /// The version of what the estimators of light (path, naive, direct) converge to: part of the name under which compare
 /// bench keeps its references. Raise it with every change of that (a material, a light, a filter, a mended bias), not
 /// for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp notices where it was forgotten.
-inline constexpr int kEstimatorVersion = 6;
+inline constexpr int kEstimatorVersion = 7;
 
 enum class Integrator {
     kPath,        ///< light and BSDF sampling, combined by multiple importance sampling

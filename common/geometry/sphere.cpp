@@ -24,7 +24,7 @@ std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
 }
 
 Vec2 sphere_uv(Vec3 n) {
-    const double u = 0.5 + std::atan2(static_cast<double>(n.x), -static_cast<double>(n.z)) / (2 * kPiDouble);
+    const double u = 0.5 + std::atan2(static_cast<double>(n.x), static_cast<double>(n.z)) / (2 * kPiDouble);
     // atan2 of both components is accurate at the poles, where acos(y) is not.
     const double v =
         0.5 + std::atan2(static_cast<double>(n.y), std::hypot(static_cast<double>(n.x), static_cast<double>(n.z))) /
@@ -36,7 +36,15 @@ Vec3 sphere_direction(Vec2 uv) {
     const double longitude = (static_cast<double>(uv.x) - 0.5) * 2 * kPiDouble;
     const double latitude = (static_cast<double>(uv.y) - 0.5) * kPiDouble;
     const double ring = std::cos(latitude);
-    return Vec3(Vec3d(ring * std::sin(longitude), std::sin(latitude), -ring * std::cos(longitude)));
+    return Vec3(Vec3d(ring * std::sin(longitude), std::sin(latitude), ring * std::cos(longitude)));
+}
+
+// From inside, left and right are exchanged: what lies behind a mirror at z = 0 is seen so from outside.
+Vec2 latlong_uv(Vec3 w) { return sphere_uv({w.x, w.y, -w.z}); }
+
+Vec3 latlong_direction(Vec2 uv) {
+    const Vec3 d = sphere_direction(uv);
+    return {d.x, d.y, -d.z};
 }
 
 } // namespace duet

@@ -61,9 +61,17 @@ template <typename T> struct SphereTest {
 /// Without cancellation for far, huge and tiny spheres: see SphereTest.
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere);
 
-/// (u, v) on the unit sphere at direction n: u = ½ + atan2(x, −z)/2π, v = 1 at +y (design: lat-long, v = 0 at bottom).
+/// The texture coordinates of a sphere where its outward unit normal is n: u = ½ + atan2(x, z)/2π, v = 0 at −y and 1 at
+/// +y. Seen from outside with +y up, u grows to the right, so that a map of a globe isn't mirrored; its middle is at
+/// +z.
 Vec2 sphere_uv(Vec3 n);
-/// The direction of (u, v): the inverse of sphere_uv.
+/// The normal at (u, v): the inverse of sphere_uv.
 Vec3 sphere_direction(Vec2 uv);
+
+/// Where a lat-long image of a sky shows the unit direction w: u = ½ + atan2(x, −z)/2π, v = 0 at −y and 1 at +y. Seen
+/// from inside, u grows to the right; the image's middle is at −z.
+Vec2 latlong_uv(Vec3 w);
+/// The direction at (u, v): the inverse of latlong_uv.
+Vec3 latlong_direction(Vec2 uv);
 
 } // namespace duet

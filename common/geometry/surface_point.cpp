@@ -35,7 +35,7 @@ LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t, SurfaceDet
     local.uv = sphere_uv(Vec3(n));
     const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
     if (ring > 0) { // at the poles u has no direction
-        local.dpdu = Vec3d(-n.z, 0, n.x) * (2 * kPiDouble * r);
+        local.dpdu = Vec3d(n.z, 0, -n.x) * (2 * kPiDouble * r);
         local.dpdv = Vec3d(-n.y * n.x / ring, ring, -n.y * n.z / ring) * (kPiDouble * r);
     }
     return local;

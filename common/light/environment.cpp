@@ -27,7 +27,7 @@ float wrap(double u) { return std::min(static_cast<float>(u - std::floor(u)), kO
 
 /// Where direction w lies in the picture.
 Vec2 picture_uv(const ImageEnvironment& e, Vec3 w) {
-    const Vec2 uv = sphere_uv(w);
+    const Vec2 uv = latlong_uv(w);
     return {wrap(static_cast<double>(uv.x) + static_cast<double>(e.rotation) / (2 * kPiDouble)),
             clamp(uv.y, 0.0f, kOneMinusEpsilon)};
 }

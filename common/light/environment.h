@@ -23,7 +23,7 @@ struct ConstantEnvironment {
 struct SkyEnvironment {
     Rgb down{1.0f, 1.0f, 1.0f}, up{0.5f, 0.7f, 1.0f};
 };
-/// A lat-long picture, by the mapping of sphere_uv: u = ½ + atan2(x, −z)/2π, top row = +y; bilinear.
+/// A lat-long picture, by the mapping of latlong_uv: u = ½ + atan2(x, −z)/2π, top row = +y; bilinear.
 struct ImageEnvironment {
     ImageRgb image;
     float scale = 1;    ///< multiplies the picture

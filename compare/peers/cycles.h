@@ -46,7 +46,7 @@ private:
 };
 
 /// The version of what the export and the settings make Cycles converge to, as raytrace::kEstimatorVersion is ours.
-inline constexpr int kCyclesExportVersion = 2;
+inline constexpr int kCyclesExportVersion = 3;
 
 /// Cycles with adaptive sampling and without; they share the peer.
 std::vector<Contender> cycles_contenders(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps);

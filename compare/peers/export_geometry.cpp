@@ -97,9 +97,9 @@ TriangleSoup sphere_triangles(int rings) {
     for (int j = 0; j < rings; ++j)
         for (int i = 0; i < sectors; ++i) {
             // At a pole one edge of the cell is a point, and one triangle is none.
-            // Seen from outside u grows to the left.
-            if (j > 0) builder.add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i + 1, j), 0, true);
-            if (j + 1 < rings) builder.add_triangle(corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), 0, true);
+            // Seen from outside u grows to the right.
+            if (j > 0) builder.add_triangle(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), 0, true);
+            if (j + 1 < rings) builder.add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1), 0, true);
         }
     return builder.finish();
 }

@@ -48,7 +48,7 @@ Rgb at_direction(const ImageRgb& map, Vec2 uv) {
     return bilinear(map, wrapped(uv.x) * static_cast<float>(map.width()), (1 - uv.y) * static_cast<float>(map.height()), true);
 }
 
-/// The direction at the middle of a map's pixel: the inverse of sphere_uv.
+/// The direction at the middle of a map's pixel: the inverse of latlong_uv.
 Vec3 direction(int x, int y, const ImageRgb& map) {
     const double theta = kPiDouble * (y + 0.5) / map.height(), phi = 2 * kPiDouble * ((x + 0.5) / map.width() - 0.5);
     return Vec3(Vec3d(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)));
@@ -89,7 +89,7 @@ Rgb filtered(const std::vector<ImageRgb>& levels, const std::vector<LobeSample>&
         const float pixel = 2 * kPi * kPi * sine / static_cast<float>(finest.size());
         const float level = clamp(0.5f * std::log2(s.solid_angle / pixel) + 0.5f, 0.0f, static_cast<float>(levels.size() - 1));
         const auto low = std::min(static_cast<std::size_t>(level), levels.size() - 2);
-        const Vec2 uv = sphere_uv(normalize(w));
+        const Vec2 uv = latlong_uv(normalize(w));
         sum += lerp(at_direction(levels[low], uv), at_direction(levels[low + 1], uv), level - static_cast<float>(low)) * s.weight;
     }
     return sum;
@@ -132,9 +132,9 @@ Rgb Prefiltered::at(const Environment& environment, Vec3 w, float alpha) const {
         return lerp(sky->down, sky->up, 0.5f * (1 + w.y * cosine));
     }
     const float place = clamp(std::sqrt(alpha), 0.0f, 1.0f) * kMaps - 1; // −1: the picture itself
-    if (place < 0) return lerp(radiance(environment, w), at_direction(maps_.front(), sphere_uv(w)), place + 1);
+    if (place < 0) return lerp(radiance(environment, w), at_direction(maps_.front(), latlong_uv(w)), place + 1);
     const auto low = std::min(static_cast<std::size_t>(place), maps_.size() - 2);
-    return lerp(at_direction(maps_[low], sphere_uv(w)), at_direction(maps_[low + 1], sphere_uv(w)), place - static_cast<float>(low));
+    return lerp(at_direction(maps_[low], latlong_uv(w)), at_direction(maps_[low + 1], latlong_uv(w)), place - static_cast<float>(low));
 }
 
 Vec3 Prefiltered::axis(Vec3 normal, Vec3 mirrored, float alpha) {

@@ -114,6 +114,29 @@ TEST_SUITE("image") {
         }
     }
 
+    TEST_CASE("a map on a sphere is a globe seen from outside: west on the left, north above") {
+        Scene scene;
+        const Rgb red(0.8f, 0.1f, 0.1f), green(0.1f, 0.8f, 0.1f), blue(0.1f, 0.1f, 0.8f), yellow(0.8f, 0.8f, 0.1f);
+        ImageRgb map(4, 2, Rgb(0.0f)); // black at the back; row 0 is the top row
+        map(1, 0) = red, map(2, 0) = green, map(1, 1) = blue, map(2, 1) = yellow;
+        scene.textures = {{ImageTexture{0, {1, 1}, TextureFilter::kNearest}}, {map}};
+        Diffuse material;
+        material.albedo = {Rgb(1.0f), 0};
+        test::add(scene, Sphere{{0, 0, 0}, 1}, Mat4(), material);
+        scene.camera = test::look({0, 0, 6}, {0, 0, 0}, 20); // sees a half of it: u from 1/4 to 3/4
+        finish_scene(scene);
+        for (const ImageRgb& picture :
+             {raster_albedo(scene), raytrace_picture(scene, raytrace::Integrator::kAlbedo, SamplerKind::kCenter, 1)}) {
+            const auto shows = [&](int x, int y, Rgb color) {
+                return max_component(picture(x, y) - color) < 1e-3f && max_component(color - picture(x, y)) < 1e-3f;
+            };
+            CHECK(shows(81, 39, red));
+            CHECK(shows(110, 39, green));
+            CHECK(shows(81, 68, blue));
+            CHECK(shows(110, 68, yellow));
+        }
+    }
+
     TEST_CASE("footprints are the differences of neighbours' coordinates") {
         const auto check = [](const Shape& shape, double tolerance) {
             Scene scene;

@@ -234,15 +234,49 @@ TEST_SUITE("unit") {
         CHECK(intersect_sphere({{0, 1e-7f, 0}, normalize(Vec3(1, -1e-3f, 0))}, ground).has_value());
     }
 
-    TEST_CASE("sphere_uv and sphere_direction are inverse, and follow the lat-long convention") {
-        CHECK(sphere_uv({0, 0, -1}).x == doctest::Approx(0.5f));
+    TEST_CASE("the places on a sphere and in a lat-long sky, and their inverses") {
+        CHECK(sphere_uv({0, 0, 1}).x == doctest::Approx(0.5f));
         CHECK(sphere_uv({1, 0, 0}).x == doctest::Approx(0.75f));
-        CHECK(sphere_uv({0, 1, 0}).y == doctest::Approx(1.0f));
-        CHECK(sphere_uv({0, -1, 0}).y == doctest::Approx(0.0f));
+        CHECK(latlong_uv({0, 0, -1}).x == doctest::Approx(0.5f));
+        CHECK(latlong_uv({1, 0, 0}).x == doctest::Approx(0.75f));
+        for (const auto uv : {sphere_uv, latlong_uv}) {
+            CHECK(uv({0, 1, 0}).y == doctest::Approx(1.0f));
+            CHECK(uv({0, -1, 0}).y == doctest::Approx(0.0f));
+        }
         Random random;
         for (int trial = 0; trial < 2000; ++trial) {
             const Vec3 n = normalize(random.vector());
             CHECK(length(sphere_direction(sphere_uv(n)) - n) < 1e-5f);
+            CHECK(length(latlong_direction(latlong_uv(n)) - n) < 1e-5f);
+        }
+    }
+
+    // Text on a globe must be readable: for an eye outside with v up, u grows to its right. So (∂p/∂u, ∂p/∂v, n) is
+    // right-handed, as on a quad and on a mesh whose texture isn't mirrored. A sky is seen from inside.
+    TEST_CASE("a texture on a sphere is not mirrored, seen from outside; a sky is not, seen from inside") {
+        Random random;
+        const float step = 1e-3f;
+        for (int trial = 0; trial < 2000; ++trial) {
+            const Vec3 n = normalize(random.vector());
+            if (std::abs(n.y) > 0.95f || (n.z < 0 && std::abs(n.x) < 0.05f)) continue; // near a pole or the seam
+            const Vec3 right = normalize(cross(Vec3(0, 1, 0), n)); // of an eye outside that looks along −n
+            CHECK(sphere_uv(normalize(n + right * step)).x > sphere_uv(n).x);
+            const Vec3 w = -n, right_inside = normalize(cross(w, Vec3(0, 1, 0)));
+            if (w.z > 0 && std::abs(w.x) < 0.05f) continue; // the seam of the sky
+            CHECK(latlong_uv(normalize(w + right_inside * step)).x > latlong_uv(w).x);
+
+            const Sphere sphere{random.vector(), 2};
+            const Ray ray{sphere.center + n * 5.0f, -n};
+            const auto t = intersect_sphere(ray, sphere);
+            REQUIRE(t.has_value());
+            const SurfacePoint point = surface_point(Shape(sphere), Hit{0, 0, 0, 0, *t}, ray, Mat4(), Mat4(), true);
+            CHECK(dot(cross(point.dpdu, point.dpdv), point.ng) > 0);
+            // And they are the derivatives of where it is.
+            const Vec2 uv = point.uv;
+            const float h = 1e-3f;
+            const auto at = [&](Vec2 place) { return sphere.center + sphere_direction(place) * sphere.radius; };
+            CHECK(length((at({uv.x + h, uv.y}) - at({uv.x - h, uv.y})) / (2 * h) - point.dpdu) < 0.02f);
+            CHECK(length((at({uv.x, uv.y + h}) - at({uv.x, uv.y - h})) / (2 * h) - point.dpdv) < 0.02f);
         }
     }
 

@@ -91,7 +91,7 @@ TEST_SUITE("unit") {
             int dark = 0, dark_sampled = 0;
             for (int i = 0; i < 200; ++i)
                 for (int j = 0; j <= 200; ++j) {
-                    const Vec3 w = sphere_direction({static_cast<float>(i) / 200, static_cast<float>(j) / 200});
+                    const Vec3 w = latlong_direction({static_cast<float>(i) / 200, static_cast<float>(j) / 200});
                     const float density = pdf(e, w);
                     REQUIRE((std::isfinite(density) && density >= 0));
                     REQUIRE(is_finite(radiance(e, w)));
@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
         image(6, 2) = Rgb(2.0f);
         const Environment e = make_image_environment(image, 3, 0);
         const auto at = [](int x, int y) { // direction of a pixel's centre
-            return sphere_direction({(static_cast<float>(x) + 0.5f) / 8, 1 - (static_cast<float>(y) + 0.5f) / 4});
+            return latlong_direction({(static_cast<float>(x) + 0.5f) / 8, 1 - (static_cast<float>(y) + 0.5f) / 4});
         };
         CHECK(radiance(e, at(4, 0)).r == doctest::Approx(3).epsilon(1e-5));
         CHECK(radiance(e, at(6, 2)).r == doctest::Approx(6).epsilon(1e-5));
@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
         const Environment turned = make_image_environment(image, 3, turn);
         const Mat4 rotate = rotation(Vec3(0, 1, 0), turn);
         for (int i = 0; i < 100; ++i) {
-            const Vec3 w = sphere_direction({static_cast<float>(i) / 100, static_cast<float>((i * 37) % 100) / 100});
+            const Vec3 w = latlong_direction({static_cast<float>(i) / 100, static_cast<float>((i * 37) % 100) / 100});
             CHECK(radiance(turned, transform_vector(rotate, w)).r == doctest::Approx(radiance(e, w).r).epsilon(1e-4));
         }
         ImageRgb ramp(16, 8);

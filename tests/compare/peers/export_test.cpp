@@ -147,7 +147,7 @@ TEST_SUITE("unit") {
             return rows[r][0].get<double>() * w.x + rows[r][1].get<double>() * w.y + rows[r][2].get<double>() * w.z;
         };
         const double u = 0.5 - std::atan2(turned(1), turned(0)) / (2 * kPiDouble);
-        CHECK(u == doctest::Approx(static_cast<double>(sphere_uv(Vec3(w)).x) + 0.25));
+        CHECK(u == doctest::Approx(static_cast<double>(latlong_uv(Vec3(w)).x) + 0.25));
         CHECK(turned(2) == doctest::Approx(w.y));
         CHECK(read_image(scratch / "environment.exr").width() == 4);
     }
