@@ -89,7 +89,9 @@ LAB_ITEM(20, "a sample in its cell") {
                {Vec2(1, 0.5f), "u was not made smaller: it spans one cell, which is 1/n of the pixel."}});
     item.near("sample 7 of 9 with u = (0.25, 0.75)", of(7, 3, {0.25f, 0.75f}), Vec2(1.25f / 3, 2.75f / 3), 1e-6,
               {{Vec2(2.25f / 3, 1.75f / 3), "Column and row are exchanged: the column is i % n, and the row is i / n."},
-               {Vec2(1.75f / 3, 2.25f / 3), "u.x belongs to the column and u.y to the row."}});
+               {Vec2(1.75f / 3, 2.25f / 3), "u.x belongs to the column and u.y to the row."},
+               {Vec2(1.5f / 3, 2.5f / 3),
+                "This is the middle of the cell, whatever u is: add u to the cell's column and row."}});
     item.near("the only sample of n = 1", of(0, 1, {0.3f, 0.9f}), Vec2(0.3f, 0.9f), 1e-6);
     for (int i = 0; i < 60; ++i) {
         const int n = item.random().integer(1, 9), cell = item.random().integer(0, n * n - 1);
@@ -114,6 +116,8 @@ LAB_ITEM(15, "a picture whose pixels are means: colors and coverage") {
     const ImageRgb image = STUDENT(draw)(half_plane(3.3f), 8, 64, 4, item.random().bits());
     item.require(!std::all_of(image.begin(), image.end(), [](const Rgb& c) { return c.g == 0 || c.g == 1; }),
                  "All pixels at an edge are black or white: each pixel must be the mean of its samples.");
+    item.require(!(image(6, 0).g > 0.5f && image(0, 40).g < 0.5f),
+                 "x and y are exchanged: x comes from the column and y from the row.");
     const auto values = edge_pixels(image, 3);
     const double found = mean(values);
     item.require(std::abs(found - 0.8) > 0.04,
@@ -144,7 +148,9 @@ LAB_ITEM(15, "samples lie in the pixel, all around") {
                                      "column and column + 1, and between row and row + 1."},
          {center - Vec2(0.5f, 0.5f), "All is half a pixel too far to the left and too high: don't add 0.5 to a sample "
                                      "that is spread over the pixel already."},
-         {Vec2(center.y, center.x), "x and y are exchanged."}});
+         {Vec2(center.y, center.x), "x and y are exchanged."},
+         {center + Vec2(0, 0.4f),
+          "It is too low, as if only the first row of cells had samples. There are n·n samples, not n."}});
     item.near("the area of a disk with radius 5.3, in pixels", static_cast<float>(area),
               static_cast<float>(kPi * 5.3 * 5.3), 1.5);
 }
@@ -161,6 +167,14 @@ LAB_ITEM(15, "random numbers: others in each pixel, and less noise by cells") {
         changes > 12,
         "The 64 pixels along a straight edge have the same value: all pixels use the same random numbers, or none. "
         "Let the state run on from pixel to pixel, or give each pixel a seed of its own.");
+    // The same for an edge that runs across, in which the pixels of one row differ.
+    const ImageRgb across = STUDENT(draw)(std::vector<Disk>{{{32, 3.3f - 16384}, 16384, Rgb(1)}}, 64, 8, 4, seed);
+    int changes_across = 0;
+    for (int column = 1; column < 64; ++column)
+        changes_across += across(column, 3).g != across(column - 1, 3).g ? 1 : 0;
+    item.require(changes_across > 12,
+                 "All pixels of a row use the same random numbers, and other rows have others. Let the "
+                 "state run on from pixel to pixel.");
     // In cells only the second column of cells matters: four samples of 16, each inside with the chance 0.2. So the
     // deviation is √(4·0.2·0.8)/16 = 0.05. Anywhere in the pixel it would be √(0.3·0.7/16) = 0.115.
     const double found = deviation(values, 0.3);

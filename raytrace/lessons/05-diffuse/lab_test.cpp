@@ -157,8 +157,11 @@ LAB_ITEM(20, "a ray starts beyond the error of its point, at any scale") {
 LAB_ITEM(20, "one bounce: the mean of the sky, times the albedo") {
     const Rgb albedo{0.8f, 0.5f, 0.2f};
     const std::vector<Sphere> one{{{0, 0, 0}, 1}};
-    item.near("the color of a ray that misses", STUDENT(path_color)(one, {albedo}, Ray{{0, 2, 0}, {0, 3, 0}}, 10, 1),
-              sky(1), 1e-5, {{sky(1) * albedo, "The ray met no surface, and its light was multiplied by an albedo."}});
+    item.near(
+        "the color of a ray that misses", STUDENT(path_color)(one, {albedo}, Ray{{0, 2, 0}, {0, 3, 0}}, 10, 1), sky(1),
+        1e-5,
+        {{sky(1) * albedo, "The ray met no surface, and its light was multiplied by an albedo."},
+         {Rgb(1), "This is the weight of the path alone: multiply it by lesson::sky_color of the ray's direction."}});
     // At the top of the sphere the sky's height in directions by Lambert's law is 2/3 on average; evenly drawn, 1/2.
     const Rgb found = mean_color(one, {albedo}, kDown, 10, 4000);
     item.near("the mean color at the top of a sphere", found, sky(2 / 3.0f) * albedo, 0.006,
@@ -169,6 +172,11 @@ LAB_ITEM(20, "one bounce: the mean of the sky, times the albedo") {
                {sky(1 / 2.0f) * albedo, "Directions are all alike, not by Lambert's law."},
                {sky(-1) * albedo, "The sky was asked for the first ray's direction, not for the last one's."},
                {albedo, "This is the albedo alone: multiply it by the light of the sky."}});
+    // The first sphere of the list is too far away to be met.
+    const Rgb second = mean_color({{{0, 0, 1000}, 1}, one[0]}, {{0.1f, 0.9f, 0.1f}, albedo}, kDown, 10, 4000);
+    item.near(
+        "the mean color at the top of the second sphere of a list", second, sky(2 / 3.0f) * albedo, 0.006,
+        {{sky(2 / 3.0f) * Rgb(0.1f, 0.9f, 0.1f), "This is the color of the first sphere: take albedos[hit->index]."}});
     const Rgb a = STUDENT(path_color)(one, {albedo}, kDown, 10, 1),
               b = STUDENT(path_color)(one, {albedo}, kDown, 10, 2);
     item.require(a != b,
@@ -213,6 +221,12 @@ LAB_ITEM(15, "many bounces") {
         "the floor under a ball, one bounce", below, open_sky * albedos[0], 0.015,
         {{sky(2 / 3.0f) * albedos[0], "The ball casts no shadow: the path that goes on must be tested against all "
                                       "spheres."}});
+    // The mean of 400,000 paths, which is off by 0.0006 in red; 4000 of them are off by 0.006. The mistake's as well.
+    item.near("the floor under a ball, three bounces", mean_color(two, albedos, {{0, 0.1f, 0}, {0, -1, 0}}, 3, 4000),
+              Rgb(0.3547f, 0.0314f, 0.0397f), 0.04,
+              {{Rgb(0.4654f, 0.0327f, 0.0418f), "It looks as if each bounce drew the same random numbers. Make the "
+                                                "generator once, before the loop. A function "
+                                                "that draws from it takes it by reference: a copy begins again."}});
     const Rgb more = mean_color(two, albedos, {{0, 0.1f, 0}, {0, -1, 0}}, 40, 4000);
     item.require(more.r > below.r + 0.03f,
                  message("With 40 bounces the floor should be brighter than with one: light comes by "
