@@ -239,35 +239,34 @@ LAB_ITEM(15, "the errors of an image") {
 LAB_ITEM(15, "the cause of a difference") {
     const auto check = [&](const std::string& name, const Finding& a, const Finding& b, Cause expected,
                            const std::vector<Mistake<Cause>>& mistakes) {
-        item.equal(name, STUDENT(classify_pixel)(a, b, 0.1f), expected, mistakes);
+        item.equal("The cause (0 kSame, 1 kEdge, 2 kShadow, 3 kLight) where " + name,
+                   STUDENT(classify_pixel)(a, b, 0.1f), expected, mistakes);
     };
     const Rgb gray(0.5f), dark(0.2f);
-    check("The cause where the colors are equal, and the triangles are neighbors", {7, 1, gray}, {8, 1, gray},
-          Cause::kSame,
+    check("the colors are equal, and the triangles are neighbors", {7, 1, gray}, {8, 1, gray}, Cause::kSame,
           {{Cause::kEdge, "The colors are the same, so nothing has to be explained: ask for the colors first."}});
-    check("The cause where another triangle is seen", {7, 1, gray}, {8, 1, dark}, Cause::kEdge, {});
-    check("The cause where another triangle is seen, in shadow", {7, 1, gray}, {8, 0, dark}, Cause::kEdge,
+    check("another triangle is seen", {7, 1, gray}, {8, 1, dark}, Cause::kEdge, {});
+    check("another triangle is seen, in shadow", {7, 1, gray}, {8, 0, dark}, Cause::kEdge,
           {{Cause::kShadow, "They see different triangles, so their shadows are not those of one point: ask for the "
                             "triangles before the shadows."}});
-    check("The cause where only one sees a triangle", {-1, 1, gray}, {3, 1, dark}, Cause::kEdge,
+    check("only one sees a triangle", {-1, 1, gray}, {3, 1, dark}, Cause::kEdge,
           {{Cause::kLight, "-1 is no triangle: one of the two sees the background, so this is an edge."},
            {Cause::kSame, "-1 is no triangle: one of the two sees the background, so this is an edge."}});
-    check("The cause where the same triangle is in sun and in shadow", {7, 1, gray}, {7, 0, dark}, Cause::kShadow, {});
-    check("The cause where the first is in shadow", {7, 0, dark}, {7, 1, gray}, Cause::kShadow,
+    check("the same triangle is in sun and in shadow", {7, 1, gray}, {7, 0, dark}, Cause::kShadow, {});
+    check("the first is in shadow", {7, 0, dark}, {7, 1, gray}, Cause::kShadow,
           {{Cause::kSame, "The difference is negative: compare its absolute value with the tolerance."},
            {Cause::kLight, "The difference is negative: compare its absolute value with the tolerance."}});
-    check("The cause where triangle and sun are the same", {7, 1, gray}, {7, 1, dark}, Cause::kLight, {});
-    check("The cause where the first image is darker", {7, 1, dark}, {7, 1, gray}, Cause::kLight,
+    check("triangle and sun are the same", {7, 1, gray}, {7, 1, dark}, Cause::kLight, {});
+    check("the first image is darker", {7, 1, dark}, {7, 1, gray}, Cause::kLight,
           {{Cause::kSame, "The difference is negative: compare its absolute value with the tolerance."}});
-    check("The cause where the sun differs by less than the tolerance", {7, 0.5f, gray}, {7, 0.45f, dark},
-          Cause::kLight, {{Cause::kShadow, "The fractions of the sun's light may differ by the tolerance."}});
-    check("The cause where only blue differs", {7, 1, {0.5f, 0.5f, 0.8f}}, {7, 1, {0.5f, 0.5f, 0.5f}}, Cause::kLight,
+    check("the sun differs by less than the tolerance", {7, 0.5f, gray}, {7, 0.45f, dark}, Cause::kLight,
+          {{Cause::kShadow, "The fractions of the sun's light may differ by the tolerance."}});
+    check("only blue differs", {7, 1, {0.5f, 0.5f, 0.8f}}, {7, 1, {0.5f, 0.5f, 0.5f}}, Cause::kLight,
           {{Cause::kSame, "Each channel counts: a difference in blue alone is a difference."}});
-    check("The cause where red is brighter and green is darker", {7, 1, {0.7f, 0.3f, 0.5f}}, {7, 1, gray},
-          Cause::kLight,
+    check("red is brighter and green is darker", {7, 1, {0.7f, 0.3f, 0.5f}}, {7, 1, gray}, Cause::kLight,
           {{Cause::kSame, "The channels' differences cancel each other: compare each channel by itself."}});
-    check("The cause where all differ by less than the tolerance", {7, 1, {0.55f, 0.45f, 0.5f}}, {7, 1, gray},
-          Cause::kSame, {{Cause::kLight, "No channel differs by more than the tolerance."}});
+    check("all differ by less than the tolerance", {7, 1, {0.55f, 0.45f, 0.5f}}, {7, 1, gray}, Cause::kSame,
+          {{Cause::kLight, "No channel differs by more than the tolerance."}});
 }
 
 LAB_ITEM(15, "bias and noise") {
