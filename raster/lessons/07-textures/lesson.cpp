@@ -50,6 +50,8 @@ int main() {
     const Mat4 above = camera({0.3f, 1.5f, 2.1f}, {0.05f, 0, -0.55f}, 0.72f);
     Object floor{place_mesh(square(1.2f, 0.6f), Mat4(), above), tiles};
     const ImageRgb right = view({floor}, eye, bilinear<Rgb>, 4, 256);
+    const auto cut = [](const ImageRgb& i, Vec2 uv) { return texel(i, 32 * int(uv.x * 2), 32 * int(uv.y * 2)); };
+    write_image("negative.png", view({floor}, eye, cut, 4, 256));
     for (Triangle& t : floor.triangles)
         for (Vertex& v : t) v.clip = v.clip * (1 / v.clip.w); // w is 1 now: the pipeline has forgotten the distance
     write_image("affine.png", beside({view({floor}, eye, bilinear<Rgb>, 4, 256), right}));
@@ -60,9 +62,9 @@ int main() {
     const ImageRgb one_sample = view(plain, eye, bilinear<Rgb>, 1, 240);
     write_image("distance.png", beside({one_sample, view(plain, eye, bilinear<Rgb>, 4, 240)}));
     const auto flipped = [](const ImageRgb& image, Vec2 uv) { return bilinear(image, {uv.x, 1 - uv.y}); };
-    const ImageRgb upside_down = view(vases, eye, flipped);
+    const ImageRgb upside_down = view(vases, eye, flipped, 4, 256);
     for (Rgb& c : paint.pixels()) c = {srgb_encode(c.r), srgb_encode(c.g), srgb_encode(c.b)}; // as the file has them
-    write_image("wrong.png", beside({upside_down, view(vases, eye, bilinear<Rgb>)}));
+    write_image("wrong.png", beside({upside_down, view(vases, eye, bilinear<Rgb>, 4, 256)}));
     Plot plot{.title = "An edge in perspective", .x_label = "fraction in the image", .y_label = "fraction on the edge"};
     for (const double w : {1.0, 3.0, 10.0}) {
         plot.series.push_back({"w from 1 to " + std::to_string(int(w)), {}});

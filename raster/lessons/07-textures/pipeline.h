@@ -7,7 +7,7 @@
 
 namespace duet::lesson {
 
-/// The weights of a triangle's corners on the triangle itself, from those in the picture. What is linear in the picture
+/// The weights of a triangle's corners on the triangle itself, from those in the image. What is linear in the image
 /// is not an attribute but attribute / w; 1 / w is linear too. (Blinn 1992, "Hyperbolic Interpolation")
 inline Vec3 perspective_weights(const Triangle& part, Vec3 weights) {
     const Vec3 over_w{weights.x / part[0].clip.w, weights.y / part[1].clip.w, weights.z / part[2].clip.w};

@@ -1,4 +1,4 @@
-// Colors from pictures.
+// Colors from images.
 #pragma once
 
 #include "common/image/image.h"
@@ -7,13 +7,13 @@
 
 namespace duet::lesson {
 
-/// The texel in column x of row y, both counted from the lower left corner. The picture repeats beyond its edges.
+/// The texel in column x of row y, both counted from the lower left corner. The image repeats beyond its edges.
 template <typename Pixel> Pixel texel(const Image<Pixel>& image, int x, int y) {
     const auto wrapped = [](int i, int size) { return ((i % size) + size) % size; };
     return image(wrapped(x, image.width()), image.height() - 1 - wrapped(y, image.height()));
 }
 
-/// The texel that the point uv lies in. (0, 0) is the picture's lower left corner, (1, 1) its upper right one.
+/// The texel that the point uv lies in. (0, 0) is the image's lower left corner, (1, 1) its upper right one.
 template <typename Pixel> Pixel nearest(const Image<Pixel>& image, Vec2 uv) {
     return texel(image, static_cast<int>(std::floor(uv.x * static_cast<float>(image.width()))),
                  static_cast<int>(std::floor(uv.y * static_cast<float>(image.height()))));
