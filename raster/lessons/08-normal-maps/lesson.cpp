@@ -68,7 +68,7 @@ ImageRgb decoded(ImageRgb image) {
 }
 
 /// Heights as gray, beside their normal map as a file would hold it.
-ImageRgb pictures(const ImageFloat& relief, const ImageRgb& map) {
+ImageRgb both_images(const ImageFloat& relief, const ImageRgb& map) {
     ImageRgb gray(relief.width(), relief.height());
     const float greatest = *std::max_element(relief.pixels().begin(), relief.pixels().end());
     for (std::size_t i = 0; i < gray.pixels().size(); ++i) gray.pixels()[i] = Rgb(relief.pixels()[i] / greatest);
@@ -79,7 +79,7 @@ int main() {
     const Surface copper{{0.55f, 0.2f, 0.09f}, 0.9f, 40}, bronze{{0.42f, 0.27f, 0.07f}, 0.6f, 30};
     const ImageFloat dents = heights(128, hammered), studs = heights(128, shield);
     const ImageRgb dented = normal_map(dents), studded = normal_map(studs), flat(1, 1, Rgb(0.5f, 0.5f, 1));
-    write_image("maps.png", beside({pictures(dents, dented), pictures(studs, studded)}));
+    write_image("maps.png", beside({both_images(dents, dented), both_images(studs, studded)}));
 
     const Mesh amphora = read_obj(DUET_MODELS "meshes/amphora.obj");
     const Vec3 eye{0, 0.8f, 3};

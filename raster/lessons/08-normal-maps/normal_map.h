@@ -14,11 +14,11 @@ struct TangentFrame {
 /// The frame of a triangle at a point with the unit normal n. Both are 0 where the corners' uv lie on one line.
 inline TangentFrame tangent_frame(const Triangle& triangle, Vec3 n) {
     const auto& [p, q, r] = triangle;
-    const Vec3 pq = q.p - p.p, pr = r.p - p.p;
-    const Vec2 st = q.uv - p.uv, xy = r.uv - p.uv;
-    const float det = st.x * xy.y - st.y * xy.x;
+    const Vec3 e1 = q.p - p.p, e2 = r.p - p.p;
+    const Vec2 d1 = q.uv - p.uv, d2 = r.uv - p.uv;
+    const float det = d1.x * d2.y - d1.y * d2.x;
     if (det == 0) return {};
-    const Vec3 along_u = (pq * xy.y - pr * st.y) / det, along_v = (pr * st.x - pq * xy.x) / det;
+    const Vec3 along_u = (e1 * d2.y - e2 * d1.y) / det, along_v = (e2 * d1.x - e1 * d2.x) / det;
     const Vec3 t = normalize(along_u - n * dot(n, along_u)), b = cross(n, t);
     return {t, dot(b, along_v) < 0 ? -b : b}; // where the texture is mirrored, t, b and n are left-handed
 }
