@@ -102,9 +102,13 @@ LAB_ITEM(25, "the tangents of a triangle") {
     // By hand: the edges (0, 0, 2) = U + V and (0, 3, 0) = V.
     check("the tangents of (1, 1, 1), (1, 1, 3), (1, 4, 1) at uv (0, 0), (1, 1), (0, 1)",
           {Vec3{1, 1, 1}, {1, 1, 3}, {1, 4, 1}}, {Vec2{0, 0}, {1, 1}, {0, 1}}, {{0, -3, 2}, {0, 3, 0}}, 1e-5);
-    item.near("the tangents where the three uv lie on one line",
-              STUDENT(tangents)(Corners{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Places{Vec2{0, 0}, {1, 2}, {2, 4}}), T(),
-              0);
+    const T none = STUDENT(tangents)(Corners{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Places{Vec2{0, 0}, {1, 2}, {2, 4}});
+    item.near("the tangents where the three uv lie on one line, (0, 0), (1, 2), (2, 4)", none, T(), 0,
+              {{none, none && is_finite(none->along_u)
+                          ? "The determinant du1·dv2 - dv1·du2 is 1·4 - 2·2 = 0 here: return nothing. Is there a plus "
+                            "in yours?"
+                          : "The determinant is 0 here, and something was divided by it: test it first, and return "
+                            "nothing."}});
     for (int i = 0; i < 100; ++i) {
         Rng& rng = item.random();
         const auto place = [&] {
@@ -142,6 +146,10 @@ LAB_ITEM(20, "a frame at right angles") {
               "b is not at right angles to t: take the cross product of n and t."},
              {{t, normalize(in.along_v)}, "b is not at right angles to n and t: take the cross product of n and t."},
              {{-t, b}, "t points against u."},
+             {{-t, -b},
+              dot(cross(n, t), b) < 0 ? "t was turned around where the texture is mirrored: turn b around, "
+                                        "since t must follow u."
+                                      : "t points against u, and so b points against v."},
              {{b, t}, "t and b are swapped."}});
     };
     check("the frame of n = (0, 0, 1), along_u = (2, 0, 1), along_v = (1, 3, 0)", {0, 0, 1}, {{2, 0, 1}, {1, 3, 0}},
@@ -209,8 +217,10 @@ LAB_ITEM(20, "the normal in the world") {
         Rng& rng = item.random();
         const Vec3d n = rng.unit_vector(), t = normalize(cross(n, rng.unit_vector()));
         const Vec3d b = cross(n, t) * (i % 2 ? 1.0 : -1.0);
-        check("the normal in a random frame", Vec3(n), {Vec3(t), Vec3(b)},
-              Vec3(rng.unit_vector() * rng.uniform(0.5, 2)), 2e-5);
+        const Vec3 m(rng.unit_vector() * rng.uniform(0.5, 2));
+        check(message("the normal for n = ", describe(Vec3(n)), ", t = ", describe(Vec3(t)),
+                      ", b = ", describe(Vec3(b)), " and the map's ", describe(m)),
+              Vec3(n), {Vec3(t), Vec3(b)}, m, 2e-5);
     }
 }
 
@@ -238,8 +248,12 @@ LAB_ITEM(25, "the normal map of a relief") {
             const Vec3d n = normalize(Vec3d(-s.x, -s.y, 1));
             return Rgb(Rgbd(n.x, n.y, n.z));
         };
+        const ImageRgb found = STUDENT(normal_map)(heights), expected = map_by(heights, color_of, right);
+        bool inside = found.width() == expected.width() && found.height() == expected.height();
+        for (int y = 1; y < last_y && inside; ++y)
+            for (int x = 1; x < last_x && inside; ++x) inside = is_near(found(x, y), expected(x, y), 1e-3);
         item.image(
-            name, STUDENT(normal_map)(heights), map_by(heights, color_of, right), 1e-3,
+            name, found, expected, 1e-3,
             {{changed(-1, -1), "Bumps have become dents: a normal leans away from the slope, so its x and y are the "
                                "negative slopes."},
              {changed(1, -1), "The second component has the wrong sign: v counts up, but rows count down."},
@@ -254,7 +268,10 @@ LAB_ITEM(25, "the normal map of a relief") {
              {map_by(heights, color_of, at_edges),
               "At the edges a neighbor is wrong: the relief repeats, so beyond the last texel comes the "
               "first."},
-             {changed(0, 0), "The map is flat: its normals don't depend on the heights."}});
+             {changed(0, 0), "The map is flat: its normals don't depend on the heights."},
+             {inside ? found : expected,
+              "Only texels at the edges are wrong. The relief repeats there. In C++, -1 % 4 is -1, and not 3: add the "
+              "size first."}});
     };
     ImageFloat ramp(6, 4, 0.0f);
     for (int y = 0; y < 4; ++y)
