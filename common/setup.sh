@@ -1,14 +1,10 @@
 #!/bin/sh
-# Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then builds a preset.
-# Called by compare/demo.sh and tests/run.sh. A lesson builds what it needs, so students configure the preset alone.
-# usage: common/setup.sh [--configure] [PRESET [PACKAGE…]]
-#   PRESET       release unless told
-#   PACKAGE      what the caller needs besides
-#   --configure  builds nothing
+# Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then configures a preset:
+# build/PRESET is ready for `cmake --build`. It builds nothing: a lesson or a program builds what it needs.
+# Called by compare/demo.sh and tests/run.sh.
+# usage: common/setup.sh [PRESET [PACKAGE…]]        (default: release; PACKAGE: a package that the caller needs besides)
 set -eu
 cd "$(dirname "$0")/.."
-build=yes
-[ "${1:-}" != --configure ] || { build='' && shift; }
 preset=${1:-release}
 [ $# -gt 0 ] && shift
 
@@ -39,4 +35,3 @@ if [ -n "$missing" ]; then
 fi
 
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset"
-[ -z "$build" ] || cmake --build --preset "$preset"

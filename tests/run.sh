@@ -16,6 +16,7 @@ if grep -q '^ID=debian' /etc/os-release && ! python3 -B tests/browser/chromium.p
     packages="$packages chromium"
 fi
 sh common/setup.sh "$preset" $packages
+cmake --build --preset "$preset"
 case $preset in
     asan | tsan | sabotage) ;; # the course's programs are tested as students build them
     *) cmake --build --preset "$preset" --target lessons judges ;;
