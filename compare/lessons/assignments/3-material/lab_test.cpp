@@ -146,6 +146,10 @@ LAB_ITEM(15, "the BRDF has the values of the papers") {
         const double lo = lambda(Vec3d(wo), alpha), li = lambda(Vec3d(wi), alpha);
         const auto times = [&](double factor) { return Rgb(f * factor); };
         const Rgb without_fresnel(brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1))); // F of a perfect mirror is 1
+        const auto with_fresnel = [&](double schlick) {
+            return Rgb(brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1)) * (Rgbd(f0) + (Rgbd(1) - Rgbd(f0)) * schlick));
+        };
+        const double beside = 1 - dot(Vec3d(wo), normalize(Vec3d(wo) + Vec3d(wi)));
         item.near("the BRDF", found[0], Rgb(f), static_cast<float>(1e-3 * max_component(f) + 1e-5),
                   {{times(wi.z), "The BRDF has no cosine in it: the cosine of wi belongs to the integral."},
                    {times(4), "The 4 in the denominator is missing."},
@@ -153,10 +157,16 @@ LAB_ITEM(15, "the BRDF has the values of the papers") {
                    {times((1 + lo + li) / ((1 + lo) * (1 + li))),
                     "G2 isn't G1(wo)·G1(wi): the contract asks for 1 / (1 + Λ(wo) + Λ(wi))."},
                    {times(1 + lo + li), "The masking term G2 is missing."},
-                   {without_fresnel, "The Fresnel term F is missing."}});
+                   {without_fresnel, "The Fresnel term F is missing."},
+                   {with_fresnel(0), "This is F = f0: the part (1 - f0)·(1 - wo·m)⁵ is missing."},
+                   {with_fresnel(beside), "In Schlick's formula 1 - wo·m is raised to the fifth power."},
+                   {with_fresnel(std::pow(1 - wo.z, 5)),
+                    "Schlick's formula takes the angle between wo and m, not that between wo and the surface's n."}});
         const auto swapped = STUDENT(metal_eval)(wi, std::vector<Vec3>{wo}, alpha, f0);
         item.near("the BRDF with wo and wi exchanged (Helmholtz reciprocity)", swapped.at(0), found[0],
-                  1e-3f * max_component(found[0]) + 1e-5f);
+                  1e-3f * max_component(found[0]) + 1e-5f,
+                  {{with_fresnel(std::pow(1 - wi.z, 5)),
+                    "Schlick's formula takes the angle between wo and m, not that between wo and the surface's n."}});
     }
     const auto below = STUDENT(metal_eval)(Vec3{0, 0, 1}, std::vector<Vec3>{{0.6f, 0, -0.8f}}, 0.5f, f0);
     item.near("the BRDF of a wi below the surface", below.at(0), Rgb(0), 0.0f);
@@ -219,9 +229,9 @@ LAB_ITEM(20, "samples follow their density (chi-squared)") {
 }
 
 LAB_ITEM(15, "the mean of f·cos/pdf over samples is the albedo") {
-    for (const auto& [theta, alpha] : {std::pair{0.2, 0.3f}, std::pair{1.0, 0.6f}}) {
+    for (const auto& [theta, alpha] : {std::pair{0.2, 0.3f}, std::pair{1.0, 0.6f}, std::pair{0.4, 0.1f}}) {
         const Vec3 wo = direction(theta, 0);
-        const Cells cells{200, 400};
+        const Cells cells{400, 800};
         double albedo = 0;
         for (const Vec3 wi : cells.points(1))
             albedo += brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1)).r * wi.z * cells.solid_angle();
@@ -229,12 +239,19 @@ LAB_ITEM(15, "the mean of f·cos/pdf over samples is the albedo") {
         const auto f = STUDENT(metal_eval)(wo, wi, alpha, Rgb(1));
         const auto pdf = STUDENT(metal_pdf)(wo, wi, alpha);
         item.require(f.size() == wi.size() && pdf.size() == wi.size(), "One value is expected for each direction.");
-        double mean = 0;
+        double mean = 0, squares = 0;
         for (std::size_t i = 0; i < wi.size(); ++i)
             if (length_squared(wi[i]) > 0) {
                 item.require(pdf[i] > 0, "A direction was drawn whose density is 0.");
-                mean += f[i].r * wi[i].z / pdf[i] / static_cast<double>(wi.size());
+                const double weight = f[i].r * wi[i].z / pdf[i];
+                mean += weight / static_cast<double>(wi.size());
+                squares += weight * weight / static_cast<double>(wi.size());
             }
+        item.require(!(squares > 3 * mean * mean),
+                     message("The weights f·cos/pdf of your samples are very unequal (alpha = ", alpha,
+                             "): the mean of their squares is ", squares / (mean * mean),
+                             " times the square of their mean; expected at most 3. The directions must be drawn where "
+                             "the BRDF is large, about the mirror direction."));
         item.require(std::abs(mean - albedo) < 0.01 * albedo + 0.002,
                      message("Sampling white metal (f0 = 1, alpha = ", alpha, ") gives a mean weight of ", mean,
                              "; the integral of f·cos is ", albedo, "."));
