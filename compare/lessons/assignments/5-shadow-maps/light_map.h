@@ -132,7 +132,9 @@ inline std::vector<Mistake<ImageFloat>> mistakes_of(const ShadowMap& map, const 
         {{.cut = true}, "One row and one column are missing: from -reach to +reach, both included."},
         {{.mean_of_depths = true}, "The depths are averaged and compared then. Compare each, and average the answers."},
         {{.dark_share = true}, "This is the fraction that is in shadow."}};
-    std::vector<Mistake<ImageFloat>> mistakes;
+    const ShadowMap empty{map.view, ImageFloat(1, 1, kInfinity)};
+    std::vector<Mistake<ImageFloat>> mistakes{
+        {lit_by(empty, light, seen, 0), "There are no shadows: all that faces the light is lit."}};
     for (const auto& [way, text] : ways) mistakes.push_back({lit_by(map, light, seen, reach, way), text});
     return mistakes;
 }
