@@ -372,23 +372,30 @@ LAB_ITEM(20, "the time budget: 100,000 triangles and 40,000 rays") {
                              : "Building is the slow part: sorting at each node costs more than counting into bins."));
 }
 
-LAB_ITEM(0, "the picture: a knot, shaded by the angle to the viewer") {
-    const auto triangles = knot(300, 14);
-    constexpr int kWidth = 160, kHeight = 120;
+LAB_ITEM(0, "the picture: a knot") {
+    item.limit(10);
+    const auto triangles = knot(400, 24);
+    constexpr int kWidth = 288, kHeight = 216;
     std::vector<Ray> rays;
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-            rays.push_back(
-                {{0, 4, 7},
-                 normalize(Vec3(Vec3d((x - kWidth / 2 + 0.5) / 150, (kHeight / 2 - y - 0.5) / 150 - 0.48, -0.85)))});
-    item.limit(10);
+        for (int x = 0; x < kWidth; ++x) {
+            const double right = (x + 0.5 - kWidth / 2) / 330, up = (kHeight / 2 - y - 0.5) / 330 - 0.035;
+            rays.push_back({{0, 6.5f, 7}, normalize(Vec3(Vec3d(right, 0.72 * up - 0.66, -0.69 * up - 0.72)))});
+        }
     const auto found = STUDENT(trace)(STUDENT(build)(triangles), triangles, rays);
-    ImageRgb image(kWidth, kHeight);
+    ImageRgb image(kWidth, kHeight, Rgb(0.02f, 0.022f, 0.03f));
+    const Vec3 sun = normalize(Vec3{-0.5f, 1, 0.3f});
     for (std::size_t i = 0; i < std::min(found.size(), rays.size()); ++i) {
-        if (found[i].triangle < 0 || found[i].triangle >= static_cast<int>(triangles.size())) continue;
-        const Triangle& t = triangles[static_cast<std::size_t>(found[i].triangle)];
-        const float cosine = std::abs(dot(normalize(cross(t.b - t.a, t.c - t.a)), rays[i].direction));
-        image[i] = Rgb(0.2f, 0.5f, 0.9f) * (0.1f + 0.9f * cosine);
+        const int id = found[i].triangle;
+        if (id < 0 || id >= static_cast<int>(triangles.size())) continue;
+        const Triangle& t = triangles[static_cast<std::size_t>(id)];
+        const Vec3 normal = normalize(cross(t.b - t.a, t.c - t.a));
+        const float diffuse = max(0.0f, std::abs(dot(normal, rays[i].direction))) *
+                              (0.25f + 0.75f * max(0.0f, std::abs(dot(normal, sun))));
+        const float along = 2 * kPi * static_cast<float>(id) / static_cast<float>(triangles.size());
+        const Rgb color(0.55f + 0.4f * std::cos(along), 0.45f + 0.3f * std::cos(along + 2.1f),
+                        0.5f + 0.4f * std::cos(along + 4.2f));
+        image[i] = color * (0.08f + 0.9f * diffuse);
     }
     item.show("the knot through your tree", image);
 }

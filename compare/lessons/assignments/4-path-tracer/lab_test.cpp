@@ -355,11 +355,13 @@ LAB_ITEM(10, "each strategy has its own noise, and kMis is never much worse than
                                                    "both ways made of the same two densities?"));
 }
 
-LAB_ITEM(0, "the picture: the colored room, 32 samples") {
+LAB_ITEM(0, "the picture: the colored room by the three strategies, 24 samples") {
     item.limit(20);
-    constexpr int kSize = 120;
-    const auto found = STUDENT(radiance)(colored_room(), camera_rays(kSize, kSize), 32, 3, Strategy::kMis, 1u);
-    ImageRgb image(kSize, kSize);
-    for (std::size_t i = 0; i < std::min(found.size(), image.size()); ++i) image[i] = found[i];
-    item.show("your room", image);
+    constexpr int kSize = 144;
+    for (const Strategy strategy : kStrategies) {
+        const auto found = STUDENT(radiance)(colored_room(), camera_rays(kSize, kSize), 24, 3, strategy, 1u);
+        ImageRgb image(kSize, kSize);
+        for (std::size_t i = 0; i < std::min(found.size(), image.size()); ++i) image[i] = found[i] * 2.5f;
+        item.show(message("your room by ", name(strategy)), image);
+    }
 }
