@@ -161,7 +161,9 @@ LAB_ITEM(20, "directions as dense as their cosine") {
             item.require(is_finite(found), message("A direction", where,
                                                    " is not a number. A cross product with a vector that is "
                                                    "parallel to n is zero."));
-            item.near(message("The length of the direction", where, ", u = ", describe(u)), length(found), 1.0f, 1e-4);
+            item.near(message("The length of the direction", where, ", u = ", describe(u)), length(found), 1.0f, 1e-4,
+                      {{length(found), "The point of the disk at the distance r from its center is lifted to the "
+                                       "height √(1 - r²), and all three axes must be unit vectors."}});
             const double c = dot(Vec3d(found), n);
             below += c < -1e-6, mean += c / (kSide * kSide), squares += c * c / (kSide * kSide);
             sum += Vec3d(found) / double{kSide * kSide};
