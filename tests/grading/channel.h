@@ -24,10 +24,15 @@ inline bool send_bytes(int descriptor, const char* bytes, std::size_t size) {
     }
     return true;
 }
-inline bool send(int descriptor, const std::string& message) {
+/// A message as it is sent: its length, then its bytes.
+inline std::string framed(const std::string& message) {
     const std::uint64_t size = message.size();
-    return send_bytes(descriptor, reinterpret_cast<const char*>(&size), sizeof size) &&
-           send_bytes(descriptor, message.data(), message.size());
+    std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
+    return bytes += message;
+}
+inline bool send(int descriptor, const std::string& message) {
+    const std::string bytes = framed(message);
+    return send_bytes(descriptor, bytes.data(), bytes.size());
 }
 
 /// Reads that many bytes; false where the other end closed.

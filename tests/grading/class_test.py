@@ -36,7 +36,7 @@ def make_class(folder):
         (folder / name).mkdir(parents=True)
     answer = ANSWER.read_text()
     (folder / "anna.cpp").write_text(answer)
-    (folder / "bert.cpp").write_text(answer.replace("(p - center) / radius", "p - center"))
+    (folder / "bert.cpp").write_text(answer.replace("(p - center) / radius", "p - center").replace("(n.x + 1) / 2", "n.x"))
     (folder / "=cmd.cpp").write_text(STARTER.read_text())
     (folder / "carl.cpp").write_text("int main( {\n")
     (folder / "dora" / "lab.cpp").write_text('#include "mine.h"\n' + answer)
@@ -73,7 +73,9 @@ def test_class_refusals(build, scratch, failures):
     (scratch / "none").mkdir()
     (scratch / "twice" / "anna").mkdir(parents=True)
     (scratch / "twice" / "anna.cpp").write_text("")
-    for folder, out, said in (("none", "o", "found no submission"), ("absent", "o", "no such folder"),
+    (scratch / "clash").mkdir()
+    (scratch / "clash" / "index.html.cpp").write_text("")
+    for folder, out, said in (("clash", "o", "rename it"), ("none", "o", "found no submission"), ("absent", "o", "no such folder"),
                               ("twice", "o", "of the same name"), ("class", "class/o", "lies among the submissions")):
         done = run(build, LAB, "--class", scratch / folder, "-o", scratch / out)
         failures.check(done.returncode == 2 and said in done.stderr, f"{folder}: {done.returncode}, '{done.stderr}', expected '{said}'")
@@ -90,6 +92,15 @@ def test_gradebooks(build, scratch, failures):
                    sum(autolab["scores"].values()), "the three files differ in the points")
     failures.check(sum(test["max_score"] for test in tests) == 100, "Gradescope's items do not sum to 100 points")
     failures.check(any(test["status"] == "failed" and "is wrong" in test["output"] for test in tests), "no item of Gradescope's says what is wrong")
+
+
+def test_pipe(build, scratch, failures):
+    """`grade … | head` ends without a complaint."""
+    command = [sys.executable, "-B", pathlib.Path(grade.__file__), "--build", build, LAB, scratch / "class" / "bert.cpp"]
+    grader = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    grader.stdout.close()
+    said = grader.stderr.read()
+    failures.check(grader.wait() == 0 and not said, f"with a closed pipe it ends with {grader.returncode} and says: {said}")
 
 
 def found_values(build, path, seed):
@@ -112,7 +123,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, default=grade.DEFAULT_BUILD)
     build, failures = parser.parse_args().build.resolve(), Failures()
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_class, test_class_refusals, test_gradebooks, test_seed):
+        for test in (test_class, test_class_refusals, test_gradebooks, test_pipe, test_seed):
             test(build, pathlib.Path(folder), failures)
     print("\n".join(failures) or "a class, gradebooks and seeds are as they should be")
     sys.exit(1 if failures else 0)

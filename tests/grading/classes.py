@@ -4,7 +4,6 @@ import csv
 import html
 import io
 import os
-import subprocess
 import sys
 import time
 
@@ -14,6 +13,7 @@ import labs
 import page
 import report
 
+OWN_FILES = ("grades.csv", "histogram.svg", "index.html")
 BINS = 10  # of the histogram; the last one holds full points, too
 STYLE = page.STYLE + """
 table{border-collapse:collapse}th,td{text-align:left;padding:.2rem .8rem;border-bottom:1px solid #ddd}td.n{text-align:right}"""
@@ -34,6 +34,8 @@ def submissions(folder):
     if not found:
         raise labs.Unusable(f"--class {folder}: found no submission; expected .cpp files, or folders with .cpp files")
     students = [student for student, _ in found + empty]
+    if reserved := [student for student in students if student in OWN_FILES]:
+        raise labs.Unusable(f"--class {folder}: a submission is named {reserved[0]}, as a file of the grades; rename it")
     doubled = sorted({student for student in students if students.count(student) > 1})
     if doubled:
         raise labs.Unusable(f"--class {folder}: {', '.join(doubled)}: a file and a folder of the same name; expected one of them")
@@ -44,7 +46,7 @@ def grade_student(lab_id, path, build, seed, folder):
     """One student's result. Where the grader itself fails, the result says so, and the class goes on."""
     try:
         return grade.grade(lab_id, path, build, seed, folder)
-    except (subprocess.SubprocessError, OSError, labs.Unusable) as error:
+    except Exception as error:  # whatever it is, it must not cost all others their grades
         return {"earned": 0, "points": 100, "items": [], "error": f"the grader itself failed, grade by hand: {error}",
                 "ungraded": True}
 

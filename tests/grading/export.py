@@ -17,7 +17,7 @@ import tempfile
 import labs
 
 # What no student gets: the repository's own answers, an instructor's hidden items, and the tests of the grader itself.
-KEPT_BACK = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|tests/grading/\w+_test\.py$|tests/grading/selftest\.py$")
+KEPT_BACK = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|tests/grading/\w+_test\.py$|tests/grading/(selftest|page_figures)\.py$")
 README = """# {lab} · {title}
 
 Write the functions that [{contract}](include/{contract}) declares into [lab.cpp](lab.cpp). Their comments say what each returns.

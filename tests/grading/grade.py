@@ -9,6 +9,7 @@ examples:
 """
 import argparse
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -39,20 +40,20 @@ def judge_of(lab_id, build):
 
 
 def examine(program, out, *arguments):
-    """Runs the examiner; its result, and the pictures that it names, are in the folder `out`."""
+    """Runs the examiner; its result, and the images that it names, are in the folder `out`."""
     subprocess.run([program, "--out", out, *arguments], check=True, timeout=JUDGE_SECONDS)
     return json.loads((out / "result.json").read_text(encoding="utf-8"))
 
 
-def not_compiled(program, out, reason):
-    """The result of a submission that is no program: every item failed. The titles come from the examiner."""
+def not_examined(program, out, reason):
+    """The result of a submission that is no program, or never ends: every item failed. The titles come from the examiner."""
     result = examine(program, out)
     for item in result["items"]:
-        item["message"] = "Not examined: the submission could not be compiled."
+        item["message"] = "Not examined, for the reason above."
     return {**result, "error": reason}
 
 
-def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_folder=None, trusted=False):
+def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_folder=None, trusted=False, options=()):
     """The result of one submission as a dictionary (tests/grading/README.md lists its keys)."""
     program = judge_of(lab_id, build)
     path = pathlib.Path(path)
@@ -61,9 +62,12 @@ def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_fo
         try:
             make = compiling.build_trusted_worker if trusted else compiling.build_worker
             worker = make(lab_id, path, build, out)
-            result = examine(program, out, "--worker", worker, "--seed", str(seed), *(["--trusted"] if trusted else []))
+            result = examine(program, out, "--worker", worker, "--seed", str(seed), *(["--trusted"] if trusted else []), *options)
         except compiling.Refused as refused:
-            result = not_compiled(program, out, str(refused))
+            result = not_examined(program, out, str(refused))
+        except subprocess.TimeoutExpired:
+            result = not_examined(program, out, f"The submission was not done after {JUDGE_SECONDS // 60} minutes.")
+        result["seed"] = seed
         result["submission"] = str(path)
         result = report.printable(result)
         if page_folder is not None:
@@ -133,8 +137,8 @@ def parse_arguments():
     arguments = parser.parse_args()
     if arguments.lab is None and not arguments.all:
         parser.error("no lab was named; expected an id such as raytrace-05, or --all")
-    if arguments.seed < 0:
-        parser.error(f"--seed {arguments.seed} is negative; expected a whole number from 0")
+    if not 0 <= arguments.seed < 1 << 63:
+        parser.error(f"--seed {arguments.seed}: expected a whole number from 0 to {(1 << 63) - 1}")
     return arguments
 
 
@@ -148,9 +152,14 @@ def main():
             classes.grade_class(arguments)
         else:
             grade_one(arguments)
+        sys.stdout.flush()
     except labs.Unusable as error:
         print(f"grade: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # `grade … | head` wants no more lines
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except KeyboardInterrupt:
+        return 130
     except (subprocess.SubprocessError, OSError) as error:
         print(f"grade: the grader itself failed, this is no fault of the submission: {error}", file=sys.stderr)
         return 1

@@ -42,6 +42,11 @@ double mean_distance(const ImageRgb& a, const ImageRgb& b) {
     for (std::size_t i = 0; i < a.size(); ++i) sum += std::min(distance(a[i], b[i]), 1e3);
     return sum / static_cast<double>(a.size());
 }
+ImageRgb as_gray(const ImageFloat& values) {
+    ImageRgb image(values.width(), values.height());
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = Rgb(values[i]);
+    return image;
+}
 template <typename Pixel>
 void require_size(const std::string& name, const Image<Pixel>& found, const Image<Pixel>& expected) {
     if (found.width() == expected.width() && found.height() == expected.height()) return;
@@ -101,6 +106,8 @@ void Item::show(const std::string& name, const ImageRgb& image) {
     images_.push_back({name, file});
 }
 
+void Item::show(const std::string& name, const ImageFloat& image) { show(name, as_gray(image)); }
+
 void Item::image(const std::string& name, const ImageRgb& found, const ImageRgb& expected, double tolerance,
                  const std::vector<Mistake<ImageRgb>>& mistakes) {
     show(name + ": found", found);
@@ -130,6 +137,13 @@ void Item::image(const std::string& name, const ImageRgb& found, const ImageRgb&
                      draw_map(
                          found.width(), found.height(), [&](int x, int y) { return wrong(x, y) ? '#' : '.'; },
                          [](char c) { return c == '#'; })};
+}
+
+void Item::image(const std::string& name, const ImageFloat& found, const ImageFloat& expected, double tolerance,
+                 const std::vector<Mistake<ImageFloat>>& mistakes) {
+    std::vector<Mistake<ImageRgb>> gray;
+    for (const auto& [value, text] : mistakes) gray.push_back({as_gray(value), text});
+    image(name, as_gray(found), as_gray(expected), tolerance, gray);
 }
 
 void Item::coverage(const std::string& name, const Image<int>& found, const Image<int>& expected,

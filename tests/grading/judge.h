@@ -28,6 +28,23 @@ template <typename T> struct Mistake {
     std::string text;
 };
 
+/// A way to compute that is a typical mistake, and what to tell the student who does it so.
+template <typename Way> struct NamedWay {
+    Way way;
+    std::string text;
+};
+/// The text of the first way that gives all that was found: by(i, way) is what a way gives for found[i]. "" where none
+/// does.
+template <typename Way, typename By>
+std::string way_of(const std::vector<float>& found, const std::vector<NamedWay<Way>>& ways, const By& by) {
+    for (const auto& [way, text] : ways) {
+        bool explains = true;
+        for (std::size_t i = 0; i < found.size() && explains; ++i) explains = is_near(found[i], by(i, way), 1e-4);
+        if (explains) return text;
+    }
+    return "";
+}
+
 /// Random numbers that depend on the seed of the grading and on the item alone (SplitMix64, Steele et al. 2014).
 class Rng {
 public:
@@ -92,11 +109,21 @@ public:
     /// map of the wrong pixels. A mistake's image need only be nearer to what was found than the expected one is.
     void image(const std::string& name, const ImageRgb& found, const ImageRgb& expected, double tolerance,
                const std::vector<Mistake<ImageRgb>>& mistakes = {});
+    /// The same for numbers, which the page shows as gray.
+    void image(const std::string& name, const ImageFloat& found, const ImageFloat& expected, double tolerance,
+               const std::vector<Mistake<ImageFloat>>& mistakes = {});
+    /// An image has the size that the contract says.
+    template <typename Pixel> void size(const Image<Pixel>& found, int width, int height) {
+        require(found.width() == width && found.height() == height,
+                message("The result has ", found.width(), " × ", found.height(), " pixels; expected ", width, " × ",
+                        height, "."));
+    }
     /// How many times each pixel is covered. The map shows missing (-), doubled (2) and extra (+) pixels.
     void coverage(const std::string& name, const Image<int>& found, const Image<int>& expected,
                   const std::vector<Mistake<Image<int>>>& mistakes = {});
     /// On the page, not judged. Linear color.
     void show(const std::string& name, const ImageRgb& image);
+    void show(const std::string& name, const ImageFloat& image);
     const std::vector<ShownImage>& images() const { return images_; }
 
 private:

@@ -45,7 +45,8 @@ def as_text(result):
     for item in result["items"]:
         if item["points"] == 0 and (item["status"] == "passed" or "error" in result):
             continue
-        lines.append(f"{item['earned']:4d} / {item['points']:<3d} {item['title']}: {STATUS[item['status']]}")
+        status = "not examined" if "error" in result else STATUS[item["status"]]
+        lines.append(f"{item['earned']:4d} / {item['points']:<3d} {item['title']}: {status}")
         if "error" not in result and item_text(item):
             lines.append(indent(item_text(item)))
     return "\n".join([*lines, "", f"{result['earned']} of {result['points']} points"])

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -80,6 +79,8 @@ void Session::start() {
         child_ = -1;
         throw Error("the grader can't start the program of the submission: " + worker_, 1);
     }
+    if (::clock_getcpuclockid(child_, &clock_) != 0) throw Error("the grader can't read the worker's clock", 1);
+    call_began_ = processor_seconds();
 }
 
 void Session::stop() {
@@ -95,9 +96,8 @@ void Session::stop() {
 
 /// 0 where the worker has ended.
 double Session::processor_seconds() const {
-    clockid_t clock;
     timespec time{};
-    if (::clock_getcpuclockid(child_, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+    if (::clock_gettime(clock_, &time) != 0) return 0;
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
@@ -125,32 +125,36 @@ void Session::wait_for(int descriptor, short events) {
 }
 
 std::string Session::exchange(const std::string& request) {
-    const auto write_all = [&](const char* bytes, std::size_t size) {
-        while (size > 0) {
+    const std::string bytes = framed(request);
+    for (std::size_t sent = 0; sent < bytes.size();) {
+        const ssize_t written = ::write(requests_, bytes.data() + sent, bytes.size() - sent);
+        if (written > 0)
+            sent += static_cast<std::size_t>(written);
+        else if (written < 0 && errno == EAGAIN)
             wait_for(requests_, POLLOUT);
-            const ssize_t written = ::write(requests_, bytes, size);
-            if (written < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-            if (written <= 0) throw Silence{false};
-            bytes += written, size -= static_cast<std::size_t>(written);
-        }
-    };
-    const auto read_all = [&](char* bytes, std::size_t size) {
-        while (size > 0) {
-            wait_for(replies_, POLLIN);
-            const ssize_t got = ::read(replies_, bytes, size);
-            if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-            if (got <= 0) throw Silence{false};
-            bytes += got, size -= static_cast<std::size_t>(got);
-        }
-    };
-    std::uint64_t size = request.size();
-    write_all(reinterpret_cast<const char*>(&size), sizeof size);
-    write_all(request.data(), request.size());
-    read_all(reinterpret_cast<char*>(&size), sizeof size);
-    if (size > kMaxMessage) throw WireError(message("it claims to be larger than ", kMaxMessage >> 20, " MiB"));
-    std::string reply(size, '\0');
-    read_all(reply.data(), reply.size());
-    return reply;
+        else if (!(written < 0 && errno == EINTR))
+            throw Silence{false};
+    }
+    return read_reply();
+}
+
+/// Reads as much at a time as there is: a lab makes many thousands of small calls.
+std::string Session::read_reply() {
+    std::string bytes;
+    std::size_t size = 0;
+    char buffer[1 << 16];
+    do {
+        wait_for(replies_, POLLIN);
+        const ssize_t got = ::read(replies_, buffer, sizeof buffer);
+        if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+        if (got <= 0) throw Silence{false};
+        bytes.append(buffer, static_cast<std::size_t>(got));
+        if (bytes.size() < sizeof size) continue;
+        std::memcpy(&size, bytes.data(), sizeof size);
+        if (size > kMaxMessage) throw WireError(message("it claims to be larger than ", kMaxMessage >> 20, " MiB"));
+    } while (bytes.size() < sizeof size + size);
+    if (bytes.size() > sizeof size + size) throw WireError("there is more than one answer");
+    return bytes.substr(sizeof size);
 }
 
 /// What became of a worker whose pipes are closed.
@@ -166,16 +170,26 @@ std::string Session::how_it_ended() {
                    "): a function must return its result.");
 }
 
+/// Adds up the time of the call that ended. The next one counts from here, so that what a worker does between two calls
+/// is counted, too.
+void Session::account() {
+    const double now = processor_seconds();
+    last_seconds_ = now - call_began_;
+    call_began_ = now;
+    item_seconds_ += last_seconds_;
+    item_wall_seconds_ += wall_seconds() - call_began_at_;
+}
+
 std::string Session::call(const char* function, const std::string& request) {
     if (child_ < 0) start();
-    call_began_ = processor_seconds(), call_began_at_ = wall_seconds();
+    call_began_at_ = wall_seconds();
     try {
         const std::string reply = exchange(request);
-        last_seconds_ = processor_seconds() - call_began_;
-        item_seconds_ += last_seconds_;
-        if (item_seconds_ > std::max(limits_.item_seconds, 3 * limits_.seconds))
-            throw CallFailed{message(function, " is far too slow: the calls of this item took more than ",
-                                     limits_.item_seconds, " s together.")};
+        account();
+        const double most = std::max(limits_.item_seconds, 3 * limits_.seconds);
+        if (item_seconds_ > most || item_wall_seconds_ > kWallFactor * most)
+            throw CallFailed{
+                message(function, " is far too slow: the calls of this item took more than ", most, " s together.")};
         Reader in(reply);
         const auto outcome = in.get<Outcome>();
         if (in.get<bool>() && std::count(not_attempted_.begin(), not_attempted_.end(), function) == 0)

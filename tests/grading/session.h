@@ -3,6 +3,7 @@
 
 #include "tests/grading/channel.h"
 
+#include <ctime>
 #include <string>
 #include <sys/types.h>
 
@@ -15,8 +16,8 @@ struct CallFailed {
 
 /// What a worker may use.
 struct Limits {
-    double seconds = 2;                              ///< of processor time for each call; in real time five times that
-    double item_seconds = 90;                        ///< of processor time for all calls of an item
+    double seconds = 2;       ///< of processor time for each call; by the clock five times that
+    double item_seconds = 60; ///< of processor time for all calls of an item; by the clock five times that
     std::size_t memory_bytes = std::size_t{1} << 30; ///< address space; of trusted workers ignored
     bool sandbox = true; ///< off for the repository's own answers, which are linked with its libraries
 };
@@ -46,6 +47,8 @@ private:
     void start();
     void stop();
     std::string exchange(const std::string& request);
+    std::string read_reply();
+    void account();
     std::string how_it_ended();
     double processor_seconds() const;
     void wait_for(int descriptor, short events);
@@ -54,12 +57,13 @@ private:
     std::string worker_;
     Limits limits_;
     pid_t child_ = -1;
+    clockid_t clock_{}; ///< the worker's processor time
     int requests_ = -1, replies_ = -1, output_ = -1;
     bool guarded_ = false;
     std::vector<std::string> not_attempted_;
     std::string printed_;
     double call_began_ = 0, call_began_at_ = 0; ///< processor time of the worker, and time on the wall
-    double last_seconds_ = 0, item_seconds_ = 0;
+    double last_seconds_ = 0, item_seconds_ = 0, item_wall_seconds_ = 0;
 };
 
 /// The session of the item that runs.

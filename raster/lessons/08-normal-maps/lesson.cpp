@@ -46,15 +46,16 @@ struct Object {
     Surface surface;
 };
 
-/// Draws objects under a light source. right_handed is a mistake: all frames are, also where the texture is mirrored.
-ImageRgb view(const std::vector<Object>& objects, Vec3 eye, Vec3 light, Vec2T<int> size, bool right_handed = false) {
+/// Draws objects under a light source. The mistakes: frames that are right-handed everywhere, and vectors of length 2.
+enum class Frames { kRight, kRightHanded, kTooLong };
+ImageRgb view(const std::vector<Object>& objects, Vec3 eye, Vec3 light, Vec2T<int> size, Frames frames = {}) {
     Framebuffer large(4 * size.x, 4 * size.y, Rgb(0.02f, 0.024f, 0.035f));
     for (const Object& object : objects)
         draw_triangles(large, object.triangles, [&](const Fragment& f) {
             TangentFrame frame = tangent_frame(f.triangle, f.n);
-            if (right_handed) frame.b = cross(f.n, frame.t);
-            const Vec3 mapped = decode_normal(bilinear(object.map, f.uv * object.repeat));
-            const Vec3 n = perturb(f.n, frame, mapped);
+            if (frames == Frames::kRightHanded) frame.b = cross(f.n, frame.t);
+            if (frames == Frames::kTooLong) frame = {frame.t * 2.0f, frame.b * 2.0f};
+            const Vec3 n = perturb(f.n, frame, decode_normal(bilinear(object.map, f.uv * object.repeat)));
             return object.surface.diffuse * 0.05f +
                    blinn_phong(n, normalize(light - f.p), normalize(eye - f.p), object.surface);
         });
@@ -80,7 +81,6 @@ int main() {
     const ImageFloat dents = heights(128, hammered), studs = heights(128, shield);
     const ImageRgb dented = normal_map(dents), studded = normal_map(studs), flat(1, 1, Rgb(0.5f, 0.5f, 1));
     write_image("maps.png", beside({both_images(dents, dented), both_images(studs, studded)}));
-
     const Mesh amphora = read_obj(DUET_MODELS "meshes/amphora.obj");
     const Vec3 eye{0, 0.8f, 3};
     const Mat4 camera = perspective(0.36f, 1.32f, 0.1f, 20) * look_at(eye, {0, 0.45f, 0}, {0, 1, 0});
@@ -88,17 +88,17 @@ int main() {
                                    {place_mesh(amphora, translation(Vec3{0.32f, 0, 0}), camera), dented, 3, copper}};
     const ImageRgb from_left = view(pair, eye, {-2.5f, 2, 2}, {316, 240});
     write_image("evidence.png", beside({from_left, view(pair, eye, {2.5f, 1, 1}, {316, 240})}));
-
     const Mat4 front = perspective(0.66f, 1, 0.1f, 20) * look_at({0, 1, 3}, {0, 1, 0}, {0, 1, 0});
-    const auto plate = [&](const ImageRgb& map, float u_left, bool right_handed = false) { // two squares side by side
+    const auto plate = [&](const ImageRgb& map, float u_left, Frames frames = {}) { // two squares side by side
         const auto corner = [](float x, float y, float u) { return MeshVertex{{x, y, 0}, {0, 0, 1}, {u, y / 2}}; };
         const MeshVertex a = corner(-1, 0, u_left), b = corner(0, 0, 0.5f), c = corner(0, 2, 0.5f),
                          d = corner(-1, 2, u_left), e = corner(1, 0, 1), f = corner(1, 2, 1);
         const auto triangles = place_mesh({a, b, c, a, c, d, b, e, f, b, f, c}, Mat4(), front);
-        return view({{triangles, map, 1, bronze}}, {0, 1, 3}, {-1, 3.5f, 2}, {164, 164}, right_handed);
+        return view({{triangles, map, 1, bronze}}, {0, 1, 3}, {-1, 3.5f, 2}, {164, 164}, frames);
     };
     ImageRgb flipped = studded;
     for (Rgb& c : flipped.pixels()) c.g = 1 - c.g;
     write_image("wrong.png", beside({plate(studded, 0), plate(decoded(studded), 0), plate(flipped, 0)}));
-    write_image("mirrored.png", beside({plate(studded, 1), plate(studded, 1, true)}));
+    const ImageRgb mirrored = plate(studded, 1, Frames::kRightHanded), steep = plate(studded, 0, Frames::kTooLong);
+    write_image("mirrored.png", beside({plate(studded, 1), mirrored, steep}));
 }

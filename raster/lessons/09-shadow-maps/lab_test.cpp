@@ -2,6 +2,7 @@
 // could move to another texel or to the other side of a depth are not asked about.
 #include "raster/lessons/09-shadow-maps/lab.h"
 #include "tests/grading/judge.h"
+#include "tests/grading/rays.h"
 
 #include <cmath>
 #include <functional>
@@ -39,31 +40,7 @@ struct Cube {
     }
 };
 
-/// The floor y = 0, and spheres.
-struct Scene {
-    std::vector<Vec4d> spheres; // the center, and in w the radius
-    double floor = 0;
-};
-
-struct Found {
-    double t;
-    Vec3d p, n;
-};
-std::optional<Found> first_hit(const Scene& scene, Vec3d o, Vec3d d) {
-    std::optional<Found> first;
-    const auto offer = [&](double t, Vec3d n) {
-        if (t > 1e-9 && (!first || t < first->t)) first = Found{t, o + d * t, n};
-    };
-    if (d.y != 0) offer((scene.floor - o.y) / d.y, {0, 1, 0});
-    for (const Vec4d& s : scene.spheres) {
-        const Vec3d c(s.x, s.y, s.z), q = o - c;
-        const double b = dot(q, d), root = b * b - dot(q, q) + s.w * s.w;
-        if (root > 0) offer(-b - std::sqrt(root), (q + d * (-b - std::sqrt(root))) / s.w);
-    }
-    return first;
-}
-
-ShadowMap draw_map(const Scene& scene, const Cube& cube, int side) {
+ShadowMap draw_map(const Shapes& scene, const Cube& cube, int side) {
     ShadowMap map{cube.matrix(), static_cast<float>(2 * cube.radius), ImageFloat(side, side, kInfinity)};
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
@@ -120,15 +97,12 @@ struct Query {
     double bias;
     int reach;
 };
-struct NamedWay {
-    Way way;
-    std::string text;
-};
+using Named = NamedWay<Way>;
 
 /// Compares what a student's function says of many points. If one of the typical ways explains all that was found, its
 /// text is told.
 void judge(Item& item, const std::string& function, const ShadowMap& map, const Cube& cube,
-           const std::vector<Query>& queries, const std::vector<float>& found, const std::vector<NamedWay>& ways) {
+           const std::vector<Query>& queries, const std::vector<float>& found, const std::vector<Named>& ways) {
     const auto at = [&](std::size_t i, Way way) {
         const Query& q = queries[i];
         return static_cast<float>(answer(map, cube, Vec3d(Vec3(q.p)), q.bias, q.reach, way));
@@ -136,12 +110,7 @@ void judge(Item& item, const std::string& function, const ShadowMap& map, const 
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const float expected = at(i, {});
         if (is_near(found[i], expected, 1e-4)) continue;
-        std::string hint;
-        for (const auto& [way, text] : ways) {
-            bool explains = hint.empty();
-            for (std::size_t k = 0; k < queries.size() && explains; ++k) explains = is_near(found[k], at(k, way), 1e-4);
-            if (explains) hint = text;
-        }
+        const std::string hint = way_of(found, ways, at);
         const Vec3d place = cube.place(queries[i].p);
         const double side = map.depth.width();
         item.near(message(function, " for a point at column ", (1 + place.x) / 2 * side, ", row ",
@@ -178,30 +147,29 @@ Cube random_cube(Rng& rng) {
     return {sun, {x, y, 1}, rng.uniform(0.7, 5)};
 }
 
-const NamedWay kFlipped{{.flipped = true},
-                        "The rows are upside down: y points up in clip space, but row 0 is the top row."};
-const NamedWay kRounded{{.rounded = true},
-                        "The nearest whole number is a corner of a texel. The texel that holds the point "
-                        "is the next lower one: std::floor."};
-const NamedWay kCutOff{{.cut_off = true},
-                       "A cast to int rounds toward zero, so points just left of or above the map count as "
-                       "inside of it: use std::floor first."};
-const NamedWay kBiasAdded{{.bias_added = true},
-                          "The bias has the wrong sign: it must move the point toward the sun, to a "
-                          "smaller depth. Now it makes more shadow, not less."};
-const NamedWay kMeters{{.bias_in_meters = true},
-                       "The bias is in meters, but depths go from 0 to 1: divide the bias by the "
-                       "size of the cube."};
-const NamedWay kReversed{{.reversed = true},
-                         "The comparison is turned around: a point is in shadow if its depth is greater."};
-const NamedWay kOutside{{.outside_dark = true},
-                        "Points beside the map are dark: what the map doesn't hold must be lit."};
+const Named kFlipped{{.flipped = true},
+                     "The rows are upside down: y points up in clip space, but row 0 is the top row."};
+const Named kRounded{{.rounded = true},
+                     "The nearest whole number is a corner of a texel. The texel that holds the point "
+                     "is the next lower one: std::floor."};
+const Named kCutOff{{.cut_off = true},
+                    "A cast to int rounds toward zero, so points just left of or above the map count as "
+                    "inside of it: use std::floor first."};
+const Named kBiasAdded{{.bias_added = true},
+                       "The bias has the wrong sign: it must move the point toward the sun, to a "
+                       "smaller depth. Now it makes more shadow, not less."};
+const Named kMeters{{.bias_in_meters = true},
+                    "The bias is in meters, but depths go from 0 to 1: divide the bias by the "
+                    "size of the cube."};
+const Named kReversed{{.reversed = true},
+                      "The comparison is turned around: a point is in shadow if its depth is greater."};
+const Named kOutside{{.outside_dark = true}, "Points beside the map are dark: what the map doesn't hold must be lit."};
 
 /// A view of the test scene from a camera of its own: points and normals.
 struct View {
     Image<Vec3> points, normals;
 };
-View draw_view(const Scene& scene, int width, int height, Vec3d eye, Vec3d target, double tangent) {
+View draw_view(const Shapes& scene, int width, int height, Vec3d eye, Vec3d target, double tangent) {
     View view{{width, height}, {width, height}};
     const Vec3d back = normalize(eye - target), right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
     for (int y = 0; y < height; ++y)
@@ -212,8 +180,8 @@ View draw_view(const Scene& scene, int width, int height, Vec3d eye, Vec3d targe
         }
     return view;
 }
-const Scene kSpheres{{{-0.5, 0.45, 0, 0.45}, {0.5, 0.3, 0.35, 0.3}, {0.15, 0.85, -0.5, 0.25}, {-0.05, 0.12, 0.7, 0.12}},
-                     0};
+const Shapes kSpheres{
+    {{0, 1, 0, 0}}, {{-0.5, 0.45, 0, 0.45}, {0.5, 0.3, 0.35, 0.3}, {0.15, 0.85, -0.5, 0.25}, {-0.05, 0.12, 0.7, 0.12}}};
 const Vec3d kEye{0.6, 2.2, 3.4}, kTarget{0, 0.25, 0};
 
 double bias_of(double texel, Vec3d to_sun, Vec3d n, int reach) {
@@ -307,7 +275,7 @@ LAB_ITEM(15, "the matrix of the sun: any direction, also straight up and down") 
 LAB_ITEM(20, "in shadow or not: one texel") {
     Rng& rng = item.random();
     const auto ask = [&](const ShadowMap& map, const Cube& cube, const std::vector<Query>& queries,
-                         const std::vector<NamedWay>& ways) {
+                         const std::vector<Named>& ways) {
         std::vector<float> found;
         for (const Query& q : queries)
             found.push_back(STUDENT(in_shadow)(map, Vec3(q.p), static_cast<float>(q.bias)) ? 0 : 1);
@@ -376,7 +344,7 @@ LAB_ITEM(15, "the bias from the slope") {
 LAB_ITEM(20, "percentage-closer filtering") {
     Rng& rng = item.random();
     const auto ask = [&](const ShadowMap& map, const Cube& cube, const std::vector<Query>& queries,
-                         const std::vector<NamedWay>& ways) {
+                         const std::vector<Named>& ways) {
         std::vector<float> found;
         for (const Query& q : queries)
             found.push_back(STUDENT(lit_fraction)(map, Vec3(q.p), static_cast<float>(q.bias), q.reach));
@@ -386,7 +354,7 @@ LAB_ITEM(20, "percentage-closer filtering") {
         const Cube cube = random_cube(rng);
         const ShadowMap map = random_map(rng, cube, 16);
         const int reach = i % 3 + 1;
-        std::vector<NamedWay> ways{
+        std::vector<Named> ways{
             {{.mean_of_depths = true},
              "The depths are averaged and then compared. Compare each depth first, then take the mean "
              "of the answers."},
@@ -413,43 +381,35 @@ LAB_ITEM(15, "spheres in the sun: no acne, no missing shadow") {
         const ShadowMap map = draw_map(kSpheres, cube, 160);
         const View view = draw_view(kSpheres, width, rows, kEye, kTarget, 0.36);
         ImageFloat found = STUDENT(sunlight)(map, Vec3(cube.to_sun), view.points, view.normals, reach);
-        item.require(found.width() == width && found.height() == rows,
-                     message("The result has ", found.width(), " × ", found.height(), " pixels; expected ", width,
-                             " × ", rows, "."));
-        const auto drawn = [&](const std::function<double(Vec3d, Vec3d, double)>& light, bool patch) {
-            ImageRgb image(width, rows);
-            for (int y = 0; y < rows; ++y)
-                for (int x = 0; x < width; ++x) {
-                    const Vec3d p(view.points(x, y)), n(view.normals(x, y));
-                    const double cosine = dot(n, cube.to_sun);
-                    const double b = bias_of(map.size / 160.0, cube.to_sun, n, reach);
-                    if (length(n) > 0 && cosine > 0) image(x, y) = Rgb(static_cast<float>(light(p, n, cosine)));
-                    const bool doubt =
-                        length(n) > 0 && (is_doubtful(map, cube, p, b, reach) || std::abs(cosine) < 1e-5);
-                    if (patch && doubt) found(x, y) = image(x, y).r;
-                }
-            return image;
+        item.size(found, width, rows);
+        const double texel = map.size / 160.0;
+        const auto drawn = [&](const std::function<double(Vec3d, Vec3d, double)>& light) {
+            return each_pixel(width, rows, [&](int x, int y) {
+                const Vec3d p(view.points(x, y)), n(view.normals(x, y));
+                const double cosine = dot(n, cube.to_sun);
+                return static_cast<float>(length(n) > 0 && cosine > 0 ? light(p, n, cosine) : 0);
+            });
         };
         const auto lit = [&](Vec3d p, double bias, int r) { return answer(map, cube, p, bias, r, {}); };
-        const double texel = map.size / 160.0;
-        const ImageRgb expected = drawn(
-            [&](Vec3d p, Vec3d n, double c) { return c * lit(p, bias_of(texel, cube.to_sun, n, reach), reach); }, true);
-        ImageRgb image(width, rows);
-        for (std::size_t k = 0; k < image.size(); ++k) image[k] = Rgb(found[k]);
+        const ImageFloat expected =
+            drawn([&](Vec3d p, Vec3d n, double c) { return c * lit(p, bias_of(texel, cube.to_sun, n, reach), reach); });
+        for (std::size_t k = 0; k < found.size(); ++k) { // where rounding decides, any answer is right
+            const Vec3d p(view.points[k]), n(view.normals[k]);
+            const bool doubt = is_doubtful(map, cube, p, bias_of(texel, cube.to_sun, n, reach), reach);
+            if (length(n) > 0 && (doubt || std::abs(dot(n, cube.to_sun)) < 1e-5)) found[k] = expected[k];
+        }
         item.image(
-            message("spheres in the sun, reach ", reach, ","), image, expected, 2e-3,
-            {{drawn([&](Vec3d p, Vec3d, double c) { return c * lit(p, 0, reach); }, false),
+            message("spheres in the sun, reach ", reach, ","), found, expected, 2e-3,
+            {{drawn([&](Vec3d p, Vec3d, double c) { return c * lit(p, 0, reach); }),
               "This is shadow acne: the bias is missing."},
-             {drawn([&](Vec3d p, Vec3d n, double c) { return c * lit(p, bias_of(texel, cube.to_sun, n, 0), reach); },
-                    false),
+             {drawn([&](Vec3d p, Vec3d n, double c) { return c * lit(p, bias_of(texel, cube.to_sun, n, 0), reach); }),
               "There is some acne: the bias must know the reach of the filter."},
-             {drawn([&](Vec3d p, Vec3d, double c) { return c * lit(p, 0.4, reach); }, false),
+             {drawn([&](Vec3d p, Vec3d, double c) { return c * lit(p, 0.4, reach); }),
               "Shadows are missing where things touch (peter-panning): the bias is too large. Is it in meters, and is "
               "the side "
               "of a texel the size of the cube divided by the number of texels?"},
-             {drawn([&](Vec3d p, Vec3d n, double) { return lit(p, bias_of(texel, cube.to_sun, n, reach), reach); },
-                    false),
+             {drawn([&](Vec3d p, Vec3d n, double) { return lit(p, bias_of(texel, cube.to_sun, n, reach), reach); }),
               "The cosine is missing: slanted light is weaker."},
-             {drawn([&](Vec3d, Vec3d, double c) { return c; }, false), "There are no shadows."}});
+             {drawn([&](Vec3d, Vec3d, double c) { return c; }), "There are no shadows."}});
     }
 }

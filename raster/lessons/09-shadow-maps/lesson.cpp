@@ -80,17 +80,17 @@ int main() {
     write_image("evidence.png", beside({shrink(whole(3 * 256, by_map(fine, 2)), 3), shrink(depths, 4)}));
     write_image("bias.png", beside({close(by_map(coarse, 0, 0)), close(by_map(coarse, 0, 0.25f))}));
     write_image("edges.png", beside({close(by_map(coarse, 0)), close(by_map(coarse, 2)), close(by_map(fine, 2))}));
-    const ShadowMap small = draw_shadow_map(world, sun_matrix(kToSun, kCenter, 0.5f), 1, 256);
+    const ShadowMap small = draw_shadow_map(world, sun_matrix(kToSun, kCenter, 0.75f), 1.5f, 256);
     const auto beyond_dark = [&](Vec3 p, Vec3 n) {
-        const Vec4 q = small.clip_from_world * Vec4(p, 1);
-        return std::abs(q.x) < 1 && std::abs(q.y) < 1 ? by_map(small, 0)(p, n) : 0;
+        return max_component(abs(transform_point(small.clip_from_world, p))) < 1 ? by_map(small, 0)(p, n) : 0;
     };
     const Mat4 turned = look_at(kCenter + kToSun * kRadius, kCenter, {0, 1, 0}) * scaling(Vec3{1, 1, -0.5f} / kRadius);
     const ShadowMap wrong = draw_shadow_map(world, turned, 2 * kRadius, 1024);
-    write_image("wrong.png", beside({close(beyond_dark), close(by_map(wrong, 0))}));
+    const Mat4 mirror = inverse_affine(matrix) * scaling(Vec3{1, -1, 1}) * matrix; // upside down in the map
+    const auto upside_down = [&](Vec3 p, Vec3 n) { return by_map(fine, 0)(transform_point(mirror, p), n); };
+    write_image("wrong.png", beside({close(beyond_dark), close(by_map(wrong, 0)), close(upside_down)}));
     const ImageRgb truth = whole(110, [&](Vec3 p, Vec3 n) { return by_ray(world, p, n); });
-    Plot plot{.title = "Wrong pixels", .x_label = "bias in meters", .y_label = "percent", .log_x = true, .log_y = true};
-    plot.series = {{"acne", {}}, {"light leaks", {}}};
+    Plot plot{"Wrong pixels", "bias in meters", "percent", true, true, {{"acne", {}}, {"light leaks", {}}}};
     for (float bias = 5e-4f; bias < 0.5f; bias *= 1.4f) {
         const Vec2d percent = errors(whole(110, by_map(fine, 0, bias)), truth);
         plot.series[0].points.push_back({bias, percent.x}), plot.series[1].points.push_back({bias, percent.y});

@@ -3,6 +3,7 @@
 // double.
 #include "raster/lessons/10-ambient-occlusion/lab.h"
 #include "tests/grading/judge.h"
+#include "tests/grading/rays.h"
 
 #include <cmath>
 #include <optional>
@@ -15,31 +16,6 @@ LAB_TITLE("raster-10", "Ambient occlusion")
 
 namespace {
 
-/// Planes n · p = d, seen from the side of n, and spheres with the radius w.
-struct Scene {
-    std::vector<Vec4d> planes, spheres;
-};
-struct Found {
-    double t;
-    Vec3d p, n;
-};
-std::optional<Found> first_hit(const Scene& scene, Vec3d o, Vec3d d) {
-    std::optional<Found> first;
-    const auto offer = [&](double t, Vec3d n) {
-        if (t > 1e-6 && (!first || t < first->t)) first = Found{t, o + d * t, n};
-    };
-    for (const Vec4d& q : scene.planes) {
-        const Vec3d n(q.x, q.y, q.z);
-        if (dot(n, d) < 0) offer((q.w - dot(n, o)) / dot(n, d), n);
-    }
-    for (const Vec4d& s : scene.spheres) {
-        const Vec3d q = o - Vec3d(s.x, s.y, s.z);
-        const double b = dot(q, d), root = b * b - dot(q, q) + s.w * s.w;
-        if (root > 0) offer(-b - std::sqrt(root), (q + d * (-b - std::sqrt(root))) / s.w);
-    }
-    return first;
-}
-
 /// A camera with perspective, and what it sees.
 struct View {
     Vec3d eye, right, up, back;
@@ -48,7 +24,7 @@ struct View {
     DepthImage seen;
     Image<Vec3> points, normals;
 
-    View(const Scene& scene, Vec3d from, Vec3d target, double tangent_, int w, int h)
+    View(const Shapes& scene, Vec3d from, Vec3d target, double tangent_, int w, int h)
         : eye(from), back(normalize(from - target)), tangent(tangent_), width(w), height(h), points(w, h),
           normals(w, h) {
         right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
@@ -126,42 +102,27 @@ double fraction(const View& view, Vec3d p, const std::vector<Vec3>& directions, 
     return directions.empty() ? 0 : blocked / static_cast<double>(directions.size());
 }
 
-struct NamedWay {
-    Way way;
-    std::string text;
-};
-const NamedWay kFlipped{{.flipped = true},
-                        "The rows are upside down: y points up in clip space, but row 0 is the top row."};
-const NamedWay kNoRange{{.no_range = true},
-                        "The range is not tested: what is far in front of the point hides it, too."};
-const NamedWay kNoBias{{.no_bias = true}, "The bias is not tested: a point must be hidden by more than that."};
-const NamedWay kInFront{{.in_front = true},
-                        "The sign is turned around: a point is hidden if its w is greater than the pixel's "
-                        "distance."};
-const NamedWay kOutside{{.outside_hidden = true},
-                        "Points outside of the image count as hidden: nothing is known of them, so they "
-                        "are free."};
-const NamedWay kClamped{{.clamped = true},
-                        "Points outside of the image are moved to its border: they must count as free."};
-/// The hint of the first way that explains all that was found.
-template <typename Expected>
-std::string hint_of(const std::vector<float>& found, const std::vector<NamedWay>& ways, const Expected& expected) {
-    for (const auto& [way, text] : ways) {
-        bool explains = true;
-        for (std::size_t k = 0; k < found.size() && explains; ++k) explains = is_near(found[k], expected(k, way), 1e-4);
-        if (explains) return text;
-    }
-    return "";
-}
-
+using Named = NamedWay<Way>;
+const Named kFlipped{{.flipped = true},
+                     "The rows are upside down: y points up in clip space, but row 0 is the top row."};
+const Named kNoRange{{.no_range = true}, "The range is not tested: what is far in front of the point hides it, too."};
+const Named kNoBias{{.no_bias = true}, "The bias is not tested: a point must be hidden by more than that."};
+const Named kInFront{{.in_front = true},
+                     "The sign is turned around: a point is hidden if its w is greater than the pixel's "
+                     "distance."};
+const Named kOutside{{.outside_hidden = true},
+                     "Points outside of the image count as hidden: nothing is known of them, so they "
+                     "are free."};
+const Named kClamped{{.clamped = true},
+                     "Points outside of the image are moved to its border: they must count as free."};
 /// A floor, a wall behind it and a few spheres.
-Scene corner() {
+Shapes corner() {
     return {{{0, 1, 0, 0}, {0, 0, 1, -1}}, {{-0.4, 0.35, -0.3, 0.35}, {0.45, 0.25, 0.1, 0.25}, {0, 0.12, 0.6, 0.12}}};
 }
 const Vec3d kEye{0.5, 1.6, 3.2}, kTarget{0, 0.25, -0.2};
 
 /// The truth: cosine-weighted rays of a length, 24 × 24 of Malley's.
-double traced(const Scene& scene, Vec3d p, Vec3d n, double radius) {
+double traced(const Shapes& scene, Vec3d p, Vec3d n, double radius) {
     const Vec3d u = normalize(cross(n, std::abs(n.x) < 0.8 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), v = cross(n, u);
     int blocked = 0;
     for (int i = 0; i < 576; ++i) {
@@ -200,7 +161,9 @@ LAB_ITEM(20, "directions as dense as their cosine") {
             item.require(is_finite(found), message("A direction", where,
                                                    " is not a number. A cross product with a vector that is "
                                                    "parallel to n is zero."));
-            item.near(message("The length of the direction", where, ", u = ", describe(u)), length(found), 1.0f, 1e-4);
+            item.near(message("The length of the direction", where, ", u = ", describe(u)), length(found), 1.0f, 1e-4,
+                      {{length(found), "The point of the disk at the distance r from its center is lifted to the "
+                                       "height √(1 - r²), and all three axes must be unit vectors."}});
             const double c = dot(Vec3d(found), n);
             below += c < -1e-6, mean += c / (kSide * kSide), squares += c * c / (kSide * kSide);
             sum += Vec3d(found) / double{kSide * kSide};
@@ -229,7 +192,7 @@ LAB_ITEM(20, "directions as dense as their cosine") {
 LAB_ITEM(20, "a point is hidden, or not") {
     Rng& rng = item.random();
     const View view(corner(), kEye, kTarget, 0.3, 48, 32);
-    const auto ask = [&](const std::string& kind, double bias, double range, const std::vector<NamedWay>& ways,
+    const auto ask = [&](const std::string& kind, double bias, double range, const std::vector<Named>& ways,
                          const auto& draw) {
         std::vector<Vec3d> points;
         while (points.size() < 120) {
@@ -247,7 +210,7 @@ LAB_ITEM(20, "a point is hidden, or not") {
             const Vec3d at = view.place(points[k]);
             item.near(message("Whether a point ", kind, " is hidden (column ", at.x, ", row ", at.y, ", w ", at.z,
                               ", bias ", bias, ", range ", range, ")"),
-                      found[k], expected(k, {}), 0, {{found[k], hint_of(found, ways, expected)}});
+                      found[k], expected(k, {}), 0, {{found[k], way_of(found, ways, expected)}});
         }
     };
     ask("in the scene", 0.01, 0.3, {kFlipped, kInFront, kNoRange, kNoBias}, [&] {
@@ -298,17 +261,17 @@ LAB_ITEM(20, "the occlusion of a point") {
         const auto expected = [&](std::size_t k, Way way) {
             return static_cast<float>(fraction(view, Vec3d(points[k]), directions[k], s, way));
         };
-        const std::string hint =
-            hint_of(found,
-                    {{{.each_point = true},
-                      "Each hidden point counts. A direction must count once, as soon as one of its points is hidden."},
-                     {{.even_steps = true},
-                      "The points are at k / steps of the radius. They must be at the square of that, to be closer "
-                      "together near the surface."},
-                     kNoRange,
-                     kNoBias,
-                     kFlipped},
-                    expected);
+        const std::string hint = way_of<Way>(
+            found,
+            {{{.each_point = true},
+              "Each hidden point counts. A direction must count once, as soon as one of its points is hidden."},
+             {{.even_steps = true},
+              "The points are at k / steps of the radius. They must be at the square of that, to be closer "
+              "together near the surface."},
+             kNoRange,
+             kNoBias,
+             kFlipped},
+            expected);
         for (std::size_t k = 0; k < points.size(); ++k)
             item.near(message("The occlusion at ", describe(points[k]), " with ", directions[k].size(), " directions, ",
                               s.steps, " steps, radius ", s.radius, ", bias ", s.bias, ", range ", s.range),
@@ -333,35 +296,24 @@ LAB_ITEM(15, "the blur") {
             }
         /// mode 0: right; 1: distances ignored; 2: divides by all; 3: one row and column missing; 4: own value left out
         const auto blurred = [&](int mode) {
-            ImageRgb image(width, height);
-            for (int y = 0; y < height; ++y)
-                for (int x = 0; x < width; ++x) {
-                    double sum = 0, count = 0;
-                    for (int b = y - reach; b <= y + reach - (mode == 3); ++b)
-                        for (int a = x - reach; a <= x + reach - (mode == 3); ++a) {
-                            const bool own = a == x && b == y;
-                            if (a < 0 || b < 0 || a >= width || b >= height || (own && mode == 4)) continue;
-                            if (!own && mode != 1 && !(std::abs(distance(a, b) - distance(x, y)) <= tolerance))
-                                continue;
-                            sum += static_cast<double>(values(a, b)), count += 1;
-                        }
-                    image(x, y) =
-                        Rgb(static_cast<float>(sum / (mode == 2 ? sqr(2 * reach + 1) : std::max(count, 1.0))));
-                }
-            return image;
+            return each_pixel(width, height, [&](int x, int y) {
+                double sum = 0, count = 0;
+                for (int b = y - reach; b <= y + reach - (mode == 3); ++b)
+                    for (int a = x - reach; a <= x + reach - (mode == 3); ++a) {
+                        const bool own = a == x && b == y;
+                        if (a < 0 || b < 0 || a >= width || b >= height || (own && mode == 4)) continue;
+                        if (!own && mode != 1 && !(std::abs(distance(a, b) - distance(x, y)) <= tolerance)) continue;
+                        sum += static_cast<double>(values(a, b)), count += 1;
+                    }
+                return static_cast<float>(sum / (mode == 2 ? sqr(2 * reach + 1) : std::max(count, 1.0)));
+            });
         };
         const ImageFloat found = STUDENT(blur)(values, distance, reach, tolerance);
-        item.require(found.width() == width && found.height() == height,
-                     message("The result has ", found.width(), " × ", found.height(), " pixels; expected ", width,
-                             " × ", height, "."));
-        ImageRgb image(width, height);
-        for (std::size_t k = 0; k < image.size(); ++k) {
-            image[k] = Rgb(found[k]);
-            item.require(!std::isnan(found[k]),
-                         "A pixel is not a number. Infinity minus infinity is none, so the sky differs from "
-                         "itself: a pixel must always count itself.");
-        }
-        item.image(message("the blur, reach ", reach), image, blurred(0), 1e-4,
+        item.size(found, width, height);
+        for (const float value : found)
+            item.require(!std::isnan(value), "A pixel is not a number. Infinity minus infinity is none, so the sky "
+                                             "differs from itself: a pixel must always count itself.");
+        item.image(message("the blur, reach ", reach), found, blurred(0), 1e-4,
                    {{blurred(1), "The distances are ignored: pixels of another surface must be left out."},
                     {blurred(2),
                      "The sum is divided by (2 reach + 1)² always: divide by the number of pixels that were added."},
@@ -374,9 +326,7 @@ LAB_ITEM(25, "images: a floor alone, a corner, and no halos") {
     item.limit(10);
     const auto ask = [&](const View& view, const Search& s, int count) {
         const ImageFloat found = STUDENT(occlusion_image)(view.seen, view.points, view.normals, count, s);
-        item.require(found.width() == view.width && found.height() == view.height,
-                     message("The result has ", found.width(), " × ", found.height(), " pixels; expected ", view.width,
-                             " × ", view.height, "."));
+        item.size(found, view.width, view.height);
         for (const float o : found.pixels())
             item.require(o >= 0 && o <= 1, message("An occlusion is ", o, "; it must be from 0 to 1."));
         return found;
@@ -395,14 +345,13 @@ LAB_ITEM(25, "images: a floor alone, a corner, and no halos") {
     const ImageFloat found = ask(view, search, 24);
     double error = 0, mean = 0, truth_mean = 0, halo = 0;
     int pixels = 0, behind = 0;
-    ImageRgb expected_image(96, 64), found_image(96, 64);
+    ImageFloat expected_image(96, 64), found_image(96, 64);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 96; ++x) {
             const Vec3d p(view.points(x, y)), n(view.normals(x, y));
             if (length(n) == 0) continue;
             const double truth = traced(corner(), p, n, 0.4), o = static_cast<double>(found(x, y));
-            expected_image(x, y) = Rgb(static_cast<float>(1 - truth)),
-                              found_image(x, y) = Rgb(static_cast<float>(1 - o));
+            expected_image(x, y) = static_cast<float>(1 - truth), found_image(x, y) = static_cast<float>(1 - o);
             if (x < 8 || y < 8 || x >= 88 || y >= 56) continue;
             error += sqr(o - truth), mean += o, truth_mean += truth, ++pixels;
             if (n.z > 0.9 && p.y > 0.45 && truth < 0.01) halo += o, ++behind;

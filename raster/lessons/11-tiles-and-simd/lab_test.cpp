@@ -77,6 +77,20 @@ Tile tile_by_corners(const Edges& edges, int x, int y, int size, const Corner& r
     return all ? Tile::kInside : Tile::kPartial;
 }
 
+/// What comes out if only the four corner pixels are looked at, each against the whole triangle.
+Tile tile_by_four(const Edges& edges, int x, int y, int size) {
+    int inside = 0;
+    for (int i = 0; i < 4; ++i) inside += covered(edges, x + i % 2 * (size - 1), y + i / 2 * (size - 1));
+    return inside == 0 ? Tile::kOutside : inside == 4 ? Tile::kInside : Tile::kPartial;
+}
+
+/// What comes out if a tile counts as outside wherever no pixel of it is in the triangle.
+Tile tile_by_triangle(const Edges& edges, int x, int y, int size) {
+    int inside = 0;
+    for (int i = 0; i < size * size; ++i) inside += covered(edges, x + i % size, y + i / size);
+    return inside == 0 ? Tile::kOutside : inside == size * size ? Tile::kInside : Tile::kPartial;
+}
+
 const char* name_of(Tile tile) {
     return tile == Tile::kOutside ? "kOutside" : tile == Tile::kInside ? "kInside" : "kPartial";
 }
@@ -111,6 +125,9 @@ void check_cover(Item& item, const std::string& name, const Corners& p, int widt
          "The tiles whose upper left pixel is outside of the triangle are missing: a tile can be left out only if an "
          "edge "
          "has even its best corner outside."},
+        {without(expected, [&](int x, int y) { return tile_by_four(edges, x, y, 8) == Tile::kOutside; }),
+         "Tiles of which no corner pixel is in the triangle are missing: the triangle may cover pixels between the "
+         "corners. Leave out a tile only if one edge has all four corners outside."},
         {without(expected, [&](int x, int y) { return x + 8 > width || y + 8 > height; }),
          "The tiles at the right and lower border, of which only a part is in the image, are missing."},
         {without(expected, [&](int x, int y) { return tile_by_pixels(edges, x, y, 8) == Tile::kInside; }),
@@ -154,6 +171,10 @@ LAB_ITEM(0, "the picture") {
 
 LAB_ITEM(15, "an edge in 32 bits") {
     const auto check = [&](const std::string& name, GridPoint from, GridPoint to) {
+        const auto with_sign = [&](int a, int b) {
+            const Edge e = edge_by(from, to);
+            return Edge{a * e.a, b * e.b, e.c};
+        };
         item.near(
             "the edge " + name, STUDENT(make_edge)(from, to), edge_by(from, to), 0,
             {{edge_by(from, to, {.half = false}),
@@ -166,7 +187,9 @@ LAB_ITEM(15, "an edge in 32 bits") {
              {edge_by(from, to, {.rule = false, .floor = false}),
               "The fill rule is missing, and the division rounded toward zero: subtract 1 for edges that are not "
               "left or top ones, then shift by 8."},
-             {edge_by(from, to, {.flipped = true}), "All signs are turned around: inside is to the right."}});
+             {edge_by(from, to, {.flipped = true}), "All signs are turned around: inside is to the right."},
+             {with_sign(-1, 1), "a has the wrong sign: from.y - to.y."},
+             {with_sign(1, -1), "b has the wrong sign: to.x - from.x."}});
     };
     // By hand: w at (128, 128) for (0, 0) to (256, 0) is 256 · 128 = 128 · 256, and this is a top edge.
     item.near("the edge from (0, 0) to (256, 0)", STUDENT(make_edge)(GridPoint{0, 0}, GridPoint{256, 0}),
@@ -283,6 +306,16 @@ LAB_ITEM(25, "tiles: outside, partial, inside") {
                 hint = guess.text;
                 break;
             }
+        const auto explains = [&](const auto& tile) {
+            return std::all_of(cases.begin(), cases.end(),
+                               [&](const Case& c) { return c.found == tile(c.edges, c.x, c.y, c.size); });
+        };
+        if (explains(tile_by_four))
+            hint = "A tile counts as outside where none of its four corner pixels is in the triangle. But the triangle "
+                   "may cover pixels between them. It is outside only if one edge has all four corners outside.";
+        if (explains(tile_by_triangle))
+            hint = "A tile counts as outside where the triangle has none of its pixels. That needs a test of each "
+                   "pixel; here a tile is outside only if one edge has all of its pixels outside, else kPartial.";
         item.require(false, message("The tile of ", wrong->size, " × ", wrong->size, " pixels from (", wrong->x, ", ",
                                     wrong->y, ") on is wrong for ", text_of(wrong->edges), ". ", hint, " Expected ",
                                     name_of(wrong->expected), ", found ", name_of(wrong->found), "."));

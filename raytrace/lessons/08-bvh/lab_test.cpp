@@ -1,88 +1,19 @@
 // The examiner of lab 08. Boxes are computed by hand or in double precision; the truth about hits is every sphere of
 // the tree tested for every ray.
-#include "raytrace/lessons/08-bvh/lab.h"
-#include "tests/grading/judge.h"
+#include "raytrace/lessons/08-bvh/lab_test.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 using namespace duet;
 using namespace duet::grading;
-using lab::Nearest, lab::Node, lab::Sphere;
 
 LAB_TITLE("raytrace-08", "A tree of boxes")
 
 namespace {
 
 using T = std::optional<float>;
-using Spheres = std::vector<Sphere>;
-using Tree = std::vector<Node>;
-
-Vec3 random_point(Rng& rng, double reach) {
-    return Vec3(Vec3d(rng.uniform(-reach, reach), rng.uniform(-reach, reach), rng.uniform(-reach, reach)));
-}
-Spheres random_spheres(Rng& rng, int count, double reach = 5) {
-    Spheres spheres;
-    const double largest = 1.5 * reach / std::cbrt(count);
-    for (int i = 0; i < count; ++i)
-        spheres.push_back({random_point(rng, reach), static_cast<float>(rng.uniform(0.2, 1) * largest)});
-    return spheres;
-}
-
-Box3 box_of(const Sphere& s) {
-    const Vec3 r{s.radius, s.radius, s.radius};
-    return {s.center - r, s.center + r};
-}
-Box3 box_of(const Spheres& spheres) {
-    Box3 box;
-    for (const Sphere& s : spheres) box.extend(box_of(s));
-    return box;
-}
-bool same_box(const Box3& a, const Box3& b) {
-    const float size = max_component(max(abs(b.low), abs(b.high)));
-    return is_near(a, b, 1e-5 * (1 + static_cast<double>(size)));
-}
-
-/// The examiner's tree over some spheres. axis 3 is the right one; 0 to 2 is a mistake, and so is 4: not sorted.
-Tree make_tree(const Spheres& spheres, std::vector<int> some, int axis = 3) {
-    Tree tree;
-    const auto at = [&](int i) -> const Sphere& { return spheres[static_cast<std::size_t>(i)]; };
-    const auto add = [&](const auto& self, int first, int count) -> int {
-        const auto index = static_cast<int>(tree.size());
-        tree.emplace_back();
-        Node node;
-        Box3 centers;
-        const auto begin = some.begin() + first;
-        std::for_each(begin, begin + count,
-                      [&](int i) { node.box.extend(box_of(at(i))), centers.extend(at(i).center); });
-        const std::size_t by = axis == 3 ? longest_axis(centers.diagonal()) : static_cast<std::size_t>(axis % 4);
-        if (axis != 4)
-            std::sort(begin, begin + count, [&](int a, int b) { return at(a).center[by] < at(b).center[by]; });
-        if (count == 1) node.sphere = *begin;
-        if (count > 1) {
-            node.left = self(self, first, count / 2);
-            node.right = self(self, first + count / 2, count - count / 2);
-        }
-        tree[static_cast<std::size_t>(index)] = node;
-        return index;
-    };
-    add(add, 0, static_cast<int>(some.size()));
-    return tree;
-}
-Tree make_tree(const Spheres& spheres, int axis = 3) {
-    std::vector<int> all(spheres.size());
-    std::iota(all.begin(), all.end(), 0);
-    return make_tree(spheres, all, axis);
-}
-
-/// How many boxes a ray that meets the root's box enters, if all rays are equally likely.
-double cost(const Tree& tree) {
-    double sum = 0;
-    for (const Node& node : tree) sum += static_cast<double>(node.box.half_area());
-    return sum / static_cast<double>(tree[0].box.half_area());
-}
 
 /// Fails the item unless the tree is one, with the spheres in the leaves, and boxes that fit.
 void require_tree(Item& item, const Tree& tree, const Spheres& spheres) {
@@ -149,35 +80,11 @@ void require_tree(Item& item, const Tree& tree, const Spheres& spheres) {
                                             needed, ". Both children must get half of the spheres."));
 }
 
-std::vector<Ray> random_rays(Rng& rng, int count, double reach) {
-    std::vector<Ray> rays;
-    for (int i = 0; i < count; ++i) {
-        const Vec3 from = Vec3(rng.unit_vector() * (rng.uniform(0, 3) * reach));
-        rays.push_back({from, random_point(rng, reach) - from});
-        if (i % 10 == 0) { // along an axis, through the middle of the scene
-            const auto axis = static_cast<std::size_t>(rng.integer(0, 2));
-            Vec3 direction{0, 0, 0};
-            direction[axis] = rng.uniform() < 0.5 ? -1.0f : 1.0f;
-            rays.push_back({random_point(rng, reach) - direction * static_cast<float>(4 * reach), direction});
-        }
-    }
-    return rays;
-}
-
-Nearest nearest_of(const Spheres& spheres, const std::vector<int>& some, Ray ray) {
-    Nearest nearest;
-    for (const int i : some)
-        if (const auto t = lesson::hit_sphere(spheres[static_cast<std::size_t>(i)], ray)) nearest = {i, ray.t_max = *t};
-    return nearest;
-}
-
 /// Compares the hits of all rays. Those that pass a sphere so closely that rounding decides are left out.
 void check_hits(Item& item, const std::string& what, const std::vector<Nearest>& found, const Spheres& spheres,
                 const std::vector<int>& some, const std::vector<Ray>& rays) {
     item.require(found.size() == rays.size(),
                  message("One hit is expected for each ray: expected ", rays.size(), ", found ", found.size(), "."));
-    std::vector<int> all(spheres.size());
-    std::iota(all.begin(), all.end(), 0);
     Spheres larger = spheres, smaller = spheres;
     for (Sphere& s : larger) s.radius *= 1.001f;
     for (Sphere& s : smaller) s.radius *= 0.999f;
@@ -404,18 +311,14 @@ LAB_ITEM(20, "the nearest hit is the one that testing every sphere finds") {
                {0, 1}, through);
     for (const int count : {1, 5, 60, 2000}) {
         const Spheres spheres = random_spheres(rng, count);
-        std::vector<int> all(spheres.size());
-        std::iota(all.begin(), all.end(), 0);
         const auto rays = random_rays(rng, 500, 5);
         check_hits(item, message(count, " spheres in the examiner's tree"),
-                   STUDENT(closest_hits)(spheres, make_tree(spheres), rays), spheres, all, rays);
+                   STUDENT(closest_hits)(spheres, make_tree(spheres), rays), spheres, all_of(spheres), rays);
     }
     const Spheres spheres = random_spheres(rng, 400);
-    std::vector<int> all(spheres.size());
-    std::iota(all.begin(), all.end(), 0);
     const auto rays = random_rays(rng, 500, 5);
     check_hits(item, "400 spheres in your own tree", STUDENT(closest_hits)(spheres, STUDENT(build)(spheres), rays),
-               spheres, all, rays);
+               spheres, all_of(spheres), rays);
 }
 
 LAB_ITEM(15, "only leaves whose boxes the ray enters are tested") {

@@ -146,6 +146,10 @@ LAB_ITEM(15, "the BRDF has the values of the papers") {
         const double lo = lambda(Vec3d(wo), alpha), li = lambda(Vec3d(wi), alpha);
         const auto times = [&](double factor) { return Rgb(f * factor); };
         const Rgb without_fresnel(brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1))); // F of a perfect mirror is 1
+        const auto with_fresnel = [&](double schlick) {
+            return Rgb(brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1)) * (Rgbd(f0) + (Rgbd(1) - Rgbd(f0)) * schlick));
+        };
+        const double beside = 1 - dot(Vec3d(wo), normalize(Vec3d(wo) + Vec3d(wi)));
         item.near("the BRDF", found[0], Rgb(f), static_cast<float>(1e-3 * max_component(f) + 1e-5),
                   {{times(wi.z), "The BRDF has no cosine in it: the cosine of wi belongs to the integral."},
                    {times(4), "The 4 in the denominator is missing."},
@@ -153,10 +157,16 @@ LAB_ITEM(15, "the BRDF has the values of the papers") {
                    {times((1 + lo + li) / ((1 + lo) * (1 + li))),
                     "G2 isn't G1(wo)·G1(wi): the contract asks for 1 / (1 + Λ(wo) + Λ(wi))."},
                    {times(1 + lo + li), "The masking term G2 is missing."},
-                   {without_fresnel, "The Fresnel term F is missing."}});
+                   {without_fresnel, "The Fresnel term F is missing."},
+                   {with_fresnel(0), "This is F = f0: the part (1 - f0)·(1 - wo·m)⁵ is missing."},
+                   {with_fresnel(beside), "In Schlick's formula 1 - wo·m is raised to the fifth power."},
+                   {with_fresnel(std::pow(1 - wo.z, 5)),
+                    "Schlick's formula takes the angle between wo and m, not that between wo and the surface's n."}});
         const auto swapped = STUDENT(metal_eval)(wi, std::vector<Vec3>{wo}, alpha, f0);
         item.near("the BRDF with wo and wi exchanged (Helmholtz reciprocity)", swapped.at(0), found[0],
-                  1e-3f * max_component(found[0]) + 1e-5f);
+                  1e-3f * max_component(found[0]) + 1e-5f,
+                  {{with_fresnel(std::pow(1 - wi.z, 5)),
+                    "Schlick's formula takes the angle between wo and m, not that between wo and the surface's n."}});
     }
     const auto below = STUDENT(metal_eval)(Vec3{0, 0, 1}, std::vector<Vec3>{{0.6f, 0, -0.8f}}, 0.5f, f0);
     item.near("the BRDF of a wi below the surface", below.at(0), Rgb(0), 0.0f);
@@ -219,9 +229,9 @@ LAB_ITEM(20, "samples follow their density (chi-squared)") {
 }
 
 LAB_ITEM(15, "the mean of f·cos/pdf over samples is the albedo") {
-    for (const auto& [theta, alpha] : {std::pair{0.2, 0.3f}, std::pair{1.0, 0.6f}}) {
+    for (const auto& [theta, alpha] : {std::pair{0.2, 0.3f}, std::pair{1.0, 0.6f}, std::pair{0.4, 0.1f}}) {
         const Vec3 wo = direction(theta, 0);
-        const Cells cells{200, 400};
+        const Cells cells{400, 800};
         double albedo = 0;
         for (const Vec3 wi : cells.points(1))
             albedo += brdf(Vec3d(wo), Vec3d(wi), alpha, Rgbd(1)).r * wi.z * cells.solid_angle();
@@ -229,12 +239,19 @@ LAB_ITEM(15, "the mean of f·cos/pdf over samples is the albedo") {
         const auto f = STUDENT(metal_eval)(wo, wi, alpha, Rgb(1));
         const auto pdf = STUDENT(metal_pdf)(wo, wi, alpha);
         item.require(f.size() == wi.size() && pdf.size() == wi.size(), "One value is expected for each direction.");
-        double mean = 0;
+        double mean = 0, squares = 0;
         for (std::size_t i = 0; i < wi.size(); ++i)
             if (length_squared(wi[i]) > 0) {
                 item.require(pdf[i] > 0, "A direction was drawn whose density is 0.");
-                mean += f[i].r * wi[i].z / pdf[i] / static_cast<double>(wi.size());
+                const double weight = f[i].r * wi[i].z / pdf[i];
+                mean += weight / static_cast<double>(wi.size());
+                squares += weight * weight / static_cast<double>(wi.size());
             }
+        item.require(!(squares > 3 * mean * mean),
+                     message("The weights f·cos/pdf of your samples are very unequal (alpha = ", alpha,
+                             "): the mean of their squares is ", squares / (mean * mean),
+                             " times the square of their mean; expected at most 3. The directions must be drawn where "
+                             "the BRDF is large, about the mirror direction."));
         item.require(std::abs(mean - albedo) < 0.01 * albedo + 0.002,
                      message("Sampling white metal (f0 = 1, alpha = ", alpha, ") gives a mean weight of ", mean,
                              "; the integral of f·cos is ", albedo, "."));
@@ -262,29 +279,61 @@ LAB_ITEM(20, "the white furnace: metal that absorbs nothing never returns more t
         }
 }
 
-LAB_ITEM(0, "the picture: a sphere of your metal under a striped sky") {
-    constexpr int kSize = 96, kSamples = 48;
-    ImageRgb image(kSize, kSize);
-    const auto random = even_points(kSamples);
-    for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x) {
-            const float nx = (static_cast<float>(x) + 0.5f) / (kSize / 2) - 1,
-                        ny = 1 - (static_cast<float>(y) + 0.5f) / (kSize / 2);
-            const float nz2 = 0.98f - nx * nx - ny * ny;
-            if (nz2 <= 0.01f) continue;
-            // The viewer is at infinity on +z. The frame is about n; s is any unit vector beside it.
-            const Vec3 n = normalize(Vec3{nx, ny, std::sqrt(nz2)}), s = normalize(cross(Vec3{0.1f, 1, 0}, n)),
-                       t = cross(n, s);
-            const Vec3 wo{s.z, t.z, n.z};
-            const auto wi = STUDENT(metal_sample)(wo, 0.25f, random);
-            const auto f = STUDENT(metal_eval)(wo, wi, 0.25f, Rgb(1.0f, 0.71f, 0.29f));
-            const auto pdf = STUDENT(metal_pdf)(wo, wi, 0.25f);
-            for (std::size_t i = 0; i < std::min({wi.size(), f.size(), pdf.size()}); ++i) {
-                if (!(pdf[i] > 0)) continue;
-                const Vec3 w = s * wi[i].x + t * wi[i].y + n * wi[i].z;
-                const float stripe = std::sin(9 * std::atan2(w.x, w.z)) > 0 ? 1.0f : 0.35f;
-                image(x, y) += f[i] * (wi[i].z / pdf[i] / kSamples * stripe * (0.3f + 0.9f * max(w.y, 0.0f)));
+namespace {
+
+/// The radiance of a studio: dim, with three white panels, a warm floor and a blue wall behind the viewer.
+Rgb studio(Vec3 w) {
+    const auto panel = [&](Vec3 middle, float size) {
+        const float t = std::clamp((dot(w, normalize(middle)) - size) / (1 - size) * 2, 0.0f, 1.0f);
+        return t * t * (3 - 2 * t); // soft at the edge
+    };
+    const Rgb wall = w.y < 0 ? Rgb(0.30f, 0.20f, 0.12f) * (1 + w.y) : Rgb(0.10f, 0.16f, 0.28f) * (1 - 0.7f * w.y);
+    return wall + Rgb(6) * panel({-0.8f, 0.7f, 0.6f}, 0.955f) + Rgb(2.5f, 2.8f, 3.2f) * panel({1, 0.25f, 0.1f}, 0.93f) +
+           Rgb(3.5f, 2.4f, 1.4f) * panel({0.1f, 1, -0.6f}, 0.96f);
+}
+
+/// What a sphere of the student's metal shows where its normal makes an angle with the direction to the viewer: the
+/// directions about the normal, and their weights f·cos/pdf. The viewer lies in the plane of x and z.
+struct Lobe {
+    std::vector<Vec3> directions;
+    std::vector<Rgb> weights;
+};
+Lobe lobe(double theta, float alpha, Rgb f0, int samples) {
+    const Vec3 wo = direction(theta, 0);
+    Lobe result{STUDENT(metal_sample)(wo, alpha, even_points(samples)), {}};
+    const auto f = STUDENT(metal_eval)(wo, result.directions, alpha, f0);
+    const auto pdf = STUDENT(metal_pdf)(wo, result.directions, alpha);
+    for (std::size_t i = 0; i < std::min({result.directions.size(), f.size(), pdf.size()}); ++i)
+        result.weights.push_back(pdf[i] > 0 ? f[i] * (result.directions[i].z / pdf[i]) : Rgb(0));
+    return result;
+}
+
+} // namespace
+
+LAB_ITEM(0, "the picture: gold, copper and silver, from smooth to rough") {
+    constexpr int kSize = 128, kAngles = 64, kSamples = 600;
+    const std::array<Rgb, 3> metals{Rgb(1.0f, 0.71f, 0.29f), Rgb(0.95f, 0.64f, 0.54f), Rgb(0.97f, 0.96f, 0.91f)};
+    const std::array<float, 3> alphas{0.08f, 0.25f, 0.5f};
+    ImageRgb image(3 * kSize, kSize, Rgb(0.015f));
+    for (std::size_t sphere = 0; sphere < 3; ++sphere) {
+        std::vector<Lobe> lobes;
+        for (int i = 0; i < kAngles; ++i)
+            lobes.push_back(lobe((i + 0.5) / kAngles * kPiDouble / 2, alphas[sphere], metals[sphere], kSamples));
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const float nx = ((static_cast<float>(x) + 0.5f) / (kSize / 2) - 1) * 1.06f,
+                            ny = (1 - (static_cast<float>(y) + 0.5f) / (kSize / 2)) * 1.06f;
+                if (nx * nx + ny * ny > 0.9999f) continue;
+                // The viewer is at infinity on +z. In the local frame of n, s points toward the viewer's side.
+                const Vec3 n{nx, ny, std::sqrt(1 - nx * nx - ny * ny)};
+                const Vec3 t = normalize(cross(n, Vec3{0, 0, 1})), s = cross(t, n);
+                const Lobe& here = lobes[static_cast<std::size_t>(std::acos(n.z) / kPi * 2 * kAngles)];
+                Rgb& pixel = image(static_cast<int>(sphere) * kSize + x, y) = Rgb(0);
+                for (std::size_t i = 0; i < here.weights.size(); ++i) {
+                    const Vec3 w = here.directions[i];
+                    pixel += here.weights[i] * studio(s * w.x + t * w.y + n * w.z) * (1.0f / kSamples);
+                }
             }
-        }
-    item.show("your metal", image);
+    }
+    item.show("your metals", image);
 }
