@@ -133,7 +133,8 @@ template <std::size_t N> FloatBatch<N> halves(float low, float high) {
     return FloatBatch<N>::load_aligned(lanes.data());
 }
 /// Returns a batch of integers with `low` in the lower half of the lanes and `high` in the upper half.
-template <std::size_t N> xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
+template <std::size_t N>
+xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
         return _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(low)), 0xFF00, static_cast<int>(high));
