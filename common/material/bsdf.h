@@ -1,9 +1,9 @@
-// Types and helpers that all BSDFs share.
+// This file holds the types and helpers that all BSDFs share.
 //
 // All BSDFs follow these conventions, and tests check each of them. wo (to the viewer) and wi (to the light) are unit
 // vectors in the local shading frame, where the normal is n = +z. Both point away from the surface. eval returns the
-// BSDF without the cosine factor. sample returns weight = f·|cos θᵢ| / pdf, where pdf is the density of wi by solid
-// angle. For a specular lobe (a delta distribution) eval and pdf return 0, and only sample finds the lobe.
+// BSDF without the cosine factor. sample returns weight = f·|cos θᵢ| / pdf, where pdf is the density of wi by
+// solid angle. For a specular lobe (a delta distribution) eval and pdf return 0, and only sample finds the lobe.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -13,8 +13,8 @@
 
 namespace duet {
 
-/// The quantity that a path from wo transports: radiance to the camera, or importance to a light. Refraction scales
-/// radiance by η² and leaves importance unchanged (Veach 1997, §5.2).
+/// TransportMode is the quantity that a path from wo transports: radiance to the camera, or importance to a light.
+/// Refraction scales radiance by η² and leaves importance unchanged (Veach 1997, §5.2).
 enum class TransportMode { kRadiance, kImportance };
 
 struct BsdfSample {

@@ -11,8 +11,8 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kMeasured = 15;
-/// Wavelengths in nanometers, from Johnson and Christy's photon energies between 3.25 and 1.51 eV. Data from other
-/// sources are interpolated to these wavelengths.
+/// The wavelengths are in nanometers and follow from Johnson and Christy's photon energies between 3.25 and 1.51 eV.
+/// Data from other sources are interpolated to these wavelengths.
 constexpr std::array<double, kMeasured> kWavelengths{381.5, 397.4, 413.3, 430.5, 450.9, 471.4, 495.9, 520.9,
                                                      548.6, 582.1, 616.8, 659.5, 704.5, 756.0, 821.1};
 struct Metal {

@@ -9,9 +9,9 @@
 
 namespace duet {
 
-/// An RGB approximation of a metal. Its spectral reflectance is converted to linear Rec. 709 under daylight D65, so
-/// that a perfect mirror is white. In each channel n and k are chosen so that the Fresnel curve matches that
-/// reflectance exactly at normal incidence, and as closely as possible at all other angles.
+/// A Conductor is an RGB approximation of a metal. Its spectral reflectance is converted to linear Rec. 709 under
+/// daylight D65, so that a perfect mirror is white. In each channel n and k are chosen so that the Fresnel curve
+/// matches that reflectance exactly at normal incidence, and as closely as possible at all other angles.
 struct Conductor {
     Rgb n, k;    ///< complex index n + ik; n = 0: no conductor
     Rgb normal;  ///< reflectance at normal incidence, in [0, 1]
@@ -20,7 +20,7 @@ struct Conductor {
     bool exists() const { return n.r > 0; }
 };
 
-/// Returns the names of all known metals in alphabetical order: "aluminium", "chromium" …
+/// Returns the names of all known metals in alphabetical order: "aluminium", "chromium" and so on.
 std::span<const std::string_view> conductor_names();
 /// Returns the metal of that name, or nothing for an unknown name.
 std::optional<Conductor> find_conductor(std::string_view name);

@@ -16,7 +16,8 @@ struct DielectricBsdf {
     Rgb tint;  ///< factor of transmitted light at each crossing
 
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// Chooses reflection (lobe < F) or refraction. At total reflection it always reflects. Empty where wo.z is 0.
+    /// Chooses reflection (lobe < F) or refraction. At total reflection it always reflects. The sample is empty where
+    /// wo.z is 0.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };
@@ -31,8 +32,8 @@ struct Dielectric {
     ScalarSlot roughness{0};     ///< perceptual; GGX alpha = roughness²; smooth where alpha is below kSmoothAlpha
     bool thin = false;           ///< a thin sheet, ThinDielectricBsdf, which is always smooth
     Rgb absorption{0.0f};        ///< absorption coefficient of the interior, 1/m (Beer-Lambert law)
-    /// Where dielectrics overlap, the one of the highest priority determines the medium. 0: the dielectric ignores
-    /// overlaps and always refracts as if it were surrounded by the outside.
+    /// Where dielectrics overlap, the one of the highest priority determines the medium. With priority 0 the
+    /// dielectric ignores overlaps and always refracts as if it were surrounded by the outside.
     int priority = 0;
 
     static constexpr float kSmoothAlpha = 1e-4f;

@@ -14,7 +14,7 @@ struct DiffuseBsdf {
 
     /// Returns albedo / π where wo and wi are on the same side, and black elsewhere.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode) const { return same_hemisphere(wo, wi) ? albedo * kInvPi : Rgb(); }
-    /// Draws wi cosine-distributed on wo's side. Empty only where wo.z is 0.
+    /// Draws wi cosine-distributed on wo's side. The sample is empty only where wo.z is 0.
     std::optional<BsdfSample> sample(Vec3 wo, float, Vec2 u, TransportMode) const {
         if (wo.z == 0) return std::nullopt;
         Vec3 wi = cosine_hemisphere(u);

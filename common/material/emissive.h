@@ -10,7 +10,7 @@ struct Emissive {
     Rgb radiance{1.0f};        ///< W/(m² sr), equal in all directions of the front side; zero on the back
     bool two_sided = false;    ///< whether the back emits too
     RgbSlot albedo{Rgb(0.0f)}; ///< diffuse reflectance of both sides
-    /// Index into TextureSet::textures of a texture that multiplies the radiance; −1: none.
+    /// This is the index into TextureSet::textures of a texture that multiplies the radiance, or −1 for none.
     std::int32_t radiance_texture = -1;
 
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;

@@ -29,7 +29,7 @@ template <typename T> T ggx_d(Vec3T<T> h, T alpha) {
 /// Returns √(cos² + α² sin²) = cos·(1 + 2Λ) with Smith's Λ (Heitz 2014, eq. 72).
 template <typename T> T ggx_projected(Vec3T<T> w, T alpha) { return sqrt(w.z * w.z + alpha * alpha * sin2_theta(w)); }
 
-/// Returns Smith's Λ(w), the ratio of masked to visible microfacet area. Infinite for z = 0.
+/// Returns Smith's Λ(w), the ratio of masked to visible microfacet area. It is infinite for z = 0.
 template <typename T> T ggx_lambda(Vec3T<T> w, T alpha) {
     // This is ½(√(1 + α² tan²) − 1) with its difference rationalized, which avoids cancellation.
     const T alpha2_sin2 = alpha * alpha * sin2_theta(w);

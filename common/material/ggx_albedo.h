@@ -6,9 +6,10 @@
 
 namespace duet {
 
-/// The directional albedo of single scattering. `energy` is the albedo where every microfacet reflects all light.
-/// With Schlick's Fresnel term of reflectance R at normal incidence, the albedo is energy·(R + (1 − R)·share). The
-/// split-sum approximation tabulates the same two values (Karis 2013, "Real Shading in Unreal Engine 4").
+/// GgxAlbedo is the directional albedo of single scattering. `energy` is the albedo where every microfacet reflects
+/// all light. With Schlick's Fresnel term of reflectance R at normal incidence, the albedo is
+/// energy·(R + (1 − R)·share). The split-sum approximation tabulates the same two values (Karis 2013, "Real
+/// Shading in Unreal Engine 4").
 struct GgxAlbedo {
     float energy = 1, share = 0;
 
@@ -23,7 +24,8 @@ struct GgxAlbedo {
 GgxAlbedo ggx_albedo(float alpha, float cosine);
 /// Returns 1 − energy: the fraction of light that single scattering misses, because it hits a second microfacet.
 float ggx_lost(float alpha, float cosine);
-/// Cosine-weighted means over the hemisphere, 2∫ … μ dμ, of the lost fraction 1 − energy, and of energy·share.
+/// GgxMeans are cosine-weighted means over the hemisphere, 2∫ … μ dμ: `lost` of 1 − energy, and `share` of
+/// energy·share.
 struct GgxMeans {
     float lost = 0, share = 0;
 

@@ -24,12 +24,13 @@ float mean_layer_albedo(const GgxMeans& means, float normal, float multiple) {
     return means.of(normal) + multiple * kPi * sqr(means.lost);
 }
 
-/// How the layers scatter and transmit light of one direction.
+/// A Way describes how the layers scatter and transmit light from one direction.
 struct Way {
-    /// Of the glossy layer: the fraction that single scattering misses, and 1 − E, the fraction that passes the
-    /// dielectric.
+    /// In the glossy layer, `lost` is the fraction that single scattering misses, and `under` = 1 − E is the
+    /// fraction that passes the dielectric.
     float lost, under;
-    /// Of the coat: the fraction that single scattering misses, and the fraction that passes the coat.
+    /// In the coat, `coat_lost` is the fraction that single scattering misses, and `under_coat` is the fraction that
+    /// passes.
     float coat_lost, under_coat;
     GgxAlbedo glossy;
 };
@@ -47,8 +48,8 @@ Way way(const LayeredBsdf& b, const GgxMeans& means, float cosine) {
     return w;
 }
 
-/// Selection probabilities of the sampled lobes. `diffuse` is a cosine lobe for the diffuse surface and all multiple
-/// scattering; `glossy` and `coat` are single scattering by that layer.
+/// A Choice holds the selection probabilities of the sampled lobes. `diffuse` is a cosine lobe for the diffuse
+/// surface and all multiple scattering; `glossy` and `coat` are single scattering by that layer.
 struct Choice {
     float diffuse, glossy, coat; ///< add up to 1
 };

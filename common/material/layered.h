@@ -7,15 +7,16 @@
 
 namespace duet {
 
-/// A lobe of GGX microfacets with Schlick's Fresnel term and multiple-scattering compensation, as in MetalBsdf.
+/// A GlossyLayer is a lobe of GGX microfacets with Schlick's Fresnel term and multiple-scattering compensation, as in
+/// MetalBsdf.
 struct GlossyLayer {
     Rgb normal;     ///< reflectance at normal incidence
     float alpha;    ///< at least LayeredBsdf::kSmoothest
     Rgb multiple;   ///< see ggx_multiple
 };
 
-/// A stack of layers. The base is a diffuse surface under a dielectric, mixed with a metal of the same roughness. A
-/// clear coat covers both.
+/// A LayeredBsdf is a stack of layers. The base is a diffuse surface under a dielectric, mixed with a metal of the
+/// same roughness. A clear coat covers both.
 ///
 /// Light that a layer reflects does not reach the layer below. The diffuse surface is attenuated by 1 − E(wi) and
 /// 1 − E(wo), where E is the directional albedo of the layer above. The product is normalized so that a white
@@ -35,7 +36,7 @@ struct LayeredBsdf {
     float coat;          ///< fraction of the surface that the coat covers, in [0, 1]
     float coat_alpha, coat_multiple;
 
-    /// Reflectance at normal incidence of a coat with index of refraction 1.5.
+    /// This is the reflectance at normal incidence of a coat with index of refraction 1.5.
     static constexpr float kCoatNormal = 0.04f;
 
     struct Description {
@@ -51,8 +52,8 @@ struct LayeredBsdf {
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 
-    /// The directional albedo of each layer: the fraction of uniform incident light that the layer sends to the
-    /// viewer.
+    /// Albedos holds the directional albedo of each layer: the fraction of uniform incident light that the layer
+    /// sends to the viewer.
     struct Albedos {
         Rgb diffuse, glossy, coat;
     };

@@ -7,10 +7,11 @@
 
 namespace duet {
 
-/// GGX microfacets with Smith's height-correlated masking, sampled by visible normals (Walter et al. 2007; Heitz
-/// 2014, 2018). Multiple scattering between microfacets is compensated (ggx_multiple), so that a rough metal that
-/// absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and else Schlick's from the
-/// reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect mirror.
+/// A MetalBsdf reflects by GGX microfacets with Smith's height-correlated masking, sampled by visible normals (Walter
+/// et al. 2007; Heitz 2014, 2018). Multiple scattering between microfacets is compensated (ggx_multiple), so that a
+/// rough metal that absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and else
+/// Schlick's from the reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect
+/// mirror.
 struct MetalBsdf {
     static constexpr float kSmoothAlpha = 1e-4f;
 

@@ -7,11 +7,11 @@
 
 namespace duet {
 
-/// glTF 2.0's metallic-roughness material (specification, §3.9.2 and appendix B) with KHR_materials_ior and
-/// KHR_materials_clearcoat. It has the same layers and the same Fresnel term. Its layers conserve energy, while the
-/// specification's sample formulas darken rough surfaces.
+/// Principled is glTF 2.0's metallic-roughness material (specification, §3.9.2 and appendix B) with
+/// KHR_materials_ior and KHR_materials_clearcoat. It has the same layers and the same Fresnel term. Its layers
+/// conserve energy, while the specification's sample formulas darken rough surfaces.
 struct Principled {
-    /// Diffuse albedo of the dielectric, and reflectance at normal incidence of the metal.
+    /// This is the diffuse albedo of the dielectric, and the reflectance at normal incidence of the metal.
     RgbSlot base_color{Rgb(1.0f)};
     ScalarSlot metallic{1};        ///< 0: a dielectric over a diffuse surface; 1: a metal
     ScalarSlot roughness{1};       ///< perceptual; GGX alpha = roughness², at least LayeredBsdf::kSmoothest
@@ -22,8 +22,8 @@ struct Principled {
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 
-/// A diffuse surface under a dielectric layer: plastic, varnish, glazed clay. The layer also reflects light back
-/// down, so colors are more saturated than on the bare surface.
+/// Coated is a diffuse surface under a dielectric layer: plastic, varnish, glazed clay. The layer also reflects light
+/// back down, so colors are more saturated than on the bare surface.
 struct Coated {
     RgbSlot albedo{Rgb(0.5f)};  ///< albedo of the bare diffuse surface
     ScalarSlot roughness{0.1f}; ///< roughness of the coat, perceptual

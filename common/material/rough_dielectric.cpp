@@ -10,8 +10,8 @@ namespace duet {
 
 namespace {
 
-/// Both directions and the relative index in the frame where wo lies above the boundary. `relative` is the index
-/// beyond the boundary over the index on wo's side.
+/// Seen holds both directions and the relative index in the frame where wo lies above the boundary. `relative` is the
+/// index beyond the boundary over the index on wo's side.
 struct Seen {
     Vec3 wo, wi;
     float relative;
@@ -24,7 +24,7 @@ struct Seen {
     }
 };
 
-/// The microfacet that refracts wo into wi (Walter et al., eq. 16).
+/// A Refraction is the microfacet that refracts wo into wi (Walter et al., eq. 16).
 struct Refraction {
     Vec3 normal;
     float cos_o, cos_i; ///< wo·h, positive; wi·h, negative
@@ -43,7 +43,7 @@ std::optional<Refraction> refraction(const Seen& s) {
 /// Returns the Jacobian dω_h/dω_i of refraction, |cos_i| relative²/(sum)² (Walter et al., eq. 17).
 float jacobian(const Refraction& r, float relative) { return sqr(relative / r.sum) * -r.cos_i; }
 
-/// The multiple-scattering terms for wo.
+/// Further computes the multiple-scattering terms for wo.
 struct Further {
     RoughGlassEnergy energy;
     RoughGlassEnergy::Lobe lobe; ///< reflection lobe on wo's side

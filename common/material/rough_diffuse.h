@@ -6,10 +6,10 @@
 
 namespace duet {
 
-/// Energy-preserving Oren-Nayar reflection on both sides of the surface (Portsmouth, Kutz and Hill 2024, "EON: A
-/// practical energy-preserving rough diffuse BRDF"). Single scattering is Fujii's form of Oren and Nayar's model. A
-/// reciprocal lobe adds the multiply scattered light, so that a white surface of any roughness reflects all light. At
-/// roughness 0 it is Lambert's reflection.
+/// RoughDiffuseBsdf is energy-preserving Oren-Nayar reflection on both sides of the surface (Portsmouth, Kutz and
+/// Hill 2024, "EON: A practical energy-preserving rough diffuse BRDF"). Single scattering is Fujii's form of Oren and
+/// Nayar's model. A reciprocal lobe adds the multiply scattered light, so that a white surface of any roughness
+/// reflects all light. At roughness 0 it is Lambert's reflection.
 struct RoughDiffuseBsdf {
     Rgb albedo;      ///< albedo of each facet, in [0, 1]
     float roughness; ///< in [0, 1]; Oren and Nayar's deviation of slopes is at most about roughness·π/2 radians

@@ -5,8 +5,9 @@
 
 namespace duet {
 
-/// The multiple-scattering compensation of one boundary. A single microfacet reflects the fraction R(w) and transmits
-/// T(w) of white light from direction w. The rest, 1 − R − T, hits further microfacets.
+/// RoughGlassEnergy is the multiple-scattering compensation of one boundary. A single microfacet reflects the
+/// fraction R(w) and transmits T(w) of white light from direction w. The rest, 1 − R − T, hits further
+/// microfacets.
 ///
 /// The thin side is that of the smaller index. There the rest is divided in the proportion R : T. Transmitted light
 /// is therefore multiplied by gain(w) = 1/(R + T), where w is the direction on the thin side, be it wo or wi. The
@@ -30,8 +31,8 @@ public:
     /// [0, 1].
     float gain(float cosine) const;
 
-    /// The reflection lobe lost(wo) lost(wi) / (π mean_lost) on one side. There is no lobe where it returns less than
-    /// 0.03 % in the mean: sampling it would add more noise than energy.
+    /// A Lobe is the reflection lobe lost(wo) lost(wi) / (π mean_lost) on one side. There is no lobe where it
+    /// returns less than 0.03 % in the mean: sampling it would add more noise than energy.
     struct Lobe {
         const RoughGlassTables::Surface* table = nullptr; ///< null: no lobe
         float mean_lost = 0;

@@ -9,7 +9,7 @@
 
 namespace duet {
 
-/// The maps of one material. Textures are indices into TextureSet::textures; −1: none.
+/// SurfaceMaps are the maps of one material. Textures are indices into TextureSet::textures, or −1 for none.
 struct SurfaceMaps {
     std::int32_t normal = -1; ///< tangent-space normals: colors 0 to 1 mean components −1 to 1 along u, v and ns
     float normal_scale = 1;   ///< factor of the first two components

@@ -7,9 +7,9 @@
 
 namespace duet {
 
-/// A sheet of glass as a single surface. Light passes straight through or is mirrored, after any number of
-/// reflections between the two boundaries, in closed form (Stokes 1862, "On the intensity of the light reflected from
-/// or transmitted through a pile of plates"). Both sides are alike.
+/// A ThinDielectricBsdf is a sheet of glass as a single surface. Light passes straight through or is mirrored, after
+/// any number of reflections between the two boundaries, in closed form (Stokes 1862, "On the intensity of the light
+/// reflected from or transmitted through a pile of plates"). Both sides are alike.
 struct ThinDielectricBsdf {
     float eta; ///< index of refraction of the sheet over that of its surroundings
     Rgb tint;  ///< transmittance of one perpendicular pass through the sheet
