@@ -63,8 +63,8 @@ inline void store_floats(DoubleBatch batch, float* to) {
 #endif
 }
 
-/// Returns a·b + c, rounded once where the target CPU has fused multiply-add. The intrinsics are needed because xsimd
-/// 8 does not use this instruction for 16 or 4 lanes.
+/// Returns a·b + c, rounded once where the target CPU has fused multiply-add. The intrinsics are needed because
+/// version 8 of xsimd does not use this instruction for 16 or 4 lanes.
 template <typename Arch>
 xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
