@@ -26,7 +26,7 @@ std::uint32_t crc32(std::string_view bytes) {
     return ~c;
 }
 
-// Throws an Error if so few bytes of compressed pixels cannot decompress to the image size in the header chunk.
+// Throws an Error if `pixel_bytes` bytes of compressed pixels are too few for the image size in the header chunk.
 // `header` is that chunk's data (13 bytes). The compression ratio of deflate is at most 1032:1.
 void check_png_size(const ImageBytes& file, std::string_view header, std::size_t pixel_bytes) {
     const long long width = word_at(header, 0), height = word_at(header, 4);

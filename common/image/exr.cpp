@@ -99,8 +99,8 @@ double greatest_compression(Imf::Compression compression) {
     return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 132096 : 1376;
 }
 
-// Throws an Error for subsampled channels, for too large images or tiles, and for an image size that the file cannot
-// contain.
+// Throws an Error for subsampled channels, for images or tiles that are too large, and for an image size that the file
+// cannot contain.
 void check_header(const ImageBytes& file, const Imf::Header& header) {
     const Window window = data_window(header);
     check_image_size(file.name, window.width, window.height);

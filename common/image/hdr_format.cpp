@@ -146,8 +146,8 @@ private:
             }
     }
 
-    // Reads one pixel after another. A pixel (1, 1, 1, n) repeats the previous pixel n times. In directly following
-    // repeat pixels, n is shifted left by 8 bits each time.
+    // Reads one pixel after another. A pixel (1, 1, 1, n) repeats the previous pixel n times. If repeat pixels follow
+    // each other directly, the k-th of them (from 0) counts n·256ᵏ pixels.
     void read_flat(std::vector<Rgbe>& scanline) {
         unsigned shift = 0;
         for (std::size_t x = 0; x < scanline.size();) {
