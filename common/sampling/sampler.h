@@ -36,7 +36,7 @@ struct CameraNumbers {
 /// A sampler provides the dimensions of one sample of one pixel in order. With one replicate, all samples of a pixel
 /// are points of one well-distributed sequence. With two replicates, there are two sequences, scrambled independently:
 /// sample i is point ⌊i/2⌋ of replicate i mod 2. The film estimates the variance from the difference of the
-/// replicates. Two replicates have a price: a single sequence can reach half of their squared error.
+/// replicates. The disadvantage of two replicates is their error: a single sequence can reach half the squared error.
 class Sampler {
 public:
     /// kStratified and kBlueNoise need the number of samples per pixel. The number of replicates must be 1 or 2.
