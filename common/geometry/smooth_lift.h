@@ -12,9 +12,10 @@ namespace duet {
 /// direction arrives. The smooth point is the weighted mean of the projections of p onto the tangent planes of the
 /// vertices (Hanika 2021; Boubekeur and Alexa 2008, "Phong Tessellation").
 ///
-/// The result is zero unless the surface is convex toward the viewer: p must lie below all three tangent planes, where
-/// it may be above a plane by a tenth of the largest depth below one. The result is thus zero for flat, concave and
-/// saddle-shaped surfaces, and where all vertex normals are only tilted in the same direction.
+/// The result is zero unless the surface is convex toward the viewer, that is, unless p lies below all three tangent
+/// planes. As a tolerance, p may lie above a plane by up to a tenth of its largest depth below another plane. The
+/// result is thus zero for flat, concave and saddle-shaped surfaces, and where all vertex normals only tilt in one
+/// direction.
 ///
 /// `normals` are the unit vertex normals, `weights` are the barycentric coordinates of p, and `ng` is the geometric
 /// normal of the triangle. `ng` and the direction may have any length. T is double or a batch of doubles.

@@ -20,8 +20,8 @@ struct TriangleHit {
     float t, u, v;
 };
 
-/// A permutation of the axes and a shear that together map the direction of a ray, or of each ray of a batch, to (0, 0,
-/// 1). The axis of the largest component becomes z (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+/// This permutation of the axes and shear together map a ray's direction to (0, 0, 1). T is float, or a batch for many
+/// rays. The axis of the largest component becomes z (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
 /// Intersection", §3).
 template <typename T> struct Shear {
     std::size_t kx, ky, kz; ///< world axes; x and y are swapped if d.z < 0, to preserve the winding of triangles
@@ -52,11 +52,10 @@ struct ShearedRay {
     }
 };
 
-/// Holds the sheared vertices and the edge functions of a ray and a triangle. If T is a SIMD batch, it stands for one
-/// ray and many triangles, or for many rays and one triangle. An edge function is twice the signed area of the triangle
-/// that an edge forms with the ray, which is the point (0, 0) in the sheared x and y; it has the precision of T. All
-/// functions are force-inlined, because calls that pass batches in memory cost a ray tracer a tenth of its rays per
-/// second.
+/// Holds the sheared vertices and the edge functions of a ray and a triangle, in the precision of T. If T is a SIMD
+/// batch, the lanes are many triangles for one ray, or many rays for one triangle. In the sheared x and y, the ray is
+/// the point (0, 0). An edge function is twice the signed area of the triangle that an edge forms with this point. All
+/// functions are force-inlined, because calls that pass batches in memory reduce the rays per second by a tenth.
 template <typename T> struct TriangleTest {
     Vec3T<T> at, bt, ct; ///< vertices in the ray's frame, where the ray starts at the origin and points along +z
     T e0, e1, e2;        ///< edge functions of the edges opposite a, b and c
