@@ -29,9 +29,9 @@ Rgbd Film::mean(int x, int y) const {
     return n > 0 ? (pixel.sum[0] + pixel.sum[1]) / n : Rgbd();
 }
 
-// Let the replicates have n₀ and n₁ samples, each of variance s. Then E (m₀ − m₁)² = s (1/n₀ + 1/n₁),
-// while the mean of all samples has the variance s / (n₀ + n₁). The quotient of the second by the first is n₀
-// n₁ / (n₀ + n₁)²; for replicates of equal size it is 1/4.
+// Let the replicates have n₀ and n₁ samples, each of variance s. Then E (m₀ − m₁)² = s (1/n₀ + 1/n₁).
+// The mean of all samples has the variance s / (n₀ + n₁), which is E (m₀ − m₁)² times n₀·n₁ / (n₀ +
+// n₁)². For replicates of equal size, this factor is 1/4.
 Rgbd Film::variance(int x, int y) const {
     const Pixel& pixel = pixels_(x, y);
     if (pixel.count[0] == 0 || pixel.count[1] == 0) return Rgbd(std::numeric_limits<double>::infinity());
