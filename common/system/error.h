@@ -1,5 +1,5 @@
 // This file defines how the project reports errors. Bad input throws an Error, which the programs print. A broken
-// invariant fails a check, which prints a message with both values and aborts.
+// invariant fails a check, which prints a message (with both values of a comparison) and aborts.
 #pragma once
 
 #include <sstream>
