@@ -30,7 +30,7 @@ inline float abs_cos_theta(Vec3 w) { return abs(w.z); }
 inline bool same_hemisphere(Vec3 a, Vec3 b) { return a.z * b.z > 0; }
 
 /// Builds the sample record for a direction wi that a Bsdf without delta lobes has drawn. Density and weight are
-/// evaluated for wi as it was rounded.
+/// evaluated for the wi that was rounded to float.
 template <typename BsdfType> BsdfSample sample_of(const BsdfType& bsdf, Vec3 wo, Vec3 wi, TransportMode mode) {
     const float density = bsdf.pdf(wo, wi, mode);
     return {wi, bsdf.eval(wo, wi, mode) * (abs_cos_theta(wi) / density), density};

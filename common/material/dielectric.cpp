@@ -16,7 +16,7 @@ std::optional<BsdfSample> DielectricBsdf::sample(Vec3 wo, float lobe, Vec2, Tran
     const float reflected = fresnel_dielectric(cos_o, relative);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1.0f), reflected, true};
 
-    const float cos_t = safe_sqrt(cos2_refracted(cos_o, relative)); // total reflection has returned: `reflected` is 1
+    const float cos_t = safe_sqrt(cos2_refracted(cos_o, relative)); // not total reflection, for which `reflected` is 1
     if (cos_t == 0) return std::nullopt;
     // L / n² is constant along a refracted ray: radiance that enters the thinner medium spreads over a larger solid
     // angle.

@@ -29,7 +29,7 @@ struct DiffuseBsdf {
 
 struct Diffuse {
     RgbSlot albedo{Rgb(0.8f)}; ///< each channel in [0, 1]
-    ScalarSlot roughness{0};   ///< in [0, 1]; RoughDiffuseBsdf's where above 0
+    ScalarSlot roughness{0};   ///< in [0, 1]; a value above 0 selects RoughDiffuseBsdf
 
     bool rough() const { return !roughness.constant() || roughness.value > 0; }
 

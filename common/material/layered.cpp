@@ -51,7 +51,7 @@ Way way(const LayeredBsdf& b, const GgxMeans& means, float cosine) {
 /// A Choice holds the selection probabilities of the sampled lobes. `diffuse` is a cosine lobe for the diffuse
 /// surface and all multiple scattering; `glossy` and `coat` are single scattering by that layer.
 struct Choice {
-    float diffuse, glossy, coat; ///< add up to 1
+    float diffuse, glossy, coat; ///< probabilities that add up to 1
 };
 Choice choice(const LayeredBsdf& b, const GgxMeans& means, const Way& w) {
     const float further = average(b.glossy.multiple) * w.lost * kPi * means.lost;

@@ -11,8 +11,8 @@ namespace duet {
 /// MetalBsdf.
 struct GlossyLayer {
     Rgb normal;     ///< reflectance at normal incidence
-    float alpha;    ///< at least LayeredBsdf::kSmoothest
-    Rgb multiple;   ///< see ggx_multiple
+    float alpha;    ///< GGX width, at least LayeredBsdf::kSmoothest
+    Rgb multiple;   ///< factor of the multiple-scattering lobe (ggx_multiple)
 };
 
 /// A LayeredBsdf is a stack of layers. The base is a diffuse surface under a dielectric, mixed with a metal of the

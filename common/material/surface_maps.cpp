@@ -59,9 +59,9 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     return Vec3(normalize(n - gradient));
 }
 
-/// Bends ns just enough that the viewer's mirror direction lies above the plane of `horizon`. An interpolated normal
-/// near a silhouette may lean away from the viewer, who then counts as looking along that plane (as in
-/// lifted_above_horizon): no normal between two directions below the plane would point above it.
+/// Bends ns just enough that the mirrored direction to the viewer lies above the plane with normal `horizon`. Near a
+/// silhouette that plane may face away from the viewer. The direction to the viewer is then projected onto the plane
+/// (as in lifted_above_horizon), because the half vector of two directions below the plane also lies below it.
 Vec3 kept_consistent(Vec3 ns, Vec3 horizon, Vec3 to_viewer) {
     const float facing = dot(to_viewer, horizon);
     if (facing < 0) to_viewer = normalize(to_viewer - horizon * facing);

@@ -12,7 +12,7 @@ namespace duet {
 /// SurfaceMaps are the maps of one material. Textures are indices into TextureSet::textures, or −1 for none.
 struct SurfaceMaps {
     std::int32_t normal = -1; ///< tangent-space normals: colors 0 to 1 mean components −1 to 1 along u, v and ns
-    float normal_scale = 1;   ///< factor of the first two components
+    float normal_scale = 1;   ///< factor of the normal map's first two components
     std::int32_t bump = -1;   ///< bump map: heights along ns, from the red channel
     float bump_scale = 1;     ///< meters that a height of 1 stands for
     ScalarSlot opacity;       ///< 1: opaque; 0: a hole; in between the fraction of light that the surface stops
