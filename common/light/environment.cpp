@@ -19,7 +19,7 @@ bool black(const ConstantEnvironment& e) { return is_black(e.radiance); }
 Rgb look_up(const SkyEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up); }
 
-// Picture ------------------------------------------------------------------------------------------------------------
+// Image --------------------------------------------------------------------------------------------------------------
 // `rotation` turns the mapping about +y by shifting u. Within a row of the distribution the height y of a direction
 // is uniform, not its latitude. The density by solid angle is therefore constant in each cell, also at the poles,
 // where sin θ vanishes.

@@ -37,7 +37,7 @@ struct ImageEnvironment {
 using Environment = std::variant<ConstantEnvironment, SkyEnvironment, ImageEnvironment>;
 
 struct EnvironmentSample {
-    Vec3 wi; ///< unit
+    Vec3 wi; ///< direction to the environment, unit
     Rgb radiance;
     float pdf; ///< density by solid angle, > 0
 };

@@ -42,7 +42,7 @@ using Light = std::variant<PointLight, SpotLight, SunLight, SurfaceLight>;
 
 /// A LightSample is the light that arrives at a point p from one direction, without occlusion.
 struct LightSample {
-    Vec3 wi;        ///< unit, to the light
+    Vec3 wi;        ///< unit direction to the light
     float distance; ///< distance to the light; infinity for a sun
     /// This is the radiance that arrives from wi. For a delta light it is intensity / distance², or irradiance.
     Rgb radiance;

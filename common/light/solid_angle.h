@@ -8,7 +8,7 @@
 namespace duet {
 
 struct SolidAngleSample {
-    Vec3d wi;        ///< unit, from p to the shape
+    Vec3d wi;        ///< unit direction from p to the shape
     double distance; ///< distance to the shape along wi
     double pdf;      ///< density by solid angle
 };

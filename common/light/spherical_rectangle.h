@@ -22,7 +22,7 @@ public:
 
 private:
     Vec3d x_, y_, z_;                 // the rectangle's axes; z_ points so that the rectangle lies at negative z
-    double x0_, x1_, y0_, y1_, z0_;   // its extent along the axes
+    double x0_, x1_, y0_, y1_, z0_;   // the rectangle's extent along the axes
     double b0_, b1_;                  // z of the normals of the planes through the edges at y0 and y1
     double solid_angle_, beyond_left_; // beyond_left_: 2π minus the inner angles at x0 (k in the paper)
 };
