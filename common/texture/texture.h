@@ -33,7 +33,7 @@ struct CheckerTexture {
 struct NoiseTexture {
     Rgb low{0.0f}, high{1.0f};
     float scale = 1;     ///< cycles per meter of object space
-    int octaves = 4;     ///< 1 to 16, each of half the amplitude and twice the frequency
+    int octaves = 4;     ///< 1 to 16, each with half the amplitude and twice the frequency of the last
     bool marble = false; ///< sin(scale·z + 10·turbulence), as in Ray Tracing: The Next Week §5
 };
 using Texture = std::variant<ImageTexture, CheckerTexture, NoiseTexture>;
