@@ -8,7 +8,7 @@ namespace duet {
 
 namespace {
 
-constexpr double kMargin = 1.12;    ///< ratio of the image to the mesh in it
+constexpr double kMargin = 1.12;    ///< ratio of the image's size to the mesh's size in it
 constexpr double kGroundReach = 60; ///< half the ground's side length, in radii of the mesh
 
 /// Returns a camera that looks at the mesh from the front, right and above, at the smallest distance from which the

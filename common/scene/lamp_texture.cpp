@@ -57,7 +57,7 @@ Rgb radiance_towards(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3
     const Material& material = scene.materials[material_index(scene, light.object, light.primitive)];
     const Emissive* lamp = emitter(material);
     if (lamp == nullptr || lamp->radiance_texture < 0) return light.radiance;
-    const Object& object = scene.objects[light.object]; // a static object
+    const Object& object = scene.objects[light.object]; // static: moving objects have no surface lights
     const Shape& shape = scene.shapes[object.shape];
     const Ray ray{p, w};
     Hit hit{light.object, light.primitive, 0, 0, distance};

@@ -42,8 +42,8 @@ struct SceneNeeds {
     bool motion = false, lens = false;
     bool environment = false; ///< the environment is not black
     bool delta_lights = false, surface_lights = false;
-    bool glossy = false;       ///< rough metal, frosted glass, and layers
-    bool layers = false;       ///< layered materials: principled and coated ones
+    bool glossy = false;       ///< rough metal, frosted glass and layered materials
+    bool layers = false;       ///< principled and coated materials
     bool insides = false;      ///< glass that absorbs or has a priority
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass

@@ -18,7 +18,7 @@ struct JsonNode {
 
     Kind kind = Kind::kNull;
     bool boolean = false;
-    double number = 0; ///< finite
+    double number = 0; ///< value of a number, finite
     std::string text{};
     std::vector<JsonNode> items{};   ///< elements of an array, or member values of an object
     std::vector<std::string> keys{}; ///< member keys of an object, parallel to items
@@ -71,7 +71,7 @@ public:
     double number(JsonRange range = kAnyNumber) const;
     int integer(int low, int high) const;
     bool boolean() const;
-    const std::string& string() const; ///< not empty
+    const std::string& string() const; ///< throws Error for an empty string
     /// Returns an array of exactly `count` numbers.
     std::vector<double> numbers(std::size_t count, JsonRange range = kAnyNumber) const;
     Vec3d vec3(JsonRange range = kAnyNumber) const;

@@ -52,7 +52,7 @@ public:
     /// above it.
     struct Extent {
         std::size_t height = 0, nodes = 1;
-        bool open = false; ///< whether it is still being computed
+        bool open = false; ///< whether the extent is still being computed
     };
     Extent check(const SceneNode& node, std::size_t depth) {
         if (node.shape) return {};
@@ -105,8 +105,8 @@ public:
     }
 
 private:
-    /// Adds an instance of a group. It includes the group's own transform, and the names of its members start with
-    /// the instance's name.
+    /// Adds the members of an instanced group. The group's own transform applies, and the names of the members start
+    /// with the instance's name.
     void show_group(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
         for (const SceneNode& member : group.members) visit(member, motion * group.motion, name + "/");
     }

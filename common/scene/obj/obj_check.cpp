@@ -163,7 +163,8 @@ private:
     std::array<IndexCheck, 3> index_;
 };
 
-/// Joins continued lines, which tinyobjloader does not support: "f 1 2 \⏎ 3 4⏎" becomes "f 1 2 3 4⏎⏎".
+/// Joins continued lines, which tinyobjloader does not support. A backslash before a line end becomes a blank, and an
+/// empty line after the joined line preserves the line numbers: "f 1 2\⏎3 4⏎" becomes "f 1 2 3 4⏎⏎".
 std::string join_continued(const std::string& text) {
     std::string joined;
     joined.reserve(text.size());

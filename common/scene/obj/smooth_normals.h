@@ -5,7 +5,7 @@
 
 namespace duet {
 
-/// Edges with a larger angle between the normals of their triangles stay sharp.
+/// Edges whose triangles' normals differ by more than this angle stay sharp.
 inline constexpr double kCreaseDegrees = 60;
 
 /// Computes smooth vertex normals for the mesh. Around each point, the triangles that are connected by edges of at

@@ -10,7 +10,7 @@
 
 namespace duet {
 
-/// The number of corners is limited, because the time of ear clipping is quadratic in it.
+/// The corners of a concave polygon are limited to this number, because the time of ear clipping is quadratic in it.
 inline constexpr std::size_t kMaxConcaveCorners = 10'000;
 
 /// Splits a polygon of n ≥ 3 corners into n − 2 triangles of the same orientation, and appends them as indices of
