@@ -52,7 +52,6 @@ void check_choice(const ContenderChoice& choice);
 std::vector<Contender> our_contenders(const Scene& scene, const View& view, const ContenderChoice& choice);
 
 /// Minimum duration of a timing in seconds. Clocks and schedulers disturb shorter ones.
-/// schedulers.
 inline constexpr double kShortestTiming = 0.05;
 /// Calls `render` repeatedly, with the same result, until kShortestTiming seconds have passed or `control` is stopped.
 /// Returns the image and the average times per call.
