@@ -1,5 +1,4 @@
-// Decides which of two kernels is right where they differ, by a double-precision ray, or that single precision
-// cannot tell.
+// Decides by a double-precision ray which of two kernels is right, or that single precision cannot decide it.
 #pragma once
 
 #include "common/scene/scene.h"

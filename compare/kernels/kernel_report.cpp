@@ -252,8 +252,8 @@ std::vector<std::string> faults(const KernelTable& table) {
             add(row.leaks->ours, " of our ", row.work, " rays left the closed room");
         }
         if (!row.mismatches || row.threads != 1) continue;
-        add(row.mismatches->ours.wrong, " of our answers to ", row.work, " rays are wrong (found beside ", row.peer_name,
-            ")");
+        add(row.mismatches->ours.wrong, " of our answers to ", row.work, " rays are wrong (found beside ",
+            row.peer_name, ")");
         add(row.mismatches->ours.edge, " of our ", row.work, " rays slipped through edges (found beside ",
             row.peer_name, ")");
     }
