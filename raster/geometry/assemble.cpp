@@ -8,7 +8,7 @@
 namespace duet::raster {
 namespace {
 
-/// The outcome of the culling tests for one triangle.
+/// Encodes the result of the culling tests for one triangle.
 enum Verdict : std::int32_t {
     kOutside,
     kDegenerate,
@@ -24,7 +24,7 @@ constexpr std::int32_t kNarrow = 1 << 14;
 
 } // namespace
 
-/// Sixteen snapped triangles in structure-of-arrays layout.
+/// Stores sixteen snapped triangles in structure-of-arrays layout.
 struct Assembler::Outlines {
     std::uint32_t first = 0, count = 0; ///< index of the first triangle of the object, and how many lanes are used
     std::array<StripOf<std::int32_t>, 3> x, y;

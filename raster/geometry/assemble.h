@@ -1,4 +1,5 @@
-// Stages 2 to 4 for a run of triangles: cull → clip → set up. The smallest triangles are rasterized here as well.
+// Implements stages 2 to 4 for a run of triangles: cull → clip → set up. The smallest triangles are rasterized
+// here as well.
 #pragma once
 
 #include "raster/geometry/batch.h"
@@ -10,14 +11,14 @@
 
 namespace duet::raster {
 
-/// The parameters of a pass that triangle assembly needs.
+/// Stores the parameters of a pass that triangle assembly needs.
 struct AssemblyPlan {
     Viewport viewport;
     TileGrid grid;
     std::vector<SampleOffset> samples;
     Skips skips;
     bool front_faces_only = false;
-    /// Small triangles become one coverage mask (Patch) for several samples; false: fragments only.
+    /// If it is true, a small triangle's samples become one coverage mask (Patch); else they become fragments.
     bool patches = true;
 };
 

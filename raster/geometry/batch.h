@@ -1,4 +1,5 @@
-// The output of assembly for a run of triangles: set-up triangles, coverage masks and fragments, sorted by tile.
+// Defines the output of assembly for a run of triangles: set-up triangles, coverage masks and fragments, sorted by
+// tile.
 #pragma once
 
 #include "raster/geometry/cull.h"
@@ -11,7 +12,7 @@
 
 namespace duet::raster {
 
-/// A covered sample of a triangle that is too small to be worth rasterizing tile by tile.
+/// Represents a covered sample of a triangle that is too small to be worth rasterizing tile by tile.
 struct Fragment {
     std::uint32_t id = 0;
     float nearness = 0;
@@ -21,7 +22,7 @@ struct Fragment {
 };
 static_assert(sizeof(Fragment) == 12 && TileGrid::kTileSize * TileGrid::kTileSize <= 1 << 15);
 
-/// The coverage mask of a triangle that fits into a box of 8 × 8 samples.
+/// Stores the coverage mask of a triangle that fits into a box of 8 × 8 samples.
 struct Patch {
     std::uint64_t samples = 0; ///< one bit per sample of the box, row by row
     NearnessPlane nearness;    ///< valid at these samples; relative to the box's first sample
@@ -45,12 +46,12 @@ inline int place_y(std::size_t place) {
     return static_cast<int>(place / kBlockSamples / (TileGrid::kTileSize / 8) * 8 + place / 8 % 8);
 }
 
-/// The range of a list's items that belong to one tile.
+/// Stores the range of a list's items that belong to one tile.
 struct Segment {
     std::uint32_t tile = 0, first = 0, count = 0;
 };
 
-/// The results of one run, each list sorted by tile.
+/// Stores the results of one run, each list sorted by tile.
 struct Batch {
     std::vector<DrawTriangle> triangles;
     std::vector<std::uint32_t> order;         ///< indices of triangles, sorted by tile
@@ -69,7 +70,7 @@ struct Batch {
 /// Sorts the items of a batch by tile. The sort is stable, and the memory is reused by later calls.
 class TileSorter {
 public:
-    /// An item, by its index in batch.triangles or batch.patches, overlaps a tile.
+    /// Records that an item, given by its index in batch.triangles or batch.patches, overlaps a tile.
     struct Touch {
         std::uint32_t tile, item;
     };

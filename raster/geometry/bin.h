@@ -1,4 +1,4 @@
-// Stage 5: binning. It finds the tiles that each primitive may overlap.
+// Implements stage 5, binning, which finds the tiles that each primitive may overlap.
 #pragma once
 
 #include "raster/geometry/batch.h"
@@ -11,7 +11,7 @@
 
 namespace duet::raster {
 
-/// A list of indices per tile, all in one array.
+/// Stores a list of indices per tile, all in one array.
 class Bins {
 public:
     Bins() = default;
@@ -33,8 +33,8 @@ private:
 /// Bins the spheres by their bounds.
 Bins bin(const TileGrid& grid, const std::vector<DrawSphere>& spheres);
 
-/// The segments of all batches that belong to each tile, in the order of the batches. Their items are therefore in
-/// submission order, although the batches were sorted in parallel.
+/// Stores the segments of all batches that belong to each tile, in the order of the batches. Their items are
+/// therefore in submission order, although the batches were sorted in parallel.
 class TileLists {
 public:
     struct Item {

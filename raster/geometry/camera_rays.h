@@ -1,4 +1,4 @@
-// Camera rays for one sample per SIMD lane.
+// Computes camera rays, one per SIMD lane.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -6,8 +6,8 @@
 
 namespace duet::raster {
 
-/// Rays through pixel positions x, y, bit-identical to those of Pinhole::ray. Values that Pinhole::ray rounds to
-/// float are rounded here too, but stored as doubles.
+/// Holds the rays through pixel positions x, y, bit-identical to those of Pinhole::ray. Values that Pinhole::ray
+/// rounds to float are rounded here too, but stored as doubles.
 struct CameraRays {
     Vec3T<Doubles> origin, direction; ///< rounded to float precision
     Doubles t_min;                    ///< not rounded

@@ -8,8 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// A half-space of homogeneous coordinates. A point is inside where x·xw + y·yw + w·w + depth·depth + constant >=
-/// 0.
+/// Represents a half-space of homogeneous coordinates. A point is inside where x·xw + y·yw + w·w + depth·depth +
+/// constant >= 0.
 struct Plane {
     double x, y, w, depth, constant;
 

@@ -1,4 +1,4 @@
-// Stage 3: clips triangles at the near plane and the guard band.
+// Implements stage 3, which clips triangles at the near plane and the guard band.
 #pragma once
 
 #include "raster/geometry/transform.h"
@@ -7,7 +7,8 @@
 
 namespace duet::raster {
 
-/// A convex polygon in homogeneous pixel coordinates. A triangle clipped by five planes has at most eight corners.
+/// Represents a convex polygon in homogeneous pixel coordinates. A triangle clipped by five planes has at most eight
+/// corners.
 struct ClippedPolygon {
     std::array<PixelVertex, 8> vertices;
     int count = 0;

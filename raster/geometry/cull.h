@@ -1,4 +1,4 @@
-// Stage 2: culling of invisible primitives, whole objects first.
+// Implements stage 2, which culls invisible primitives, whole objects first.
 #pragma once
 
 #include "raster/geometry/transform.h"
@@ -9,7 +9,7 @@
 
 namespace duet::raster {
 
-/// Numbers of culled primitives by reason. A quad counts as the two triangles it is drawn as.
+/// Counts the culled primitives by reason. A quad counts as the two triangles it is drawn as.
 struct CullCounts {
     std::int64_t backfaces = 0, outside = 0, subpixel = 0, degenerate = 0;
 

@@ -11,8 +11,8 @@
 namespace duet::raster {
 namespace {
 
-/// Bounds of the number of triangles per run, and the target number of runs. There must be enough runs to balance
-/// the load between threads, and enough triangles per run to make its overhead negligible.
+/// The first two constants bound the number of triangles per run; the third is the target number of runs. There must
+/// be enough runs to balance the load between threads, and enough triangles per run to make its overhead negligible.
 constexpr std::uint32_t kMostInRun = 8192, kLeastInRun = 512, kRuns = 16;
 
 /// Returns the objects whose bounds overlap the frustum, and counts the primitives of the others as culled.
@@ -61,7 +61,7 @@ std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>
     return runs;
 }
 
-/// A pool of assemblers for the threads of a parallel loop.
+/// Provides a pool of assemblers for the threads of a parallel loop.
 class Lender {
 public:
     explicit Lender(std::vector<Assembler>& all) : all_(all) {}

@@ -1,4 +1,4 @@
-// The geometry stages of the pipeline for one pass: transform → cull → clip → set up → bin.
+// Implements the geometry stages of the pipeline for one pass: transform → cull → clip → set up → bin.
 #pragma once
 
 #include "raster/geometry/assemble.h"
@@ -13,7 +13,7 @@ namespace duet::raster {
 
 class Screen; // raster/screen/screen.h
 
-/// One view of the scene: a point on the lens, a time, and the sample positions in the pixel.
+/// Represents one view of the scene: a point on the lens, a time, and the sample positions in the pixel.
 struct PassView {
     Pinhole pinhole;
     float time = 0;
@@ -22,7 +22,7 @@ struct PassView {
     const Screen* screen = nullptr; ///< the depths that a screen-space effect reads; null if there is none
 };
 
-/// The primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
+/// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
 /// memory.
 struct Geometry {
     Triangles triangles;
@@ -37,11 +37,11 @@ struct Geometry {
     std::size_t memory_bytes() const;
 };
 
-/// Processes all opaque and non-opaque objects. The result is the same for any number of threads. Throws Error if
-/// there are more triangles in view than ids (2^31).
+/// Processes all objects without alpha mask or alpha blending. The result is the same for any number of threads.
+/// Throws Error if there are more triangles in view than ids (2^31).
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result);
-/// Processes all objects except PreparedData::glass.
+/// Processes the objects of process_geometry() except PreparedData::glass.
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
                            const Settings& settings, Geometry& result);
 /// Processes only PreparedData::glass, without coverage masks (Patch).
@@ -55,12 +55,12 @@ void process_backs(const PreparedData& data, const TileGrid& grid, const PassVie
 /// (Patch).
 void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
                             const Settings& settings, bool patches, Geometry& result);
-/// Processes only the surfaces that light may pass through (PreparedData::open_polygonal and open_spheres).
+/// Processes only the objects with alpha mask or alpha blending (PreparedData::open_polygonal and open_spheres).
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result);
 
-/// A pool of geometries whose memory is reused from frame to frame. There is one for each rendering that runs at
-/// the same time.
+/// Provides a pool of geometries whose memory is reused from frame to frame. There is one for each rendering that
+/// runs at the same time.
 class GeometryPool {
 public:
     std::unique_ptr<Geometry> take();
@@ -72,7 +72,7 @@ private:
     std::vector<std::unique_ptr<Geometry>> free_;
 };
 
-/// A geometry taken from a pool and returned to it by the destructor.
+/// Holds a geometry taken from a pool and returned to it by the destructor.
 class GeometryLoan {
 public:
     explicit GeometryLoan(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}

@@ -1,4 +1,5 @@
-// A triangulated shape in the layout that shading reads: a mesh, or quads, each of which is drawn as two triangles.
+// Defines a triangulated shape in the layout that shading reads: a mesh, or quads, each of which is drawn as two
+// triangles.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -10,14 +11,14 @@
 
 namespace duet::raster {
 
-/// Tells how interpolated barycentrics map to Hit::u and Hit::v.
+/// Selects how interpolated barycentrics map to Hit::u and Hit::v.
 enum class Piece : std::uint8_t {
     kTriangle,   ///< corners a, b, c
     kQuadFirst,  ///< corner, +u, +u+v
     kQuadSecond, ///< corner, +u+v, +v
 };
 
-/// All attributes of a vertex in 32 bytes, half a cache line.
+/// Stores all attributes of a vertex in 32 bytes, half a cache line.
 struct alignas(32) PackedVertex {
     Vec3 p;
     float u = 0; ///< texture coordinates (u, v); 0 where the mesh has none
@@ -25,7 +26,7 @@ struct alignas(32) PackedVertex {
     float v = 0;
 };
 
-/// The packed vertices and triangles of a shape; empty for a sphere. It is movable but not copyable, because
+/// Stores the packed vertices and triangles of a shape; empty for a sphere. It is movable but not copyable, because
 /// `triangles` may point into `halves`.
 struct PackedShape {
     using Triangle = std::array<std::uint32_t, 3>; ///< vertex indices

@@ -1,4 +1,5 @@
-// The linear functions of perspective-correct interpolation, for one triangle or for one triangle per SIMD lane.
+// Computes the linear functions of perspective-correct interpolation, for one triangle or for one triangle per SIMD
+// lane.
 #pragma once
 
 #include "raster/lanes.h"
@@ -9,8 +10,9 @@
 
 namespace duet::raster {
 
-/// Screen-space planes of a triangle. Each is stored as the coefficients of x, y and 1, with the sign that makes it
-/// positive inside the triangle. They are Interpolation's e[1] and e[2], the sum of all three e, and Σ(e·depth).
+/// Holds the screen-space planes of a triangle. Each is stored as the coefficients of x, y and 1, with the sign that
+/// makes it positive inside the triangle. They are Interpolation's e[1] and e[2], the sum of all three e, and
+/// Σ(e·depth).
 template <typename D> struct TrianglePlanes {
     std::array<D, 3> e1, e2, sum, depth_sum;
     D determinant; ///< of the corners; positive if they run clockwise in the image

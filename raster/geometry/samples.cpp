@@ -8,7 +8,7 @@
 namespace duet::raster {
 namespace {
 
-/// Point i of the (0,2)-sequence identified by `stream`, as 32-bit fractions. The functions of
+/// Represents point i of the (0,2)-sequence identified by `stream`, as 32-bit fractions. The functions of
 /// common/sampling/sobol.h work on reversed bits. Scrambling the index permutes the aligned blocks of 2^k points.
 struct Point {
     std::uint32_t x, y;

@@ -1,5 +1,5 @@
-// Sample positions in the pixel, on the lens and in time. They are the same for every pixel, because a pass draws
-// one view of the whole scene.
+// Computes sample positions in the pixel, on the lens and in time. They are the same for every pixel, because a pass
+// draws one view of the whole scene.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -13,7 +13,7 @@ namespace duet::raster {
 inline constexpr int kSubPixelBits = 8;
 inline constexpr int kSubPixels = 1 << kSubPixelBits;
 
-/// The position of a sample in its pixel, in 1/256 pixel from the upper left corner; 0 to 256.
+/// Stores the position of a sample in its pixel, in 1/256 pixel from the upper left corner; 0 to 256.
 struct SampleOffset {
     std::int32_t x = kSubPixels / 2, y = kSubPixels / 2;
 
@@ -24,7 +24,7 @@ struct SampleOffset {
     }
 };
 
-/// One view of the scene through one point of the lens at one time, with any number of samples per pixel.
+/// Represents one view of the scene through one point of the lens at one time, with any number of samples per pixel.
 struct Pass {
     Vec2d lens{0.5, 0.5}; ///< in [0, 1)²; (0.5, 0.5) is the lens center
     double time = 0;      ///< in [0, 1), relative to the shutter interval

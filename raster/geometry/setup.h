@@ -1,4 +1,4 @@
-// Stage 4: triangle setup. It computes once per triangle what coverage and interpolation need.
+// Implements stage 4, triangle setup, which computes once per triangle what coverage and interpolation need.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -20,10 +20,10 @@ namespace duet::raster {
 inline int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
 inline int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
 
-/// The edge function of two grid points, an integer function of the sample position: a·x + b·y + c >= 0 where the
-/// sample is inside. The interior of a positive triangle (clockwise in the image) is where all three edge functions
-/// are inside. c includes the top-left rule: a sample on an edge is inside only if it is a left or top edge of the
-/// triangle, so exactly one of two triangles that share the edge covers the sample. (Pineda 1988, "A Parallel
+/// Represents the edge function of two grid points, an integer function of the sample position: a·x + b·y + c >= 0
+/// where the sample is inside. The interior of a positive triangle (clockwise in the image) is where all three edge
+/// functions are inside. c includes the top-left rule: a sample on an edge is inside only if it is a left or top edge
+/// of the triangle, so exactly one of two triangles that share the edge covers the sample. (Pineda 1988, "A Parallel
 /// Algorithm for Polygon Rasterization".)
 struct EdgeFunction {
     std::int64_t a, b, c;
@@ -50,10 +50,11 @@ inline float kept_nearness(double nearness) {
     return sabotaged(Guard::kReversedDepth) ? 1 - (1 - n) : n; // mutation: standard depth, 0 near, 1 far
 }
 
-/// Barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or in the quad of which it is one
+/// Holds barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or in the quad of which it is one
 /// half. A sample outside the triangle is moved to a point inside.
 struct Interpolated {
-    /// Proportional to the barycentrics, not normalized; >= 0, but negative beyond a quad's diagonal.
+    /// The weights are proportional to the barycentrics, but not normalized. They are >= 0, except beyond a quad's
+    /// diagonal.
     double b0, b1, b2;
     double sum;        ///< b0 + b1 + b2, > 0
     double depth_sum;  ///< depth × sum, depth in meters
@@ -63,17 +64,17 @@ struct Interpolated {
     double nearness(double near) const { return depth_sum > near * sum ? near * sum / depth_sum : 1.0; }
 };
 
-/// A linear function of the pixel that gives the reversed depth, near / depth. It is the reversed depth itself
-/// under perspective, and its inverse in an orthographic view. Pixel coordinates are relative to origin(). All is
-/// in double, so that only the final rounding to float matters.
+/// Represents a linear function of the pixel that gives the reversed depth, near / depth. It is the reversed depth
+/// itself under perspective, and its inverse in an orthographic view. Pixel coordinates are relative to origin(). All
+/// is in double, so that only the final rounding to float matters.
 struct NearnessPlane {
     double x = 0, y = 0, constant = 0;
 };
 
-/// Perspective-correct barycentrics without a division by w. With homogeneous pixel vertices Vᵢ = (xw, yw, w),
-/// eᵢ(x, y) = (x, y, 1)·(Vⱼ × Vₖ) is linear in the pixel and bᵢ = eᵢ / Σe, even for vertices behind the
-/// eye (Olano and Greer 1997, "Triangle Scan Conversion using 2D Homogeneous Coordinates"). Pixel coordinates are
-/// relative to a pixel beside the triangle, so that products that cancel have the size of the triangle and not of the
+/// Computes perspective-correct barycentrics without a division by w. With homogeneous pixel vertices Vᵢ = (xw, yw,
+/// w), eᵢ(x, y) = (x, y, 1)·(Vⱼ × Vₖ) is linear in the pixel and bᵢ = eᵢ / Σe, even for vertices behind
+/// the eye (Olano and Greer 1997, "Triangle Scan Conversion using 2D Homogeneous Coordinates"). Pixel coordinates are
+/// relative to a pixel near the triangle, so that products that cancel have the size of the triangle and not of the
 /// image. All is in double.
 struct Interpolation {
     double origin_x = 0, origin_y = 0;
@@ -89,14 +90,14 @@ private:
     Vec2d nearest_on_outline(Vec2d p) const;
 };
 
-/// A triangle of a mesh, or one half of a quad, before clipping.
+/// Represents a triangle of a mesh, or one half of a quad, before clipping.
 struct WholeTriangle {
     PixelVertex a, b, c;
     Piece piece = Piece::kTriangle;
 };
 
-/// A triangle that is ready to be rasterized. The snapped corners determine the covered samples, and the plane
-/// gives the reversed depth at each. All other attributes are interpolated in the whole (unclipped, unsnapped)
+/// Represents a triangle that is ready to be rasterized. The snapped corners determine the covered samples, and the
+/// plane gives the reversed depth at each. All other attributes are interpolated in the whole (unclipped, unsnapped)
 /// triangle with this id.
 struct alignas(64) DrawTriangle { // one cache line
     std::array<FixedPoint, 3> corners; ///< of positive area
@@ -117,7 +118,7 @@ inline FixedPoint most(const std::array<FixedPoint, 3>& p) {
     return {std::max(std::max(p[0].x, p[1].x), p[2].x), std::max(std::max(p[0].y, p[1].y), p[2].y)};
 }
 
-/// The pixel at the lower corner of the triangle's bounding box, clamped to the image. Interpolation and
+/// Represents the pixel at the lower corner of the triangle's bounding box, clamped to the image. Interpolation and
 /// NearnessPlane count pixels from it.
 struct Origin {
     int x, y;

@@ -5,7 +5,7 @@
 namespace duet::raster {
 namespace {
 
-/// An edge function at the first sample of a small box, and its increments to the next column and row.
+/// Stores an edge function at the first sample of a small box, and its increments to the next column and row.
 struct SmallEdge {
     Ints at, step_x, step_y;
     Ints length; ///< |dx| + |dy|

@@ -10,8 +10,8 @@
 namespace duet::raster {
 namespace {
 
-/// A linear function over the solid unit sphere, g·n + offset with |n| <= 1. A matrix row restricted to a sphere
-/// has this form.
+/// Represents a linear function over the solid unit sphere, g·n + offset with |n| <= 1. A matrix row restricted to a
+/// sphere has this form.
 struct BallFunction {
     Vec3d g;
     double offset;

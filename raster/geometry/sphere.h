@@ -1,4 +1,4 @@
-// Spheres are drawn exactly: bounded in the image, then intersected with the camera ray of each sample.
+// Spheres are drawn exactly: they are bounded in the image and then intersected with the camera ray of each sample.
 #pragma once
 
 #include "raster/geometry/camera_rays.h"
@@ -11,7 +11,7 @@
 
 namespace duet::raster {
 
-/// A potentially visible sphere, or ellipsoid under an instance's transform.
+/// Represents a potentially visible sphere, or ellipsoid under an instance's transform.
 struct DrawSphere {
     std::uint32_t object = 0;
     std::uint32_t id = 0; ///< id among the pass's triangles

@@ -1,4 +1,4 @@
-// The division of the image into tiles.
+// Defines the division of the image into tiles.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace duet::raster {
 
-/// A rectangle of pixels; half-open ranges.
+/// Represents a rectangle of pixels by half-open ranges.
 struct PixelRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -19,7 +19,7 @@ inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// Square tiles over a region of the image, row by row. Those at the right and lower edges may be smaller.
+/// Represents square tiles over a region of the image, row by row. Those at the right and lower edges may be smaller.
 struct TileGrid {
     /// The depths and triangle ids of a tile fit into the L2 cache. Smaller tiles that fit into L1 are slower: more
     /// triangles overlap several tiles, and the work per tile is shared by fewer samples.

@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-/// A range of one object's vertices, the unit of parallel work.
+/// Represents a range of one object's vertices, the unit of parallel work.
 struct Chunk {
     std::size_t object, first, last;
 };
@@ -26,7 +26,7 @@ Vec3 vertex_position(const Shape& shape, std::size_t index) {
     return primitive_corners(shape, static_cast<std::uint32_t>(index / 4)).p[index % 4];
 }
 
-/// A homogeneous pixel position. T is a number or a SIMD batch.
+/// Represents a homogeneous pixel position. T is a number or a SIMD batch.
 template <typename T> struct HomogeneousPoint {
     T xw, yw, depth, w;
 };
@@ -49,9 +49,9 @@ template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewp
            bit(!(v.depth >= T(viewport.near)), kNear) + bit(!within, kGuard);
 }
 
-/// Sixteen vertex positions, one array per axis.
+/// Stores sixteen vertex positions, one array per axis.
 using VertexStrip = std::array<StripOf<float>, 3>;
-/// Sixteen snapped vertices with their outcodes.
+/// Stores sixteen snapped vertices with their outcodes.
 struct SnappedStrip {
     StripOf<std::int32_t> x, y, outcode;
 };

@@ -1,4 +1,4 @@
-// Stage 1: transforms vertices from object space to pixel coordinates.
+// Implements stage 1, which transforms vertices from object space to pixel coordinates.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -11,19 +11,19 @@
 
 namespace duet::raster {
 
-/// A vertex in homogeneous pixel coordinates. It appears at (xw/w, yw/w) where depth and w are positive.
+/// Represents a vertex in homogeneous pixel coordinates. It appears at (xw/w, yw/w) where depth and w are positive.
 struct PixelVertex {
     double xw = 0, yw = 0, w = 1;
     double depth = 0; ///< camera-space −z, meters; equals w under perspective
 };
 
-/// A point on the sub-pixel grid, in 1/256 pixel.
+/// Represents a point on the sub-pixel grid, in 1/256 pixel.
 struct FixedPoint {
     std::int32_t x = 0, y = 0;
     friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
 };
 
-/// The parameters of the view that the stages need.
+/// Stores the parameters of the view that the stages need.
 struct Viewport {
     int width = 0, height = 0;
     double near = 0; ///< distance of the near plane, meters
@@ -31,13 +31,13 @@ struct Viewport {
 };
 Viewport viewport_of(const View& view, const Pinhole& pinhole);
 
-/// The guard band: how far beyond the image edges a vertex may lie before its primitives are clipped, in pixels.
+/// The guard band is how far beyond the image edges a vertex may lie before its primitives are clipped, in pixels.
 /// With images of up to kMaxPictureSide = 2^14 pixels per side, fixed-point coordinates stay below 2^24.4 and edge
 /// functions below 2^52, which is exact in 64 bits.
 inline constexpr double kGuardBand = 65536;
 
-/// The outer sides of the clip planes on which a vertex lies. A primitive whose vertices share a frustum bit is
-/// invisible.
+/// The bits tell on the outer side of which clip planes a vertex lies. A primitive whose vertices share a frustum bit
+/// is invisible.
 enum Outcode : std::uint8_t {
     kLeft = 1, ///< more than a pixel beyond the image edge: snapping can't bring it back
     kRight = 2,
@@ -58,8 +58,8 @@ struct SnappedVertex {
     std::uint32_t outcode = 0;
 };
 
-/// The vertices of an object in pixel coordinates. Quads have four per primitive (corner, +u, +u+v, +v); a mesh has
-/// its own.
+/// Stores the vertices of an object in pixel coordinates. Quads have four per primitive (corner, +u, +u+v, +v); a
+/// mesh has its own.
 struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< the transform has a negative determinant, so windings are flipped

@@ -1,4 +1,4 @@
-// The triangles of a pass by id. A tile stores for each sample the id of the visible triangle.
+// Gives access to the triangles of a pass by id. A tile stores for each sample the id of the visible triangle.
 #pragma once
 
 #include "raster/geometry/setup.h"
@@ -10,11 +10,11 @@
 
 namespace duet::raster {
 
-/// The id of no triangle.
+/// This id stands for no triangle.
 inline constexpr std::uint32_t kNoTriangle = 0x7fffffff;
 
-/// A range of an object's triangles with consecutive ids, the unit of parallel work. A quad's two halves are two
-/// triangles. A sphere is a run of one.
+/// Represents a range of an object's triangles with consecutive ids, the unit of parallel work. A quad's two halves
+/// are two triangles. A sphere is a run of one.
 struct Run {
     std::uint32_t object = 0; ///< index into Triangles::objects; of a sphere: index into the list of spheres
     std::uint32_t first = 0;  ///< first triangle, as an index into the object's
@@ -51,7 +51,7 @@ struct Triangles : WholeTriangles {
         const Run& run = run_of(id);
         return whole(run, run.first + id - run.first_id);
     }
-    /// The half-open range of the ids of an object's triangles.
+    /// Stores the half-open range of the ids of an object's triangles.
     struct Numbers {
         std::uint32_t first, end;
     };
