@@ -1,4 +1,4 @@
-// Stage 7: builds the visibility buffer of a tile, an image of Hits.
+// Implements stage 7, which builds the visibility buffer of a tile, an image of Hits.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -33,7 +33,7 @@ Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t
 /// closest approach.
 Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, Vec2d pixel);
 
-/// The camera rays and the visibility buffer (an image of Hits) of a tile, with one sample per pixel.
+/// Holds the camera rays and the visibility buffer (an image of Hits) of a tile, with one sample per pixel.
 class HitTile {
 public:
     /// Computes the rays of all samples and the hits of the primitives drawn into `tile`.

@@ -6,19 +6,19 @@
 
 namespace duet::raster {
 
-/// The edge functions of a triangle at the samples of a tile. All samples of a tile have the same offset in their
-/// pixel, so the values of an edge function differ by multiples of 256. After division by 256, rounded down, the
-/// signs are unchanged, and the increments from pixel to pixel are a and b themselves. Within a block that an edge
-/// passes through, the values fit into 32 bits for triangles of any size: |a|, |b| < 2^25.2 (kGuardBand), so no
+/// Holds the edge functions of a triangle at the samples of a tile. All samples of a tile have the same offset in
+/// their pixel, so the values of an edge function differ by multiples of 256. After division by 256, rounded down,
+/// the signs are unchanged, and the increments from pixel to pixel are a and b themselves. Within a block that an
+/// edge passes through, the values fit into 32 bits for triangles of any size: |a|, |b| < 2^25.2 (kGuardBand), so no
 /// sample of the block is farther than 14 · 2^25.2 < 2^30 from a sample of the other sign.
 struct DepthTile::Edges {
     using Values = std::array<std::int64_t, 3>;
     Values at; ///< at the tile's first sample
     Values right, down; ///< increments from block to block
-    /// Thresholds for the value at a block's first sample: below `none`, no sample of the block is inside; from
-    /// `all` on, all samples are well inside. Both have a margin for float rounding. Each of six roundings has an
-    /// error of at most half a unit in the last place of the largest value in the tile. So a block may be tested in
-    /// vain, but none is missed.
+    /// These are thresholds for the value at a block's first sample. Below `none`, no sample of the block is inside.
+    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of six roundings has
+    /// an error of at most half a unit in the last place of the largest value in the tile. So a block may be tested
+    /// in vain, but none is missed.
     std::array<float, 3> none, all;
     std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a packet
@@ -59,10 +59,10 @@ struct DepthTile::Edges {
     }
 };
 
-/// The coverage of a row of blocks of a tile, computed with SIMD.
+/// Computes the coverage of a row of blocks of a tile with SIMD.
 struct DepthTile::BlockRow {
-    /// One bit per block: `some` where the triangle may cover samples, `all` where it certainly covers all samples,
-    /// well inside.
+    /// Each block has one bit: in `some` where the triangle may cover samples, in `all` where it certainly covers all
+    /// samples, well inside.
     std::uint32_t some = 0, all = 0;
 
     BlockRow(const Edges& edges, int row) {
@@ -81,7 +81,7 @@ struct DepthTile::BlockRow {
     }
 };
 
-/// The coverage of a block, one bit per sample: all covered samples, and those well inside.
+/// Holds the coverage of a block, one bit per sample: all covered samples, and those well inside.
 struct DepthTile::Covered {
     std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
 
@@ -200,7 +200,7 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
     const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
     const std::uint32_t touched = (2u << last_column) - (1u << first_column);
     const Origin from = origin(triangle.corners, viewport_);
-    // The tile's first sample, relative to the plane's origin.
+    // This is the tile's first sample, relative to the plane's origin.
     const Vec2d first = offset_.position(rect_.x0 - from.x, rect_.y0 - from.y);
     for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
         const BlockRow blocks(edges, row);
@@ -273,7 +273,7 @@ std::uint32_t strips_of(const std::array<std::uint64_t, 4>& samples) {
 
 } // namespace
 
-// One loop over the packets of all blocks: the CPU can mispredict only its trip count.
+// The function has one loop over the packets of all blocks, so the CPU can mispredict only its trip count.
 void DepthTile::draw(const Patch& patch) {
     const int x = patch.x - rect_.x0, y = patch.y - rect_.y0, left = x & 7, top = y & 7;
     const int column = x >> 3, row = y >> 3; // of the first block, which may lie just outside the tile

@@ -1,4 +1,4 @@
-// Stage 6: determines the visible triangle of each sample of a tile.
+// Implements stage 6, which determines the visible triangle of each sample of a tile.
 #pragma once
 
 #include "raster/geometry/batch.h"
@@ -10,7 +10,7 @@
 
 namespace duet::raster {
 
-/// The depth buffer of a tile, one sample per pixel: reversed depth and the id of the visible primitive.
+/// Holds the depth buffer of a tile, one sample per pixel: reversed depth and the id of the visible primitive.
 ///
 /// Reversed depth (`nearness`) is near / depth, in (0, 1], as a float. Its relative error is 2^-24 at any depth, as
 /// that of Hit::t itself, and no precision is lost to a far plane. At equal depth the lower id wins, so the result
@@ -55,7 +55,7 @@ public:
     }
     /// Clears the samples of blocks that were not drawn to.
     void empty_undrawn();
-    /// Arrays in storage order. They are valid in blocks drawn to, and everywhere after empty_undrawn().
+    /// The arrays are in storage order. They are valid in blocks drawn to, and everywhere after empty_undrawn().
     const std::int32_t* ids() const { return ids_.data(); }
     const float* nearness() const { return nearness_.data(); }
     /// Returns one bit per sample of the packet that starts at `place`, set if the sample lies inside the unsnapped
@@ -99,7 +99,7 @@ private:
     alignas(64) std::array<std::int32_t, kTileSamples> ids_;
     static_assert(kStrip == 16);
     std::array<std::uint16_t, kTileSamples / kStrip> inside_; ///< one mask per packet
-    /// Bound of each block: no sample has less reversed depth.
+    /// No sample of a block has less reversed depth than its bound.
     alignas(64) std::array<float, kBlocks * kBlocks> farthest_;
     std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< number of draws since `farthest_` was computed
     std::array<bool, kBlocks * kBlocks> drawn_;

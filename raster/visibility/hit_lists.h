@@ -1,4 +1,4 @@
-// Per-pixel lists of surfaces in front of the visible surface, sorted by depth.
+// Builds per-pixel lists of surfaces in front of the visible surface, sorted by depth.
 #pragma once
 
 #include "raster/visibility/cover.h"
@@ -14,7 +14,7 @@ namespace duet::raster {
 /// Returns true if a geometry without coverage masks (Patch) has primitives that may overlap the tile.
 bool touches(const Geometry& geometry, std::size_t tile);
 
-/// Lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
+/// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
 /// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kKept nearest hits. If
 /// more are needed, the tile is drawn again for those behind them, so memory does not grow with the number of
 /// surfaces.

@@ -1,4 +1,4 @@
-// Depth maps, as a shadow map needs them, with alpha-masked and alpha-blended surfaces.
+// Renders depth maps, as a shadow map needs them, with alpha-masked and alpha-blended surfaces.
 #pragma once
 
 #include "raster/prepare.h"

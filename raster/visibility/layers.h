@@ -1,4 +1,5 @@
-// Stage 7b: composites alpha-masked and alpha-blended surfaces over the opaque image, sorted by depth.
+// Implements stage 7b, which composites alpha-masked and alpha-blended surfaces over the opaque image, sorted by
+// depth.
 #pragma once
 
 #include "raster/shade.h"
@@ -7,9 +8,9 @@
 
 namespace duet::raster {
 
-/// The transparent layers of a tile, one sample per pixel. Each pixel has a list of Hits in front of its visible
-/// surface (raster/visibility/hit_lists.h). Hits of zero opacity are skipped. The first fully opaque hit becomes
-/// the visible surface. Those in front of it are blended with the "over" operator (Porter and Duff 1984).
+/// Holds the transparent layers of a tile, one sample per pixel. Each pixel has a list of Hits in front of its
+/// visible surface (raster/visibility/hit_lists.h). Hits of zero opacity are skipped. The first fully opaque hit
+/// becomes the visible surface. Those in front of it are blended with the "over" operator (Porter and Duff 1984).
 class Layers {
 public:
     /// Shades the layers. It changes the visible surface in `tile` where an opaque hit lies in front. `geometry`

@@ -1,5 +1,5 @@
-// Multisampling (MSAA): coverage and depth are evaluated at several samples per pixel, shading once for each
-// primitive visible in the pixel (Akeley 1993, "RealityEngine Graphics", §3.3).
+// Implements multisampling (MSAA): coverage and depth are evaluated at several samples per pixel, and each primitive
+// visible in the pixel is shaded once (Akeley 1993, "RealityEngine Graphics", §3.3).
 #pragma once
 
 #include "raster/visibility/strip_place.h"
@@ -14,8 +14,8 @@ namespace duet::raster {
 /// a row and a column to itself. Throws Error for any other number.
 const std::vector<SampleOffset>& multisample_pattern(int count);
 
-/// One of the primitives visible in each pixel of a tile. If all samples of a pixel see the same primitive, it is
-/// shaded at the pixel center, else at the centroid of the samples that see it. The centroid lies inside the
+/// Holds one of the primitives visible in each pixel of a tile. If all samples of a pixel see the same primitive, it
+/// is shaded at the pixel center, else at the centroid of the samples that see it. The centroid lies inside the
 /// primitive, because triangles, quads and spheres are convex. The center could lie outside, where interpolation
 /// would extrapolate.
 class Layer {
@@ -32,8 +32,8 @@ private:
     std::array<bool, kTile / kStrip> used_;                              ///< packets with any nonzero count
 };
 
-/// All primitives visible at the samples of a tile's pixels. It allocates as many layers as the pixel with the most
-/// primitives needs.
+/// Holds all primitives visible at the samples of a tile's pixels. It allocates as many layers as the pixel with the
+/// most primitives needs.
 class LayeredTile {
 public:
     /// `count` is the number of samples per pixel.
@@ -45,8 +45,8 @@ public:
     const PixelRect& rect() const { return rect_; }
     std::size_t layers() const { return layers_.size(); }
     const Layer& layer(std::size_t i) const { return *layers_[i]; }
-    /// The input of shading for a packet of two rows of eight pixels in one layer. `place.ids` is null if the layer
-    /// has none of them. `offsets` stores the per-sample positions that `place` may point to.
+    /// Holds the input of shading for a packet of two rows of eight pixels in one layer. `place.ids` is null if the
+    /// layer has none of them. `offsets` stores the per-sample positions that `place` may point to.
     struct Strip {
         StripPlace place;
         std::array<SampleOffset, kStrip> offsets;

@@ -1,4 +1,4 @@
-// A maximum pyramid of reversed depths (Hi-Z) for shadow maps and screen-space depths.
+// Implements a maximum pyramid of reversed depths (Hi-Z) for shadow maps and screen-space depths.
 #pragma once
 
 #include "common/image/image.h"
@@ -8,7 +8,7 @@
 
 namespace duet::raster {
 
-/// The maxima of an image over blocks of 2 × 2, 4 × 4 … pixels (Greene, Kass and Miller 1993, "Hierarchical
+/// Holds the maxima of an image over blocks of 2 × 2, 4 × 4 … pixels (Greene, Kass and Miller 1993, "Hierarchical
 /// Z-Buffer Visibility", §3).
 class NearestPyramid {
 public:

@@ -1,4 +1,4 @@
-// The positions of a packet of sixteen samples of a tile, and the ids of their visible surfaces.
+// Describes the positions of a packet of sixteen samples of a tile, and the ids of their visible surfaces.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -8,11 +8,12 @@
 
 namespace duet::raster {
 
-/// A packet of two rows of eight samples of a tile.
+/// Describes a packet of two rows of eight samples of a tile.
 struct StripPlace {
     int x = 0, y = 0;                  ///< first pixel
     const std::int32_t* ids = nullptr; ///< of the visible primitives (DepthTile::ids); aligned to 64 bytes
-    /// Reversed depths (DepthTile::nearness), aligned to 64 bytes; null: must be computed.
+    /// The reversed depths (DepthTile::nearness) are aligned to 64 bytes. If the pointer is null, they must be
+    /// computed.
     const float* nearness = nullptr;
     std::uint32_t inside = 0;          ///< one bit per sample that is known to lie inside the unsnapped triangle
     SampleOffset offset;               ///< of every sample in its pixel

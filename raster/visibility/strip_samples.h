@@ -27,7 +27,7 @@ inline StripPlace strip_place(const DepthTile& tile, int x, int y, std::uint32_t
 }
 inline StripPlace strip_place(const DepthTile& tile, int x, int y) { return strip_place(tile, x, y, tile.place(x, y)); }
 
-/// The visible primitives of a packet's samples.
+/// Holds the visible primitives of a packet's samples.
 struct StripSamples {
     StripOf<std::int32_t> ids; ///< samples without a primitive repeat the id of another one
     std::uint32_t seen = 0;    ///< one bit per sample with a visible primitive
