@@ -10,8 +10,8 @@
 namespace duet::raster {
 namespace {
 
-/// The distance from a rounding boundary, in codes, within which the polynomial's result is not trusted; three
-/// times its error.
+/// The polynomial's result is not trusted within this distance of a rounding boundary, in codes. It is three times
+/// the polynomial's error.
 constexpr double kDoubt = 0x1p-11;
 
 /// Fixed-point codes are in units of 2^-16 and biased by half a code plus kDoubt. The 8-bit code is thus the value
@@ -19,7 +19,7 @@ constexpr double kDoubt = 0x1p-11;
 constexpr double kCode = 1 << 16, kMoved = (0.5 + kDoubt) * kCode;
 constexpr std::int32_t kNoDoubt = 0xffff & ~static_cast<std::int32_t>(2 * kDoubt * kCode - 1);
 
-/// 255 · 1.055 · 2^(e/2.4) fixed-point codes; entry i is for e = i − 15.
+/// The table holds 255 · 1.055 · 2^(e/2.4) as fixed-point codes. Entry i is for e = i − 15.
 const StripOf<float> kScales = [] {
     StripOf<float> scales;
     for (std::size_t i = 0; i < kStrip; ++i)
@@ -89,7 +89,7 @@ void put(const Ints& pixels, const Ints& behind, std::uint32_t seen, std::size_t
     std::memcpy(static_cast<void*>(codes.at(i)), words.data(), sizeof(words));
 }
 
-/// The samples that encode() leaves undecided, one bit each: those in doubt, and those outside the range of
+/// Holds the samples that encode() leaves undecided, one bit each: those in doubt, and those outside the range of
 /// curved_code().
 struct Left {
     std::uint32_t doubtful, other;

@@ -9,10 +9,10 @@
 
 namespace duet::raster {
 
-/// Sixteen linear colors.
+/// Stores sixteen linear colors.
 using StripColors = RgbT<StripOf<float>>;
 
-/// Sixteen sRGB pixels, in one cache line.
+/// Stores sixteen sRGB pixels, in one cache line.
 using StripCodes = StripOf<Rgba8>;
 
 /// Encodes packets. codes[k] receives the pixels of colors[k], opaque and bit-identical to SrgbEncoder for every

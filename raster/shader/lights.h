@@ -1,4 +1,5 @@
-// The scene's lights as shading models use them: one incident direction per light, for one point or a SIMD batch.
+// Converts the scene's lights to what shading models use: one incident direction per light, for one point or a SIMD
+// batch.
 #pragma once
 
 #include "raster/light/direct.h"

@@ -1,4 +1,4 @@
-// Vectors that are linear in the pixel, such as camera rays, evaluated by addition for the packets of a tile.
+// Evaluates vectors that are linear in the pixel, such as camera rays, by addition for the packets of a tile.
 #pragma once
 
 #include "raster/geometry/samples.h"
@@ -9,9 +9,9 @@
 
 namespace duet::raster {
 
-/// The vector at packet positions of a tile, split into a term per column of blocks and a term per row of packets,
-/// which includes the samples' offset in the pixel. Terms are rounded to float once per tile. No packet needs to
-/// convert its position to float, which would lie on the critical path.
+/// Holds the vector at packet positions of a tile as the sum of a term per column of blocks and a term per row of
+/// packets. The latter includes the samples' offset in the pixel. Terms are rounded to float once per tile. No packet
+/// needs to convert its position to float, which would be on the critical path.
 class LinearInTile {
 public:
     /// Represents start + dx·x + dy·y for the pixels (x, y) of a tile, at most TileGrid::kTileSize in each

@@ -9,7 +9,7 @@ Vec3 to_object_normal(const ObjectView& object, Vec3 n) {
     return object.identity ? n : transform_normal(object.to_world, n);
 }
 
-/// Screen-space derivatives of the point where camera rays meet a plane, per pixel.
+/// Stores screen-space derivatives of the point where camera rays meet a plane, per pixel.
 struct PointSteps {
     Vec3d dx, dy;
 };
@@ -89,7 +89,7 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
     const std::array<SurfacePoint, 3> points{at.surface, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
     for (std::size_t k = 0; k < 3; ++k) {
         at.p[k] = points[k].p_object;
-        // The sphere's own normal, even if the object is scaled non-uniformly.
+        // This is the sphere's own normal, even if the object is scaled non-uniformly.
         at.n[k] = normalize(to_object_normal(object, points[k].ns));
         at.uv[k] = points[k].uv;
         at.edges[k] = Vec3(1, 1, 1);

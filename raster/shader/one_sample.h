@@ -6,9 +6,9 @@
 
 namespace duet::raster {
 
-/// The corners of the hit triangle and the weights that interpolate them to the hit, with the weights' screen-space
-/// derivatives. For a sphere the corners are three of its points: the hit, and those of the rays through the next
-/// pixels to the right and below, intersected with the tangent plane.
+/// Stores the corners of the hit triangle and the weights that interpolate them to the hit, with the weights'
+/// screen-space derivatives. For a sphere the corners are three of its points: the hit, and those of the rays through
+/// the next pixels to the right and below, intersected with the tangent plane.
 struct HitCorners {
     std::array<Vec3, 3> p, n; ///< in object space
     std::array<Vec2, 3> uv;

@@ -1,4 +1,4 @@
-// The Phong reflection model: a diffuse term and a specular highlight around the mirror direction.
+// Implements the Phong reflection model: a diffuse term and a specular highlight around the mirror direction.
 #pragma once
 
 #include "common/vec/float_bits.h"
@@ -6,7 +6,7 @@
 
 namespace duet::raster {
 
-/// The two terms of the BRDF: base color / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ around the mirror
+/// The BRDF has two terms: base color / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ around the mirror
 /// direction. The lobe reflects at most the incident energy for every direction (Phong 1975, "Illumination for
 /// Computer Generated Pictures"; normalized as in Lafortune and Willems 1994, "Using the Modified Phong Reflectance
 /// Model for Physically Based Rendering"). m = 32 = 2⁵ takes five squarings.
@@ -14,9 +14,9 @@ inline constexpr int kPhongSquarings = 5;
 inline constexpr float kPhongDiffuse = kInvPi;
 inline constexpr float kPhongSpecular = 0.04f * ((1 << kPhongSquarings) + 2) * kInvPi / 2;
 
-/// The factors of reflection from wi to wo: the incident cosine, clamped to 0, and the lobe cosᵐ of the angle
-/// between wo and the mirror direction, which kPhongSpecular scales to a BRDF. wi must be unit. Both give no light
-/// if it comes from behind (n·wi <= 0).
+/// Computes the factors of reflection from wi to wo: the incident cosine, clamped to 0, and the lobe cosᵐ of the
+/// angle between wo and the mirror direction. kPhongSpecular scales the lobe to a BRDF. wi must be unit. Light from
+/// behind (n·wi <= 0) has cosine 0.
 template <typename T> struct PhongFactors {
     T cosine, lobe;
 
@@ -24,7 +24,8 @@ template <typename T> struct PhongFactors {
         const T arriving = dot(n.v, wi) * n.scale;
         cosine = max(arriving, T(0));
         const T leaving = dot(n.v, wo.v);
-        // cosine between the mirror direction and wo, from three products that are computed in parallel
+        // The lobe needs the cosine between the mirror direction and wo. Its three products do not depend on each
+        // other.
         lobe = max(fused(arriving, (leaving + leaving) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
     }
@@ -49,7 +50,7 @@ RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& plac
     return sum;
 }
 
-/// The light at a point in two terms that do not depend on the base color, for shaders that compute it at the
+/// Stores the light at a point in two terms that do not depend on the base color, for shaders that compute it at the
 /// vertices.
 template <typename T> struct PhongLight {
     RgbT<T> irradiance; ///< W/m², includes the cosine
@@ -78,8 +79,8 @@ template <typename T> RgbT<T> phong(const PhongLight<T>& light, Rgb ambient, Rgb
     return base * (light.irradiance * T(kPhongDiffuse) + spread<T>(ambient)) + light.highlights;
 }
 
-/// The common part of shaders that compute light in their vertex function, at world-space point p with normal n.
-/// The light is interpolated, and the base color is evaluated per sample.
+/// Provides the common part of shaders that compute light in their vertex function, at world-space point p with
+/// normal n. The light is interpolated, and the base color is evaluated per sample.
 struct LightAtVertices {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> using Varyings = PhongLight<T>;

@@ -41,7 +41,7 @@ private:
     using Many = VaryingsOf<S, Floats>;
     using Solved = SolvedStrip<S, float>;
 
-    /// The samples of a packet that see one of several objects.
+    /// Holds those samples of a packet that see one of several objects.
     struct Part {
         StripOf<std::int32_t> ids;
         StripPlace place;
@@ -242,7 +242,7 @@ private:
     bool only_suns_;                   ///< the scene has no other lights
 };
 
-/// A Program that owns a copy of its shader.
+/// Implements a Program that owns a copy of its shader.
 template <Shader S> class ProgramOf final : public Program {
 public:
     explicit ProgramOf(S shader) : shader_(std::move(shader)) {}

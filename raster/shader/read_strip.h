@@ -8,13 +8,13 @@
 
 namespace duet::raster {
 
-/// A packet whose samples see triangles of one object, and the cache slots of their triangle setups.
+/// Holds a packet whose samples see triangles of one object, and the cache slots of their triangle setups.
 template <VertexShader S, typename D> struct ReadStrip : StripSamples {
     using Sixteen = SetUp<S, D>;
 
     StripOf<std::int32_t> kept;  ///< cache slot per sample, see SetUps::keep
     StripOf<std::int32_t> lanes; ///< index of each sample's setup among the 32 of its pair
-    /// Two groups of sixteen setups, with one bit per sample whose setup is among them.
+    /// Stores two groups of sixteen setups, with one bit per sample whose setup is among them.
     struct Pair {
         const Sixteen *first, *second;
         std::uint32_t samples;

@@ -1,5 +1,6 @@
-// The triangle setup cache: what all samples of a tile that see a triangle share. Setups are computed for sixteen
-// triangles at a time with SIMD and cached, because adjacent packets see mostly the same triangles.
+// Implements the triangle setup cache. A setup holds what all samples of a tile that see a triangle share. Setups are
+// computed for sixteen triangles at a time with SIMD and cached, because adjacent packets see mostly the same
+// triangles.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -16,17 +17,17 @@
 
 namespace duet::raster {
 
-/// The setups of sixteen triangles. A plane is stored as the coefficients of x, y and 1, with the sign that makes
-/// it positive inside the triangle: Interpolation's e[1] and e[2], the sum of its three e, and Σ(e·depth). D is
-/// float or double. Pixel coordinates are relative to an origin beside the triangle's first corner, so that terms
+/// Stores the setups of sixteen triangles. A plane is stored as the coefficients of x, y and 1, with the sign that
+/// makes it positive inside the triangle: Interpolation's e[1] and e[2], the sum of its three e, and Σ(e·depth). D
+/// is float or double. Pixel coordinates are relative to an origin beside the triangle's first corner, so that terms
 /// that cancel have the size of the triangle.
 template <VertexShader S, typename D> struct SetUp {
     using Plane = std::array<StripOf<D>, 3>;
     using Numbers = std::array<StripOf<float>, kVaryings<S>>;
     static constexpr bool kDirections = wants_directions<S>() && std::is_same_v<D, float>;
-    /// The upper bound of M/Σe, where M = steepest·(|x| + |y|) + greatest bounds the terms of a plane. M/Σe is
-    /// about the triangle's length over its height in pixels, or its farthest depth in the tile over the sample's
-    /// depth. Beyond this bound, the planes are too inaccurate.
+    /// This is the upper bound of M/Σe, where M = steepest·(|x| + |y|) + greatest bounds the terms of a plane.
+    /// M/Σe is about the triangle's length over its height in pixels, or its farthest depth in the tile over the
+    /// sample's depth. Beyond this bound, the planes are too inaccurate.
     static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
 
     StripOf<D> x, y; ///< the origin, a pixel relative to the tile's corner
@@ -34,14 +35,14 @@ template <VertexShader S, typename D> struct SetUp {
     StripOf<D> steepest, greatest; ///< maxima over e1, e2 and sum: of |coefficient| of x and y, and of 1
     Numbers n, n1, n2;             ///< varyings at the first corner, and their derivatives along the two barycentrics
     std::array<StripOf<float>, 3> ng; ///< as VertexInput::ng
-    /// Planes Σ(e·varying) relative to the tile's corner, only for shaders with kDirections.
+    /// These are the planes Σ(e·varying) relative to the tile's corner, only for shaders with kDirections.
     std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
-    /// One bit per triangle whose varyings may be replaced by `directions`: M/Σe is at most kSteepest everywhere in
-    /// the tile, and all corner normals are on the visible side.
+    /// A triangle's bit is set if `directions` may replace its varyings: M/Σe is at most kSteepest everywhere in the
+    /// tile, and all corner normals are on the visible side.
     std::uint32_t easy;
 };
 
-/// A cache of setups of mesh and quad triangles, for one view of a tile. S's vertex function computes the varyings.
+/// Caches the setups of mesh and quad triangles, for one view of a tile. S's vertex function computes the varyings.
 template <VertexShader S, typename D> class SetUps {
 public:
     using Sixteen = SetUp<S, D>;
@@ -101,11 +102,11 @@ private:
     static constexpr float kLeastCosine = 0.125f;
     static constexpr std::size_t kRoom = 1024, kMost = kRoom / kStrip, kPlaces = kRoom;
     static constexpr std::uint64_t kNoPlace = std::uint64_t{kNoTriangle} << 32;
-    /// A direct-mapped table of (id, slot), indexed by the lower bits of the id. A triangle whose entry was
+    /// This direct-mapped table holds (id, slot), indexed by the lower bits of the id. A triangle whose entry was
     /// overwritten is set up again.
     std::array<std::uint64_t, kPlaces> places_;
-    /// The most recently requested triangles, indexed by the lower six bits of their ids. The table is small enough
-    /// to be looked up for sixteen samples with SIMD.
+    /// This table holds the most recently requested triangles, indexed by the lower six bits of their ids. It is
+    /// small enough to be looked up for sixteen samples with SIMD.
     struct Recent {
         StripOf<std::int32_t> ids, kept;
     };
@@ -187,7 +188,7 @@ template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
     count_ = next;
 }
 
-/// Branchless, because whether a triangle is cached is unpredictable.
+/// The function has no branch, because whether a triangle is cached is unpredictable.
 template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(std::int32_t id) {
     std::uint64_t& place = places_[static_cast<std::size_t>(id) % kPlaces];
     const auto number = static_cast<std::uint32_t>(id);

@@ -1,5 +1,5 @@
-// Programmable shading: a vertex and a fragment function in C++, each written once for single points and SIMD
-// batches.
+// Implements programmable shading: a vertex and a fragment function in C++, each written once for single points and
+// SIMD batches.
 //
 //     struct Stripes {
 //         template <typename T> struct Varyings { T height; };             // only T, and vectors and colors of T
@@ -15,7 +15,6 @@
 // only for the corners of visible triangles and for each sample of a sphere. Both are inlined into the loop over
 // packets. They can't change the position of a vertex in the image, which is computed exactly
 // (raster/geometry/transform.h).
-// Where a vertex lies in the picture is not theirs to say: that is exact (raster/geometry/transform.h).
 #pragma once
 
 #include "common/image/rgb.h"
@@ -39,8 +38,8 @@ struct PassView;
 template <typename T> RgbT<T> spread(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
 /// Returns v / |v|. v must not be zero.
 template <typename T> Vec3T<T> unit(Vec3T<T> v) { return v * inverse_sqrt(dot(v, v)); }
-/// A direction whose vector has any length. A cosine with it takes one multiplication by `scale`; normalizing the
-/// vector would take three.
+/// Represents a direction whose vector has any length. A cosine with it takes one multiplication by `scale`;
+/// normalizing the vector would take three.
 template <typename T> struct Direction {
     Vec3T<T> v;
     T scale; ///< 1/|v|, or −1/|v| if v points the opposite way
@@ -50,12 +49,12 @@ template <typename T> struct Direction {
     static Direction of(Vec3T<T> v) { return {v, inverse_sqrt(max(dot(v, v), T(std::numeric_limits<float>::min())))}; }
     Vec3T<T> unit() const { return v * scale; }
 };
-/// Returns a where the condition holds, else b.
+/// Returns `a` where the condition holds, else `b`.
 template <typename T, typename Mask> RgbT<T> select_each(Mask condition, RgbT<T> a, RgbT<T> b) {
     return {select(condition, a.r, b.r), select(condition, a.g, b.g), select(condition, a.b, b.b)};
 }
 
-/// The state that all vertices and samples of an object share in one view.
+/// Holds the state that all vertices and samples of an object share in one view.
 struct ObjectView {
     const PreparedData& data;
     const PassView& pass;
@@ -105,16 +104,16 @@ struct ObjectView {
     }
 };
 
-/// The input of a vertex function: a corner of a visible triangle, or a point on a sphere. All is in object space
-/// except world_….
+/// Holds the input of a vertex function, which is a corner of a visible triangle or a point on a sphere. All is in
+/// object space except world_….
 template <typename T> struct VertexInput {
     Vec3T<T> p;
     Vec3T<T> n; ///< vertex normal of the mesh, or (0, 0, 0)
     Vec2T<T> uv;
     Vec3T<T> ng;     ///< geometric normal of the triangle on the visible side, of any length
     Vec3T<T> middle; ///< centroid of the triangle or of the whole quad; p for a sphere
-    /// One value per edge: 1 at the opposite corner, 0 on the edge. It is 1 everywhere for a quad's diagonal and
-    /// for spheres, which are no edges.
+    /// Each edge has one value: 1 at the opposite corner, 0 on the edge. It is 1 everywhere for a quad's diagonal,
+    /// which is not an edge, and on spheres.
     Vec3T<T> edges;
     const ObjectView& object;
 
@@ -151,7 +150,7 @@ public:
 
 template <typename V, bool kDerivatives> struct ScreenDerivatives {};
 template <typename V> struct ScreenDerivatives<V, true> {
-    /// Exact screen-space derivatives of the varyings along the row and down the column, per pixel.
+    /// These are exact screen-space derivatives of the varyings along the row and down the column, per pixel.
     V dx, dy;
 };
 
@@ -160,15 +159,15 @@ template <typename T, bool kFacing> struct SeenSide {
 };
 template <typename T> struct SeenSide<T, true> {};
 
-/// The lights of a scene. kSuns: all of them are suns.
+/// Holds the lights of a scene. If kSuns is true, all of them are suns.
 template <bool kSuns> struct Lights {
     std::span<const Light> all;
 };
 
-/// The input of a fragment function: a sample with a visible surface. dx and dy exist if the shader requests
-/// derivatives. kPlain: the object has one color, no map perturbs its normals, and all lights are suns; then there
-/// are no virtual calls, and batches stay in registers. kFacing: all interpolated normals are on the visible side,
-/// and ng does not exist (wants_directions).
+/// Holds the input of a fragment function, which is a sample with a visible surface. dx and dy exist if the shader
+/// requests derivatives. If kPlain is true, the object has one color, no map perturbs its normals, and all lights are
+/// suns; then there are no virtual calls, and batches stay in registers. If kFacing is true, all interpolated normals
+/// are on the visible side, and ng does not exist (wants_directions).
 template <typename T, typename V, bool kDerivatives, bool kPlain, bool kFacing>
 struct FragmentInput : ScreenDerivatives<V, kDerivatives>, SeenSide<T, kFacing> {
     V at;                  ///< perspective-correct interpolated varyings
@@ -249,7 +248,7 @@ RgbT<T> FragmentInput<T, V, kDerivatives, kPlain, kFacing>::emitted() const {
         return sampled_emission(colors, first);
 }
 
-/// Returns true if a shader requests derivatives: `static constexpr bool kDerivatives = true;`
+/// Returns true if a shader requests derivatives, which `static constexpr bool kDerivatives = true;` does.
 template <typename S> constexpr bool wants_derivatives() {
     if constexpr (requires { S::kDerivatives; })
         return S::kDerivatives;
@@ -277,7 +276,7 @@ template <typename S, typename T> using VaryingsOf = typename S::template Varyin
 template <typename S, typename T, bool kPlain = false, bool kFacing = false>
 using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kPlain, kFacing>;
 
-/// The number of floats in a shader's varyings, which are interpolated one by one.
+/// This is the number of floats in a shader's varyings, which are interpolated one by one.
 template <typename S> inline constexpr std::size_t kVaryings =
     std::is_empty_v<VaryingsOf<S, float>> ? 0 : sizeof(VaryingsOf<S, float>) / sizeof(float);
 template <typename S, typename T> std::array<T, kVaryings<S>> numbers(const VaryingsOf<S, T>& varyings) {
@@ -293,14 +292,14 @@ template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, 
         return std::bit_cast<VaryingsOf<S, T>>(numbers);
 }
 
-/// A type with varyings and a vertex function, for single points and SIMD batches.
+/// A VertexShader has varyings and a vertex function, for single points and SIMD batches.
 template <typename S>
 concept VertexShader = requires(const S& s, const VertexInput<float>& one, const VertexInput<Floats>& many) {
     { s.vertex(one) } -> std::same_as<VaryingsOf<S, float>>;
     { s.vertex(many) } -> std::same_as<VaryingsOf<S, Floats>>;
 };
-/// A vertex shader with a fragment function. It returns linear radiance, in W/(m² sr) if it is to be compared with
-/// light.
+/// A Shader is a vertex shader with a fragment function. It returns linear radiance, in W/(m² sr) if it is to be
+/// compared with light.
 template <typename S>
 concept Shader = VertexShader<S> &&
     requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many,

@@ -9,7 +9,7 @@
 
 namespace duet::raster {
 
-/// The solution of a packet whose samples see triangles of one object, or a sphere.
+/// Holds the solution of a packet whose samples see triangles of one object, or a sphere.
 template <VertexShader S, typename D> struct SolvedStrip {
     static constexpr std::size_t kCount = kVaryings<S>;
     static constexpr bool kDerivatives = wants_derivatives<S>();
@@ -23,8 +23,8 @@ template <VertexShader S, typename D> struct SolvedStrip {
     StripOf<D> depth;      ///< camera-space −z, meters
     /// Derivatives of b1 and b2 along the row and the column, if requested.
     std::array<StripOf<float>, 2> b1_steps, b2_steps;
-    /// One bit per sample that is certainly inside the unsnapped triangle, where the solution is accurate. It is
-    /// not set for directions.
+    /// A sample's bit is set if it is certainly inside the unsnapped triangle, where the solution is accurate. No
+    /// bits are set for directions.
     std::uint32_t inside = 0;
     /// Only the direction of `at` is known, nothing else but `samples` is set, and all normals are on the visible
     /// side (SetUp::easy).
@@ -95,7 +95,7 @@ private:
     std::array<Solved, kTogether> solved_;
 };
 
-/// An empty vertex shader, for users that need only barycentrics and depths.
+/// This vertex shader is empty, for users that need only barycentrics and depths.
 struct NoVaryings {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {};
@@ -116,16 +116,16 @@ template <typename Strips> Vec3T<Floats> vector(const Strips& v, std::size_t fir
     return {load(v[first], i), load(v[first + 1], i), load(v[first + 2], i)};
 }
 
-/// The pixel indices of a tile, converted to D. A table lookup is faster than the conversion, which would lie on
-/// the critical path.
+/// The table holds the pixel indices of a tile, converted to D. A table lookup is faster than the conversion, which
+/// would be on the critical path.
 template <typename D> inline const std::array<D, TileGrid::kTileSize> kPixels = [] {
     std::array<D, TileGrid::kTileSize> numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<D>(i);
     return numbers;
 }();
 
-/// The positions of samples relative to the tile's corner: on a regular grid (OnGrid) or one by one (Scattered).
-/// They are exact, even as floats.
+/// Computes the positions of samples relative to the tile's corner: on a regular grid (OnGrid) or one by one
+/// (Scattered). They are exact, even as floats.
 template <typename D> struct OnGrid {
     std::size_t column, row; ///< of the first pixel
     const StripOf<D>&xs, &ys; ///< samples relative to the first pixel

@@ -7,8 +7,8 @@ namespace {
 
 using Vector = Vec3T<Doubles>;
 
-/// Camera rays relative to a sphere's center. The camera-space −z of a direction is 1, so ray parameters are
-/// depths.
+/// Represents camera rays relative to a sphere's center. The camera-space −z of a direction is 1, so ray parameters
+/// are depths.
 struct CameraLines {
     Vec3d origin, origin_dx, origin_dy, direction, direction_dx, direction_dy; ///< as in Pinhole
 

@@ -7,14 +7,14 @@
 
 namespace duet::raster {
 
-/// The same results as find_hit() and surface_point() for one sample, in object space. Values of samples that see
-/// something else are unspecified.
+/// Computes the same results as find_hit() and surface_point() for one sample, in object space. Values of samples
+/// that see something else are unspecified.
 struct SphereStrip {
     using Vectors = std::array<StripOf<float>, 3>;
 
     Vectors n; ///< unit normal of the sphere at each sample
-    /// Normals below the points where the rays through the next pixels to the right and down meet the tangent
-    /// plane; set only if requested.
+    /// These are the normals below the points where the rays through the next pixels to the right and down meet the
+    /// tangent plane. They are set only if requested.
     Vectors n_right, n_down;
     StripOf<float> side;  ///< 1 if seen from outside, -1 from inside
     StripOf<float> depth; ///< camera-space −z, meters

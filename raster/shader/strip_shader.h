@@ -1,4 +1,4 @@
-// The interface of shading: packets of samples in, colors out.
+// Defines the interface of shading, which takes packets of samples and returns colors.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -27,7 +27,7 @@ public:
     }
 };
 
-/// A compiled shader that can shade any tile.
+/// Holds a shader that can shade any tile.
 class Program {
 public:
     virtual ~Program() = default;

@@ -7,8 +7,8 @@
 namespace duet::raster {
 namespace {
 
-/// Texture coordinates over a triangle, for one sample or a batch. They match surface_point(), but in float, like
-/// the barycentrics.
+/// Interpolates texture coordinates over a triangle, for one sample or a batch. They match surface_point(), but in
+/// float, like the barycentrics.
 template <typename T> struct TriangleUv {
     Vec2T<T> first{T(0), T(0)}, along_u{T(1), T(0)}, along_v{T(0), T(1)};
 
@@ -36,7 +36,7 @@ struct UvTriangle : TriangleUv<float> {
     }
 };
 
-/// The texture coordinates of one triangle per lane, and one bit per lane whose triangle has an area in texture
+/// Holds the texture coordinates of one triangle per lane, and one bit per lane whose triangle has an area in texture
 /// space.
 struct UvTriangles : TriangleUv<Floats> {
     std::uint32_t with_area = 0;

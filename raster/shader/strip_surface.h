@@ -8,14 +8,14 @@
 
 namespace duet::raster {
 
-/// The barycentrics of a packet's samples, as in SolvedStrip.
+/// Refers to the barycentrics of a packet's samples, as in SolvedStrip.
 struct StripBarycentrics {
     const StripOf<float>*b1 = nullptr, *b2 = nullptr;
     const std::array<StripOf<float>, 2>*b1_steps = nullptr, *b2_steps = nullptr;
 };
 
-/// The surface visible in a packet: triangles of one object, or a sphere. One instance is reused for successive
-/// packets.
+/// Represents the surface visible in a packet: triangles of one object, or a sphere. One instance is reused for
+/// successive packets.
 class StripSurface final : public ColorSource {
 public:
     StripSurface(const PreparedData& data, const Geometry& geometry, const PassView& view)

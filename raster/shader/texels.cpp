@@ -26,7 +26,7 @@ std::vector<Texels> texels_of(const TextureSet& textures) {
     return result;
 }
 
-/// The 2 × 2 texels around each lane's position. Their addresses are computed with SIMD. Because the texels of
+/// Loads the 2 × 2 texels around each lane's position. Their addresses are computed with SIMD. Because the texels of
 /// different lanes are far apart, each is loaded separately, with its three channels in one register.
 class Texels::Quartets {
 public:

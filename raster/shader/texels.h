@@ -9,13 +9,13 @@
 
 namespace duet::raster {
 
-/// The texture coordinates and footprints of one batch of samples: SurfacePoint's uv, duv_dx and duv_dy.
+/// Stores the texture coordinates and footprints of one batch of samples: SurfacePoint's uv, duv_dx and duv_dy.
 struct TexturePlaces {
     Vec2T<Floats> uv, duv_dx, duv_dy;
     std::uint32_t lanes = 0; ///< one bit per lane that is sampled
 };
 
-/// References to an image and its mipmap levels.
+/// Refers to an image and its mipmap levels.
 class Texels {
 public:
     /// Creates the empty object of an unfiltered image.
