@@ -20,7 +20,7 @@ constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
                           Known{"flat", Shading::kFlat, any<flat_program>},
                           Known{"toon", Shading::kToon, any<toon_program>},
                           Known{"wireframe", Shading::kWireframe, any<wireframe_program>},
-                          // The overlay replaces its colors, also for "edges".
+                          // The overlay replaces the colors of "lines" and "edges".
                           Known{"lines", Shading::kLines, depth_program},
                           Known{"edges", Shading::kEdges, depth_program},
                           Known{"normal", Shading::kNormal, any<normal_program>},

@@ -1,4 +1,4 @@
-// The built-in shadings as programs.
+// Implements the built-in shadings as programs.
 #pragma once
 
 #include "raster/render.h"

@@ -1,7 +1,7 @@
-// Toon shading: each light is quantized into bands by its incident cosine, and highlights are uniform spots with a
-// sharp edge (Lake, Marshall, Harris and Blackstein 2000, "Stylized Rendering Techniques for Scalable Real-Time 3D
-// Animation"). The borders of bands are one pixel wide, by the normal's screen-space derivatives, which antialiases
-// them.
+// Implements toon shading: each light is quantized into bands by its incident cosine, and highlights are uniform
+// spots with a sharp edge (Lake, Marshall, Harris and Blackstein 2000, "Stylized Rendering Techniques for Scalable
+// Real-Time 3D Animation"). The borders of bands are one pixel wide, by the normal's screen-space derivatives, which
+// antialiases them.
 #include "raster/shader/phong.h"
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"

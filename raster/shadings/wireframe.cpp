@@ -1,7 +1,7 @@
-// Wireframe with hidden lines removed: one-pixel antialiased edges of triangles in the base color plus emission, on
-// black. The distance of a sample to an edge comes from its barycentric: b / |∇b| pixels, exact on the edge
-// (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A quad's diagonal is
-// not an edge, and spheres have none. For lines without hidden-line removal see raster/overlay/lines.h.
+// Draws a wireframe with hidden lines removed: one-pixel antialiased edges of triangles in the base color plus
+// emission, on black. The distance of a sample to an edge comes from its barycentric: b / |∇b| pixels, exact on the
+// edge (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A quad's
+// diagonal is not an edge, and spheres have none. raster/overlay/lines.h draws lines without hidden-line removal.
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
