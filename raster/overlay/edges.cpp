@@ -54,7 +54,7 @@ namespace {
 /// Returns a linear ramp from 0 at `low` to 1 at `high`.
 float ramp(float x, float low, float high) { return std::clamp((x - low) / (high - low), 0.0f, 1.0f); }
 
-/// The neighborhood of a pixel. Beyond the image border, pixels on the border are repeated.
+/// Gives access to the neighborhood of a pixel. Beyond the image border, the pixels on the border are repeated.
 struct Around {
     int width, height, x, y;
 

@@ -1,4 +1,4 @@
-// Edge lines where the visible surface changes, an image-space stage.
+// Computes edge lines where the visible surface changes, in image space.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -12,7 +12,7 @@
 
 namespace duet::raster {
 
-/// The G-buffer of edge detection, with one sample per pixel.
+/// Stores the G-buffer of edge detection, with one sample per pixel.
 struct SeenPicture {
     ImageFloat nearness;         ///< reversed depth, near / depth; 0 on a miss
     Image<Vec3> normal;          ///< shading normal n, stored as (n + 1)/2

@@ -1,4 +1,4 @@
-// One-pixel lines along all edges of triangles and quads, without hidden-line removal.
+// Draws one-pixel lines along all edges of triangles and quads, without hidden-line removal.
 #pragma once
 
 #include "raster/geometry/geometry.h"

@@ -1,4 +1,4 @@
-// Stage 10: lines and edges drawn over a finished image.
+// Implements stage 10, which draws lines and edges over a finished image.
 #pragma once
 
 #include "raster/overlay/edges.h"
