@@ -1,4 +1,4 @@
-// The statistics of a rendering: times, memory, culled primitives and approximations.
+// Collects the statistics of a rendering: times, memory, culled primitives and approximations.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -14,7 +14,7 @@ struct Control;
 
 namespace duet::raster {
 
-/// The statistics that are accumulated during a rendering.
+/// Accumulates the statistics during a rendering. Several threads may add to the atomic members.
 struct Account {
     double transform = 0, setup = 0, bin = 0, prepass = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
     std::atomic<std::int64_t> cover_work{0}, shade_work{0};           ///< nanoseconds, summed over threads

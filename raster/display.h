@@ -1,5 +1,5 @@
-// The last stages for images that go directly to a display or a shadow map: one sample per pixel, and each tile is
-// completed while it is in the cache.
+// Implements the last stages for images that go directly to a display or a shadow map. They have one sample per
+// pixel, and each tile is completed while it is in the cache.
 #pragma once
 
 #include "raster/prepare.h"

@@ -1,5 +1,5 @@
-// SIMD helpers of the rasterizer. It processes packets of 16 samples in batches as wide as the CPU supports
-// (common/vec/simd.h).
+// Implements the rasterizer's SIMD helpers. The rasterizer processes packets of 16 samples in batches as wide as the
+// CPU supports (common/vec/simd.h).
 #pragma once
 
 #include "common/vec/simd.h"
@@ -19,7 +19,7 @@ using Floats = xsimd::batch<float>;
 using Ints = xsimd::batch<std::int32_t>;
 using Doubles = xsimd::batch<double>;
 
-/// The number of samples in a packet: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
+/// A packet has 16 samples: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
 inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
 static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 
@@ -29,7 +29,7 @@ inline void prefetch(const void* address) {
     asm volatile(""); // else GCC considers functions that only prefetch empty and removes calls to them
 }
 
-/// One value per sample of a packet. It is uninitialized, because clearing takes longer than some of the
+/// Stores one value per sample of a packet. It is uninitialized, because clearing takes longer than some of the
 /// computations.
 template <typename T> struct alignas(64) StripOf {
     std::array<T, kStrip> v;
@@ -340,21 +340,21 @@ inline Floats gather(const float* from, const Ints& places) {
 /// Truncates towards zero.
 inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
 
-/// The index of each sample of a packet.
+/// The constant holds the index of each sample of a packet.
 inline const StripOf<std::int32_t> kLanes = [] {
     StripOf<std::int32_t> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
     return result;
 }();
 
-/// The sample indices as floats.
+/// The constant holds the sample indices as floats.
 inline const StripOf<float> kLanesAsFloats = [] {
     StripOf<float> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<float>(i);
     return result;
 }();
 
-/// The lane indices as doubles.
+/// The constant holds the lane indices as doubles.
 inline const Doubles kLanesAsDoubles = [] {
     alignas(64) std::array<double, Doubles::size> result;
     for (std::size_t i = 0; i < Doubles::size; ++i) result[i] = static_cast<double>(i);

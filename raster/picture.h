@@ -1,4 +1,4 @@
-// Stage 9: resolve. It averages samples into pixels.
+// Implements stage 9, resolve, which averages samples into pixels.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -9,12 +9,12 @@
 
 namespace duet::raster {
 
-/// The image and the requested auxiliary images (AOVs), each pixel the mean of its samples. Threads may add
-/// different tiles concurrently. The samples of a pixel are added in order, so the sums are the same for any number
-/// of threads.
+/// Accumulates the image and the requested auxiliary images (AOVs). Each pixel is the mean of its samples. Threads
+/// may add different tiles concurrently. The samples of a pixel are added in order, so the sums are the same for any
+/// number of threads.
 class Picture {
 public:
-    /// `many`: several samples per pixel may be added; otherwise at most one.
+    /// `many` allows several samples per pixel; otherwise at most one may be added.
     Picture(const View& view, const Settings& settings, bool many);
 
     /// Adds one sample of a pixel, or `count` equal ones: first its auxiliary values, then its radiance. A radiance

@@ -54,7 +54,7 @@ std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
     const RgbSlot& slot = texture_slot(material);
-    // The colors of metal may come from a table.
+    // Metal is excluded, because its colors may come from a table.
     if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt;
     const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
     const bool filtered =
@@ -115,7 +115,7 @@ void choose_lamps(PreparedData& data) {
     std::sort(data.lamps.begin(), data.lamps.end());
 }
 
-/// Computes what rough metal and frosted glass need of the environment, so that the first frame is not delayed.
+/// Prefilters the environment for rough metal and frosted glass, so that the first frame is not delayed.
 void prepare_glossy(const Settings& settings, PreparedData& data) {
     const SceneNeeds& needs = data.scene.needs;
     const bool mirrors =

@@ -1,4 +1,4 @@
-// The data that the rasterizer computes once per scene, for any number of views.
+// Defines the data that the rasterizer computes once per scene, for any number of views.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -32,12 +32,12 @@ struct PreparedData {
     std::vector<PreparedObject> objects;  ///< parallel to Scene::objects
     std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
     std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order
-    /// The alpha-masked and alpha-blended objects, which are not in the two lists above
+    /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above
     /// (raster/visibility/layers.h).
     std::vector<std::uint32_t> open_polygonal{}, open_spheres{};
-    /// Those of `polygonal` and `spheres` that are all glass, in order (raster/screen/glass.h).
+    /// The list holds those of `polygonal` and `spheres` that are all glass, in order (raster/screen/glass.h).
     std::vector<std::uint32_t> glass{};
-    /// Indices of the strongest area lights, in order: reflections include them even off-screen.
+    /// The list holds the indices of the strongest area lights, in order. Reflections include them even off-screen.
     std::vector<std::size_t> lamps{};
     std::size_t unmirrored_lamps = 0;     ///< number of the other area lights
     std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
@@ -45,7 +45,8 @@ struct PreparedData {
     std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
     std::vector<Texels> texels{};         ///< one per image
     Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong
-    /// Emissive surfaces that are not lights: moving objects, non-uniformly scaled spheres.
+    /// It is true if the scene has emissive surfaces that are not lights: moving objects, or non-uniformly scaled
+    /// spheres.
     bool unsampled_emitters = false;
     std::int64_t memory_bytes = 0;
     std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none

@@ -1,4 +1,4 @@
-// raster SCENE -o OUT: renders a scene by rasterization.
+// Implements the program `raster SCENE -o OUT`, which renders a scene by rasterization.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "raster/render.h"

@@ -51,7 +51,7 @@ std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraM
                        (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
 
-/// The state that all passes of a rendering share.
+/// Holds the state that all passes of a rendering share.
 struct Frame {
     const PreparedData& data;
     const Settings& settings;

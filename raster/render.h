@@ -1,4 +1,4 @@
-// The interface of the rasterizer: prepare() a scene once, then render() any number of views.
+// Defines the interface of the rasterizer: prepare() is called once per scene, and render() once per view.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -31,20 +31,20 @@ Shading shading(std::string_view name);
 /// Returns the list of names, "lit, phong … or depth".
 std::string shading_names();
 
-/// The method that estimates the environment's occlusion from screen-space depths
+/// Selects the method that estimates the environment's occlusion from screen-space depths
 /// (raster/screen/ambient_occlusion.h).
 enum class AmbientOcclusion { kNone, kSsao, kGtao };
 /// Returns the method named "none", "ssao" or "gtao". Throws Error for any other name.
 AmbientOcclusion ambient_occlusion(std::string_view name);
 
-/// The light parts that Shading::kLit computes (LightParts in raster/split.h).
+/// Selects the light parts that Shading::kLit computes (LightParts in raster/split.h).
 struct PartSet {
     bool emission = true, direct = true, environment = true, reflection = true;
 
     bool all() const { return emission && direct && environment && reflection; }
 };
 
-/// The output format of a rendering.
+/// Selects the output format of a rendering.
 enum class Output {
     kRadiance, ///< Rendering::radiance and the requested auxiliary images
     kSrgb8,    ///< Rendering::srgb; with one sample per pixel, each is encoded as soon as it is shaded
@@ -55,27 +55,27 @@ struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
     Output output = Output::kRadiance; ///< kNearness uses only one sample per pixel
     bool front_faces_only = false;     ///< cull back faces of all meshes and quads, as real-time renderers do
-    /// Multisampling (raster/visibility/multisample.h): 2, 4, 8 or 16 samples per pixel for coverage and depth,
-    /// shaded once per primitive. 0 turns it off. It requires samples_per_pixel = 1, and uses the lens center and
+    /// Multisampling (raster/visibility/multisample.h) takes 2, 4, 8 or 16 samples per pixel for coverage and depth,
+    /// and shades once per primitive. 0 turns it off. It requires samples_per_pixel = 1, and uses the lens center and
     /// the time the shutter opens.
     int multisamples = 0;
     bool sample_shading = false; ///< with multisamples: shade every sample, i.e. supersample with its pattern
     bool edges = false; ///< draw lines where depth, normals or objects change (raster/overlay/edges.h)
     PartSet parts; ///< turn parts off to examine the others or to measure their cost
     bool shadows = true; ///< Shading::kLit: use shadow maps; prepare() must be called with this setting as well
-    /// Texels per side of a shadow map, in [64, 8192]. Each face of a cube map has half as many, and an area
-    /// light's map a quarter. Maps are smaller if all of them would take too much memory.
+    /// A shadow map has this many texels per side, in [64, 8192]. Each face of a cube map has half as many, and an
+    /// area light's map a quarter. Maps are smaller if all of them would take too much memory.
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
     AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: on diffuse surfaces
-    /// The maximum distance of occluders of the environment, in meters. 0: half (for SSAO: an eighth) of the
-    /// minimum of the scene's diagonal and the distance from the camera's eye to its look-at point.
+    /// Occluders of the environment are at most this far away, in meters. 0 stands for half (with SSAO an eighth) of
+    /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point.
     double occlusion_radius = 0;
     bool prefiltered_environment = true; ///< Shading::kLit: rough metal reflects a blurred environment, not a sharp one
     bool screen_reflections = true;  ///< Shading::kLit: smooth and moderately rough metal has screen-space reflections
     bool screen_refractions = true;  ///< Shading::kLit: glass has screen-space refractions
     bool transformed_cosines = true; ///< Shading::kLit: area lights on rough metal by LTCs; off: from their centers
-    /// Light surfaces with the environment and show it as the background. Off: only area, point, spot and sun
+    /// The environment lights surfaces and is the background. If it is off, there are only area, point, spot and sun
     /// lights.
     bool environment =
         true;
@@ -84,7 +84,7 @@ struct Settings : RenderSettings {
 struct PreparedData; // raster/prepare.h
 class Program;       // raster/shader/strip_shader.h
 
-/// The data computed once per scene, for any number of views. It refers to the scene, which must outlive it.
+/// Holds the data computed once per scene, for any number of views. It refers to the scene, which must outlive it.
 class Prepared {
 public:
     explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}

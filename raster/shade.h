@@ -1,4 +1,4 @@
-// Stage 8: shades a Hit with the shared surface point, materials and lights.
+// Implements stage 8, which shades a Hit with the shared surface point, materials and lights.
 #pragma once
 
 #include "raster/prepare.h"
@@ -7,7 +7,7 @@
 
 namespace duet::raster {
 
-/// The contributions of one sample to the image and to the auxiliary images.
+/// Holds the contributions of one sample to the image and to the auxiliary images.
 struct Shaded {
     Rgb radiance;
     Vec3 normal; ///< shading normal on the viewer's side

@@ -1,4 +1,4 @@
-// The rasterizer's shading for hits found by the caller, with the light split into parts, for analysis.
+// Declares the rasterizer's shading for hits found by the caller. The light is split into parts, for analysis.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -8,12 +8,13 @@ namespace duet::raster {
 
 class Screen; // raster/screen/screen.h
 
-/// Radiance towards the viewer as Shading::kLit approximates it. The parts sum to the color of the image. A part
-/// that Settings::parts turns off is black.
+/// Holds the radiance towards the viewer as Shading::kLit approximates it. The parts sum to the color of the image. A
+/// part that Settings::parts turns off is black.
 struct LightParts {
     Rgb emission;    ///< directly visible emissive surfaces, and the environment as the background
     Rgb direct;      ///< from Scene::lights, reflected by diffuse surfaces and rough metal
-    /// From the environment, reflected by diffuse surfaces; occlusion is estimated if there is a screen.
+    /// This part is light from the environment that diffuse surfaces reflect. Its occlusion is estimated if a
+    /// G-buffer is given.
     Rgb environment;
     Rgb reflection;  ///< from metal and glass: area lights, the environment, and the image if there is a screen
     Rgb shadowed;    ///< not included in the sum: the direct light that the shadow maps block
@@ -21,8 +22,8 @@ struct LightParts {
     Rgb sum() const { return emission + direct + environment + reflection; }
 };
 
-/// Shades the hit of `ray`, whose direction must be unit; a miss gives the background. `footprint` is that of the
-/// ray at the hit; null: textures are not filtered.
+/// Shades the hit of `ray`, whose direction must be unit. A miss gives the background. `footprint` is that of the ray
+/// at the hit. If it is null, textures are not filtered.
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
                      const RayFootprint* footprint = nullptr, const Screen* screen = nullptr);
 /// Shades a surface point with a BSDF that the caller has computed. `to_viewer` is unit, in world space.

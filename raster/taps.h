@@ -1,10 +1,10 @@
-// The subset of an effect's sampling points that one sample uses.
+// Defines the subset of an effect's sampling points that one sample uses.
 #pragma once
 
 namespace duet::raster {
 
-/// The range in a fixed set of points on a light that a receiver uses: all of them, or one of four blocks if a
-/// pixel has several samples that share the work.
+/// Selects from a fixed set of points on a light those that a receiver samples: all of them, or one of four blocks if
+/// a pixel has several samples that share the work.
 struct TapRange {
     static constexpr int kBlocks = 4, kBlock = 16;
     int first = 0, count = kBlocks * kBlock;
