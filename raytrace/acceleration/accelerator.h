@@ -10,9 +10,9 @@
 
 namespace duet::raytrace {
 
-/// A two-level acceleration structure. The top-level BVH holds the primitives of all static, untransformed objects
-/// and the bounds of instances. Each instanced shape has a bottom-level BVH in its object space. The accelerator
-/// refers to the scene, which must outlive it.
+/// Builds and queries a two-level acceleration structure. The top-level BVH holds the primitives of all static,
+/// untransformed objects and the bounds of instances. Each instanced shape has a bottom-level BVH in its object
+/// space. The accelerator refers to the scene, which must outlive it.
 class Accelerator {
 public:
     /// Builds all hierarchies. `threads` is the number of build threads (0 = all); the result does not depend on it.
@@ -40,7 +40,7 @@ public:
     /// at the end of a shadow ray does not occlude itself. An `end` without an object is only a distance.
     bool occluded(const Ray& ray, const Hit& end) const;
 
-    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene: instances count separately
+    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene, counting each instance's
     std::int64_t memory_bytes() const;
     HierarchyStatistics statistics() const;
     const Bvh& world() const { return world_; }

@@ -13,19 +13,19 @@
 
 namespace duet::raytrace {
 
-/// The kind of a leaf's primitives. All primitives of a leaf are of one kind, so that the leaf loop runs only one
-/// intersection test.
+/// Names the kind of a leaf's primitives. All primitives of a leaf are of one kind, so that the leaf loop runs only
+/// one intersection test.
 enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance };
 
 // Primitives are stored in leaf order with everything that their intersection test needs, so that a leaf reads
 // consecutive memory. `object` and `primitive` are the indices that a Hit reports. In the hierarchy of an instanced
 // shape, hits report the instance's object instead of `object`.
 
-/// The number of primitives that are tested at once with SIMD.
+/// This is the number of primitives that are tested at once with SIMD.
 inline constexpr std::size_t kBlockSize = kSimdLanes;
 template <typename T> using BlockLanes = std::array<T, kBlockSize>;
 
-/// A block of triangles or quads in structure-of-arrays layout. Unused lanes hold NaN, which no ray hits.
+/// Stores a block of triangles or quads in structure-of-arrays layout. Unused lanes hold NaN, which no ray hits.
 template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) PolygonBlock {
     std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< [corner][axis][lane]
     BlockLanes<std::uint32_t> object, primitive;
@@ -47,8 +47,8 @@ template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) Polyg
 using TriangleBlock = PolygonBlock<3>;
 using QuadBlock = PolygonBlock<4>;
 
-/// A block of spheres in structure-of-arrays layout. A sphere is the only primitive of its object, so its primitive
-/// index is 0. Unused lanes hold NaN, which no ray hits.
+/// Stores a block of spheres in structure-of-arrays layout. A sphere is the only primitive of its object, so its
+/// primitive index is 0. Unused lanes hold NaN, which no ray hits.
 struct alignas(kSimdLanes * sizeof(float)) SphereBlock {
     std::array<BlockLanes<float>, 3> center;
     BlockLanes<float> radius;
@@ -67,8 +67,8 @@ struct BvhInstance {
     std::uint32_t object, shape; ///< indices into Scene::objects and Scene::shapes
 };
 
-/// A reference to a child of a node or to the root: an inner node, or a leaf of primitives of one kind. It has no
-/// member initializers, because a traversal stack is an array of these and must not be cleared for each ray.
+/// Refers to a child of a node or to the root: an inner node, or a leaf of primitives of one kind. It has no member
+/// initializers, because a traversal stack is an array of these and must not be cleared for each ray.
 class BvhRef {
 public:
     /// Indices of nodes (in units of kNodeUnit bytes) and of elements in each kind's list are below this.
@@ -96,8 +96,8 @@ private:
     std::uint32_t bits_;
 };
 
-/// A wide node with the boxes of up to kWidth children. Each of their six planes has an array of its own, so that
-/// one SIMD instruction tests a plane of all children against a ray. Children are packed at the front. Unused
+/// Stores a wide node with the boxes of up to kWidth children. Each of their six planes has an array of its own, so
+/// that one SIMD instruction tests a plane of all children against a ray. Children are packed at the front. Unused
 /// children have empty boxes, which no ray hits.
 struct alignas(32) BvhNode {
     static constexpr std::size_t kWidth = kSimdLanes;
@@ -117,16 +117,16 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 }
 
 struct Bvh {
-    /// The greatest depth of a leaf below the root. It bounds the size of a traversal stack.
+    /// This is the greatest depth of a leaf below the root. It bounds the size of a traversal stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< the most primitives in a leaf
+    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< most primitives
 
     Box3 bounds;
     std::size_t references = 0; ///< primitives in leaves; a primitive cut by spatial splits counts once per leaf
-    /// Leaves that together hold all primitives, if a single ray tests them faster than it traverses the tree.
+    /// These leaves together hold all primitives, if a single ray tests them faster than it traverses the tree.
     std::vector<BvhRef> list;
-    /// The nodes of the tree; nodes[0] is the root. There are none if there is only one leaf, which is then in
-    /// `list`.
+    /// These are the nodes of the tree, and nodes[0] is the root. There are none if there is only one leaf, which is
+    /// then in `list`.
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<QuadBlock> quads;

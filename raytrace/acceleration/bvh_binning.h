@@ -1,5 +1,5 @@
-// The builders of binary trees share this code: it sorts sets of items into bins and evaluates the planes between
-// bins.
+// The builders of binary trees share these functions, which sort sets of items into bins and evaluate the planes
+// between bins.
 #pragma once
 
 #include "common/system/parallel.h"
@@ -13,13 +13,13 @@
 namespace duet::raytrace {
 
 inline constexpr std::size_t kMaxBins = 32;
-// The SAH cost of one traversal step, relative to the test of one leaf block.
+// This is the SAH cost of one traversal step, relative to the test of one leaf block.
 inline constexpr float kStepCost = 1;
 // From this depth on, sets are halved by count, so that no input makes the tree deeper by more than log2(2³²)
 // levels.
 inline constexpr int kSahDepth = Bvh::kMaxDepth - 40;
-// The chunk size, in items, of parallel binning and partitioning. Sets of at most two chunks are processed by one
-// thread.
+// This is the chunk size, in items, of parallel binning and partitioning. Sets of at most two chunks are processed
+// by one thread.
 inline constexpr std::size_t kChunk = std::size_t{1} << 15;
 
 using Items = std::span<BuildItem>;
@@ -36,7 +36,7 @@ static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float)
 // Returns twice the center of the box, which saves a multiplication.
 inline Four doubled_center(const BuildItem& item) { return low_corner(item) + high_corner(item); }
 
-// The bounds of a set of items, and the kinds of primitives in it.
+// Summarizes a set of items: their bounds and their kinds of primitives.
 struct Extent {
     Bounds bounds, centers; ///< of the boxes, and of their doubled centers
     unsigned kinds = 0;     ///< bit mask of the kinds that occur
@@ -180,7 +180,7 @@ inline std::optional<Split> best_split(const Bins& bins, const Binning& binning,
 // box test is cheap in comparison.
 inline std::size_t largest_leaf(PrimitiveKind kind) { return kind == PrimitiveKind::kInstance ? 1 : Bvh::kMaxLeaf; }
 
-// A partitioned set of items: the items of the left half come first.
+// Describes a partitioned set of items, in which those of the left half come first.
 struct Halves {
     std::size_t left_count = 0;
     Extent left, right;

@@ -1,5 +1,5 @@
-// SIMD tests of rays against the polygons of a leaf. The results are bit-equal to those of intersect_triangle and
-// intersect_quad.
+// These classes test rays against the polygons of a leaf with SIMD. The results are bit-equal to those of
+// intersect_triangle and intersect_quad.
 #pragma once
 
 #include "common/geometry/quad.h"

@@ -9,7 +9,7 @@
 
 namespace duet::raytrace {
 
-/// A box with x, y, z and one unused lane. It is empty when constructed.
+/// Stores a box with x, y, z and one unused lane. It is empty when constructed.
 struct Bounds {
     using Four = FloatBatch<4>;
     Four low = Four(kInfinity), high = Four(-kInfinity);

@@ -52,8 +52,8 @@ Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const Goes
     return halves;
 }
 
-// A subtree of at most `job_size` items. The builder leaves a placeholder node for it, so that several threads can
-// build these subtrees at once.
+// Describes a subtree of at most `job_size` items. The builder leaves a placeholder node for it, so that several
+// threads can build these subtrees at once.
 struct Job {
     std::size_t node;
     std::size_t first, count;

@@ -10,16 +10,16 @@
 
 namespace duet::raytrace {
 
-/// A primitive as the builder sees it. `index` is its position in the list of its kind.
+/// Describes a primitive to the builder. `index` is its position in the list of its kind.
 struct BuildItem {
-    Box3 box; ///< finite
+    Box3 box; ///< must be finite
     std::uint32_t index;
     PrimitiveKind kind;
 };
 using BuildItems = std::vector<BuildItem, HugePageAllocator<BuildItem>>;
 
-/// A node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most Bvh::kMaxLeaf; an
-/// inner node has two children.
+/// Stores a node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most
+/// Bvh::kMaxLeaf; an inner node has two children.
 struct BinaryNode {
     Box3 box;
     std::uint32_t first = 0, count = 0; ///< count is 0 in an inner node
@@ -52,17 +52,18 @@ using DropTwins = std::function<std::size_t(std::span<BuildItem>)>;
 /// none. Throws Error for more than 2³¹ items.
 BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins = {});
 
-/// The items [first, first + count) of one leaf, and the element of their kind's list that they fill.
+/// Names the items [first, first + count) of one leaf, and the element of their kind's list that they fill.
 struct LeafItems {
     std::uint32_t first, count, element;
 };
 
-/// A packed hierarchy whose blocks of primitives and instances are still to be filled. Each leaf has one.
+/// Holds a packed hierarchy whose blocks of primitives and instances are still to be filled, one block or instance
+/// per leaf.
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
-    /// The expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH. The
-    /// collapse minimizes node_cost.
+    /// These are the expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH.
+    /// The collapse minimizes node_cost.
     float node_cost = 0, leaf_cost = 0;
     std::array<std::size_t, 4> elements{}; ///< number of elements in each kind's list
 };

@@ -9,7 +9,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// A table of the cheapest ways to represent each binary subtree by a forest of at most n wide subtrees. Dynamic
+// Tabulates the cheapest ways to represent each binary subtree by a forest of at most n wide subtrees. Dynamic
 // programming fills it from the leaves up. The cost of a wide node is its relative area, which is the probability
 // that a ray enters it. The leaves are given, and their own cost is the same for every forest.
 class Forests {
@@ -24,7 +24,7 @@ public:
         visit(0, kTop);
     }
 
-    /// The costs of the whole tree; see Collapsed.
+    /// Return the costs of the whole tree; see Collapsed.
     float node_cost() const { return forests_[0].cost[0]; }
     float leaf_cost() const { return forests_[0].leaves; }
 
@@ -44,7 +44,7 @@ private:
     static constexpr float kHidden = 0.1f;
 
     struct Forest {
-        std::array<float, kMost> cost; // cost[n - 1]: as at most n wide subtrees
+        std::array<float, kMost> cost; // cost[n - 1] is the cost as at most n wide subtrees
         float leaves;                  // sum of the leaves' relative areas
     };
 
@@ -74,7 +74,7 @@ private:
             forest.cost[n - 1] = min(forest.cost[n - 2], share(left, right, n).cost);
     }
 
-    // The best division of n wide subtrees among two children, of which the left child gets `left`.
+    // Describes the best division of n wide subtrees among two children, of which the left child gets `left`.
     struct Share {
         float cost;
         std::size_t left;
@@ -107,7 +107,7 @@ private:
 
     const BinaryTree& tree_;
     RelativeArea area_;
-    std::vector<Forest> forests_; // by node
+    std::vector<Forest> forests_; // indexed by node
 };
 
 class Collapser {
@@ -155,7 +155,7 @@ private:
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
-            const BvhRef child = ref(children[i]); // may reallocate bvh_.nodes
+            const BvhRef child = ref(children[i]); // this may reallocate bvh_.nodes
             bvh_.nodes[packed].children[i] = child;
         }
         return packed;

@@ -7,8 +7,8 @@ namespace duet::raytrace {
 
 namespace {
 
-// The effort spent on moving nodes (reinsertion). The default quality moves only a few nodes, because most of the
-// gain is near the root: a few large, badly placed subtrees (a room's walls among its furniture, overlapping
+// Limits the effort spent on moving nodes (reinsertion). The default quality moves only a few nodes, because most of
+// the gain is near the root: a few large, badly placed subtrees (a room's walls among its furniture, overlapping
 // objects) slow down every ray.
 struct Effort {
     std::size_t one_in; // the 1/one_in of all nodes with the largest areas are tried

@@ -6,16 +6,16 @@
 
 namespace duet::raytrace {
 
-/// A packed hierarchy and the items that its leaves refer to. With spatial splits, several items may have the same
-/// index.
+/// Holds a packed hierarchy and the items that its leaves refer to. With spatial splits, several items may have the
+/// same index.
 struct Hierarchy {
     BuildItems items;
     Collapsed collapsed;
 };
 
-/// The functions by which a builder queries the primitives of items.
+/// Holds the functions by which a builder queries the primitives of items.
 struct Primitives {
-    OutlineOf outline_of; ///< for spatial splits
+    OutlineOf outline_of; ///< used by spatial splits
     DropTwins drop_twins;
 };
 

@@ -93,8 +93,8 @@ private:
     std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
-    std::optional<ShearedRay> sheared_; // for polygons
-    std::optional<SphereRay> sphere_ray_; // for spheres
+    std::optional<ShearedRay> sheared_; // used for polygons
+    std::optional<SphereRay> sphere_ray_; // used for spheres
     std::uint32_t object_;
     const Instance& instance_;
     bool found_ = false;

@@ -13,7 +13,7 @@ namespace {
 // or within a tenth of it. Only their ratios matter.
 constexpr double kStep = 25;                       // tests of a node's boxes
 constexpr double kLeafVisit = 12;                  // mostly a mispredicted branch
-constexpr std::array kBlockTest{10.0, 22.0, 12.0}; // by PrimitiveKind
+constexpr std::array kBlockTest{10.0, 22.0, 12.0}; // indexed by PrimitiveKind
 
 constexpr std::size_t number(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
 // Scenes with more items never get a list.

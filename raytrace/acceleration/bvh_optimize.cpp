@@ -16,7 +16,7 @@ Bounds merge(Bounds a, const Bounds& b) {
     return a;
 }
 
-// A binary tree with links to parents. Areas are relative to the root's. The root remains node 0.
+// Adds links to parents to a binary tree. to parents. Areas are relative to the root's. The root remains node 0.
 class LinkedTree {
 public:
     explicit LinkedTree(std::vector<BinaryNode>& nodes)

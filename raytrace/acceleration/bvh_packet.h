@@ -8,8 +8,8 @@
 
 namespace duet::raytrace {
 
-/// The corners of a block's polygons. With kRelative they are differences from the origin that all rays share,
-/// computed once for all rays.
+/// Provides the corners of a block's polygons. With kRelative they are differences from the origin that all rays
+/// share, computed once for all rays.
 template <std::size_t kCorners, bool kRelative> class BlockCorners {
 public:
     using Batch = RayPacket::Batch;
@@ -46,7 +46,7 @@ private:
     const std::array<Axes, kCorners>& corners_;
 };
 
-/// The instance test of a hierarchy without instances.
+/// Replaces the instance tests in a hierarchy without instances.
 struct NoInstances {
     auto operator()(const Ray&) const {
         return [](const BvhInstance&, Hit&) { return false; };
@@ -86,10 +86,10 @@ private:
     // This many active rays or more are all tested against one sphere at a time. Fewer are each tested against a
     // whole block of spheres.
     static constexpr int kSomeRays = 3;
-    // The number of rays that are tested together against a block. Each takes kBlockSize lanes.
+    // This is the number of rays that are tested together against a block. Each takes kBlockSize lanes.
     static constexpr std::size_t kShares = kSize / kBlockSize;
 
-    // A child on the traversal stack, with the distance at which each ray enters its box.
+    // Stores a child on the traversal stack, with the distance at which each ray enters its box.
     struct Waiting {
         alignas(sizeof(Batch)) RayPacket::Values entry; // infinity for rays that miss the box
         float nearest;
@@ -272,8 +272,7 @@ private:
             consider(block, lane, ray, {t[ray], u[ray], v[ray]});
         }
     }
-    // Computes the hit distance, which is all that is missing, of rays that start close to a polygon because they
-    // leave it.
+    // Computes the missing hit distance of rays that start close to a polygon. Most of these rays leave it.
     template <std::size_t kCorners>
     [[gnu::noinline]] void consider_touched(unsigned rays, const PolygonBlock<kCorners>& block, std::size_t lane,
                                             const CandidateTest<Batch>& test) {

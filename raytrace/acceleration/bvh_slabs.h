@@ -9,10 +9,10 @@
 
 namespace duet::raytrace {
 
-/// The error bounds that make box tests conservative: slab distances are lower and upper bounds of the distances
-/// that the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion
-/// to the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance
-/// has 6 more, and the fused form plane·(1/d) − origin·(1/d) adds another of each; this bound has room for 16.)
+/// These error bounds make box tests conservative: slab distances are lower and upper bounds of the distances that
+/// the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion to
+/// the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance has 6
+/// more, and the fused form plane·(1/d) − origin·(1/d) adds another of each; this bound has room for 16.)
 struct SlabError {
     /// Returns the margin of box tests, relative to the sizes of the coordinates.
     static float relative() { return sabotaged(Guard::kEnlargedBoxes) ? 0.0f : 0x1p-20f; }
@@ -27,8 +27,8 @@ struct SlabError {
     }
 };
 
-/// The slabs of one axis as a ray intersects them: it enters a slab through a plane at plane·scale + near or later,
-/// and leaves it through a plane at plane·scale + far or earlier. B has one lane per axis or one per ray.
+/// Holds the slabs of one axis as a ray intersects them: it enters a slab through a plane at plane·scale + near or
+/// later, and leaves it through a plane at plane·scale + far or earlier. B has one lane per axis or one per ray.
 template <typename B> struct Slabs {
     B scale, near, far;
 
@@ -52,7 +52,7 @@ template <typename B> struct Slabs {
     }
 };
 
-/// A ray prepared for box tests.
+/// Prepares a ray for box tests.
 class SlabRay {
 public:
     using Batch = FloatBatch<BvhNode::kWidth>;
@@ -78,8 +78,8 @@ public:
         }
     }
 
-    /// The distance at which the ray enters each child's box, and a bit mask of the children that it enters at a
-    /// distance in [t_min, t_max].
+    /// Holds the distance at which the ray enters each child's box, and a bit mask of the children that it enters at
+    /// a distance in [t_min, t_max].
     struct Entered {
         Batch distance;
         unsigned children;

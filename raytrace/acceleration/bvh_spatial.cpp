@@ -62,7 +62,8 @@ namespace {
 // the root's area. (Stich et al., §4.5, use 1e-5, which takes longer and gains nothing here.)
 constexpr float kLeastOverlap = 1e-4f;
 
-// A set of items to build a subtree over. `room` is the number of additional items that spatial splits may add.
+// Holds a set of items to build a subtree over. `room` is the number of additional items that spatial splits may
+// add.
 struct Task {
     std::size_t node;
     BuildItems items;

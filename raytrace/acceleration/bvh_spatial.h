@@ -9,8 +9,8 @@
 
 namespace duet::raytrace {
 
-/// The corners of a surface that fills their convex hull: 3 for a triangle, 4 for a quad, in order. `count` is 0 for
-/// a primitive that must not be cut.
+/// Holds the corners of a surface that fills their convex hull: 3 for a triangle, 4 for a quad, in order. `count` is
+/// 0 for a primitive that must not be cut.
 struct Outline {
     std::array<Vec3, 4> corners;
     std::size_t count = 0;

@@ -61,7 +61,7 @@ public:
         std::optional<Split> best;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
-            std::array<Bin, kMaxBins> right; // bin i and all after it
+            std::array<Bin, kMaxBins> right; // right[i] is bin i and all after it
             right[count_ - 1] = bins_[axis][count_ - 1];
             for (std::size_t i = count_ - 1; i-- > 1;) {
                 right[i] = right[i + 1];

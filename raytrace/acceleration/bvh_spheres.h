@@ -1,4 +1,5 @@
-// SIMD tests of rays against the spheres of a leaf. The results are bit-equal to those of intersect_sphere.
+// These classes test rays against the spheres of a leaf with SIMD. The results are bit-equal to those of
+// intersect_sphere.
 #pragma once
 
 #include "common/geometry/sphere.h"
@@ -11,7 +12,7 @@
 
 namespace duet::raytrace {
 
-/// A ray prepared for sphere tests.
+/// Prepares a ray for sphere tests.
 struct SphereRay {
     const Ray& ray;
     Vec3d origin;
@@ -74,7 +75,7 @@ private:
     alignas(32) BlockLanes<float> t_;
 };
 
-/// The lines of N rays, one ray per lane: origin x, y, z, then direction x, y, z.
+/// Holds the lines of N rays, one ray per lane: origin x, y, z, then direction x, y, z.
 template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
 
 /// Returns 1 / d·d for the direction d of a line, as may_meet needs it. It is NaN where a square may underflow or

@@ -13,14 +13,14 @@ namespace duet::raytrace {
 
 namespace {
 
-// The most nodes of a streamable hierarchy. No ray visits a node twice, so lists with room for this many nodes times
-// the rays of a stream hold all possible pairs.
+// A streamable hierarchy has at most this many nodes. No ray visits a node twice, so lists with room for this many
+// nodes times the rays of a stream hold all possible pairs.
 constexpr std::size_t kMostNodes = 64;
-// The most leaves that a ray may be expected to visit in a streamable hierarchy. A single ray skips what lies behind
-// its closest hit, but a stream does not, and so it loses where rays visit many leaves. Measurements: clouds of 100
-// to 2,000 spheres of 0.02 to 0.4 of the cloud's side, with and without a ground, Zen 5, rays from the spheres'
-// surfaces. The time of a stream relative to single rays was 0.5 to 0.6 up to 4 expected leaves, 0.65 to 0.85 from 4
-// to 10, 0.8 to 1.2 from 10 to 18, and 1.0 to 1.4 beyond. (models/spheres.json has 2 expected leaves.)
+// A ray may be expected to visit at most this many leaves of a streamable hierarchy. A single ray skips what lies
+// behind its closest hit, but a stream does not, and so it loses where rays visit many leaves. Measurements: clouds
+// of 100 to 2,000 spheres of 0.02 to 0.4 of the cloud's side, with and without a ground, Zen 5, rays from the
+// spheres' surfaces. The time of a stream relative to single rays was 0.5 to 0.6 up to 4 expected leaves, 0.65 to
+// 0.85 from 4 to 10, 0.8 to 1.2 from 10 to 18, and 1.0 to 1.4 beyond. (models/spheres.json has 2 expected leaves.)
 constexpr double kMostLeaves = 10;
 
 // Returns how many leaves below `ref` a ray is expected to visit if it enters its box of half area `area`, by the
@@ -48,7 +48,7 @@ double expected_leaves(const Bvh& bvh) {
     return expected_leaves(bvh, BvhRef::node(0), static_cast<double>((inner.empty() ? bvh.bounds : inner).half_area()));
 }
 
-/// Pairs of the index of a ray and the index of what it is to be tested against.
+/// Stores pairs of the index of a ray and the index of what it is to be tested against.
 template <std::size_t kMost> class StreamPairs {
 public:
     static constexpr std::size_t kLanes = kSimdLanes;
@@ -100,11 +100,11 @@ private:
     std::size_t size_ = 0;
 };
 
-/// The slabs of up to kMost rays in structure-of-arrays layout; see SlabRay.
+/// Holds the slabs of up to kMost rays in structure-of-arrays layout; see SlabRay.
 template <std::size_t kMost> class SlabRays {
 public:
     using Batch = SlabRay::Batch;
-    static constexpr std::size_t kLanes = BvhNode::kWidth; // of a node's children, and of rays
+    static constexpr std::size_t kLanes = BvhNode::kWidth; // number of a node's children, and of the rays set at once
 
     /// Sets the slabs of the rays from index `first` on, one ray per lane. Returns a bit mask of those that are
     /// `traceable`.

@@ -39,9 +39,9 @@ inline bool traceable(const Ray& ray) {
     return in_range(ray.origin) && in_range(ray.direction) && max_component(abs(ray.direction)) >= 1 / kLargestNumber;
 }
 
-/// A child on the traversal stack: the distance at which the ray enters its box, and the reference to it. Both are
-/// in one integer, so that a stack is written and sorted at least cost: floats that are not negative have the same
-/// order as their bits.
+/// Stores a child on the traversal stack: the distance at which the ray enters its box, and the reference to it.
+/// Both are in one integer, so that a stack is written and sorted at least cost: floats that are not negative have
+/// the same order as their bits.
 class Waiting {
 public:
     Waiting() = default; // not initialized, because that would clear a stack for each ray

@@ -118,9 +118,10 @@ Outline Gatherer::outline(const BuildItem& item) const {
     return {};
 }
 
-// Primitives with bit-equal corners, or spheres with bit-equal center and radius, are hit at exactly the same
-// distance, where the lowest (object, primitive) wins; that is the one with the lowest index here. A hash table
-// finds them in one pass. Instances are never duplicates, because they may move.
+// Moves one primitive of each set of duplicates to the front, and returns the number of these. Primitives with
+// bit-equal corners, or spheres with bit-equal center and radius, are hit at exactly the same distance, where the
+// lowest (object, primitive) wins; that is the one with the lowest index here. A hash table finds duplicates in one
+// pass. Instances are never duplicates, because they may move.
 std::size_t Gatherer::first_of_twins(std::span<BuildItem> items) const {
     constexpr std::uint32_t kFree = ~0u;
     std::vector<std::uint32_t> seats(std::bit_ceil(2 * items.size()), kFree); // hash table of indices into `items`

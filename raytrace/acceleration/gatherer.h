@@ -41,8 +41,8 @@ private:
         Sphere sphere;
         std::uint32_t object;
     };
-    /// Everything that decides where a primitive is hit: its kind and the bits of its coordinates, or the index of
-    /// an instance.
+    /// Holds everything that decides where a primitive is hit: its kind and the bits of its coordinates, or the
+    /// index of an instance.
     using Form = std::array<std::uint32_t, 13>;
 
     template <typename Body> void in_chunks(std::size_t count, const Body& body) const;

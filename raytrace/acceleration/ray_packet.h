@@ -7,8 +7,8 @@
 
 namespace duet::raytrace {
 
-/// A packet of as many rays as the widest batch has lanes, such as those of neighboring pixels, prepared for SIMD
-/// tests.
+/// Prepares a packet of as many rays as the widest batch has lanes, such as those of neighboring pixels, prepared
+/// for SIMD tests.
 class RayPacket {
 public:
     static constexpr std::size_t kSize = kMaxSimdLanes;
@@ -46,7 +46,8 @@ public:
         return {near, lane_bits(near <= far)};
     }
 
-    /// The distance at which each ray enters a child's box, and a mask of the rays that enter it before their end.
+    /// Holds the distance at which each ray enters a child's box, and a mask of the rays that enter it before their
+    /// end.
     struct Entering {
         Batch distance;
         Batch::batch_bool_type enters;
@@ -97,7 +98,7 @@ private:
 
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
-    // The range of the reciprocal directions, and that end of the range of origins which makes the bound
+    // Holds the range of the reciprocal directions, and that end of the range of origins which makes the bound
     // conservative.
     struct Interval {
         float low, high, origin;
@@ -193,7 +194,7 @@ private:
     std::array<Interval, 3> near_interval_, far_interval_;
 };
 
-/// The closest hits so far of a packet's rays. t is the ray's end if there is no hit.
+/// Holds the closest hits so far of a packet's rays. t is the ray's end if there is no hit.
 struct PacketHits {
     static constexpr std::size_t kSize = RayPacket::kSize;
     template <typename T> using PerRay = std::array<T, kSize>;
