@@ -89,7 +89,7 @@ void FilmKeeper::keep() {
         const std::unique_lock alone(at_rest_);
         return kept_;
     }();
-    write_film(path_, now); // while other threads continue
+    write_film(path_, now); // other threads continue meanwhile
 }
 
 } // namespace duet::raytrace

@@ -8,7 +8,7 @@
 
 namespace duet::raytrace {
 
-/// A film and the name of its file.
+/// Holds a film and the name of its file.
 struct NamedFilm {
     std::string name;
     KeptFilm kept;

@@ -107,7 +107,7 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    // The batch is so large that few paths are alone at a rare kind of surface, and small enough to stay in the
+    // The batch is so large that few paths are alone at a rare class of surface, and so small that it stays in the
     // cache.
     static constexpr std::size_t kMost = 2048;
     struct Sample {
@@ -181,7 +181,7 @@ bool render_pass(const PassTarget& target, double begin, double end) {
     const Tiles tiles(target.view);
     const CameraModel camera(target.view);
     std::atomic<bool> complete = true;
-    std::mutex mutex; // for the counts and the progress
+    std::mutex mutex; // guards the counts and the progress
     std::size_t finished = 0;
     parallel_for(tiles.count(), target.settings.threads, [&](std::size_t i) {
         if (target.control.stopped()) {

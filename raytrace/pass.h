@@ -11,7 +11,7 @@ namespace duet::raytrace {
 /// Returns the camera ray of pixel (x, y) for the sampler's current sample.
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler);
 
-/// Everything that a pass reads and everything that it adds to.
+/// Holds everything that a pass reads and everything that it adds to.
 struct PassTarget {
     const RenderPlan& plan;
     const View& view;

@@ -1,4 +1,4 @@
-// PlainSurfaces decides which surfaces are plain, which means that paths can be scattered there in SIMD batches.
+// PlainSurfaces decides which surfaces are batched: paths at those of one kind can be scattered together with SIMD.
 // Many scenes consist mostly of such surfaces.
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace duet::raytrace {
 
-/// Plain surfaces have no texture and no emission, do not move, are not transformed, and have a shape and a material
-/// for which there is a batched implementation.
+/// Batched surfaces have no texture and no emission, do not move, are not transformed, and have a shape and a
+/// material for which there is a batched implementation.
 class PlainSurfaces {
 public:
     enum class Form : std::uint8_t {
@@ -40,38 +40,38 @@ public:
         }
     };
 
-    /// Classifies none of the surfaces of this many objects as plain.
+    /// Classifies none of the surfaces of this many objects as batched.
     explicit PlainSurfaces(std::size_t objects) : classes_(objects + 1, kOther) { classes_.back() = kNothing; }
     /// Classifies the surfaces of a scene. `bsdfs` holds the BSDF of each material where it is constant. The scene
     /// and `bsdfs` must outlive this object.
     PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs);
 
-    /// The class of what a ray has hit: the index of a Kind, kOther for other surfaces, or kNothing for a miss.
+    /// This is the class of what
     static constexpr std::size_t kOther = Kind::kCount, kNothing = kOther + 1, kClasses = kNothing + 1;
     std::size_t class_of(const Hit& hit) const {
         // This is mostly without a branch, because the hits of incoherent rays are unpredictable.
         const std::size_t known = classes_[std::min<std::size_t>(hit.object, classes_.size() - 1)];
         return known == kAsMaterial ? class_by_material(hit) : known;
     }
-    /// Returns the kind of the surface at a valid hit, or nothing if it is not plain.
+    /// Returns the kind of the surface at a valid hit, or nothing if it is not batched.
     std::optional<Kind> kind(const Hit& hit) const {
         const std::size_t i = class_of(hit);
         return i < Kind::kCount ? std::optional(Kind::of_index(i)) : std::nullopt;
     }
-    /// These return the shape and the BSDF at a hit on a plain surface.
+    /// These functions return the shape and the BSDF at a hit on a batched surface.
     const Shape& shape(const Hit& hit) const { return *objects_[hit.object].shape; }
     const Bsdf& bsdf(const Hit& hit) const { return *material_at(hit, objects_[hit.object]).bsdf; }
 
 private:
     struct PlainMaterial {
-        const Bsdf* bsdf = nullptr; ///< null if the material is not plain
+        const Bsdf* bsdf = nullptr; ///< null if the material is not batched
         Scattering scattering = Scattering::kMatt;
     };
     struct PlainObject {
         std::optional<Form> form;
         const Shape* shape = nullptr;
-        bool several = false; ///< whether it has several materials
-        PlainMaterial material; ///< the material, if it has only one
+        bool several = false; ///< whether there are several
+        PlainMaterial material; ///< the only material, if there are not several
     };
 
     static PlainMaterial plain(const Scene& scene, std::uint32_t material, const std::optional<Bsdf>& bsdf);
@@ -86,7 +86,7 @@ private:
 
     const Scene* scene_ = nullptr;
     std::vector<std::uint8_t> classes_;  ///< by object; the last element is for a miss
-    std::vector<PlainObject> objects_; ///< by object; empty if no surface is plain
+    std::vector<PlainObject> objects_; ///< by object; empty if no surface is batched
     std::vector<PlainMaterial> materials_;
 };
 

@@ -113,7 +113,7 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
     return list;
 }
 
-/// Paths of up to this many scatterings, the default of Settings::max_depth, count as complete.
+/// A limit of at least this many scatterings, the default of Settings::max_depth, counts as no limit.
 constexpr int kWholePath = 64;
 
 std::vector<std::string> approximations(const RenderPlan& plan, const Settings& settings) {

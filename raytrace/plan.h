@@ -30,11 +30,11 @@ struct RenderPlan {
     bool mirror_light = false;      ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
     bool insides = false; ///< whether a dielectric absorbs or has a priority, so that paths need a medium stack
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
-    PlainSurfaces plain;            ///< surfaces at which paths may be scattered in batches (plain_vertices.h)
+    PlainSurfaces plain;            ///< surfaces at which paths are scattered in batches (plain_vertices.h)
     int max_depth = 0;
     bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
-    float worth = kPlainWorth;      ///< survival probability over throughput; see learned_worth
-    std::optional<PixelFootprint> pixel; ///< of a ray that covers its whole pixel; empty if no texture is filtered
+    float worth = kPlainWorth;      ///< survival probability divided by throughput; see learned_worth
+    std::optional<PixelFootprint> pixel; ///< of a ray that covers a whole pixel; empty if no texture is filtered
     bool lens = false;   ///< whether rays start at points sampled on the lens
     bool motion = false; ///< whether rays have sampled times
 

@@ -15,10 +15,10 @@
 
 namespace duet::raytrace {
 
-/// The version of what the estimators of light (path, naive, direct) converge to. It is part of the name under which
-/// compare bench stores its references. Raise it with every change of that value (a material, a light, a filter, a
-/// corrected bias), but not for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp fails if
-/// it was forgotten.
+/// This is the version of what the estimators of light (path, naive, direct) converge to. It is part of the name
+/// under which compare bench stores its references. Raise it with every change of that value (a material, a light, a
+/// filter, a corrected bias), but not for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp
+/// fails if it was forgotten.
 inline constexpr int kEstimatorVersion = 7;
 
 enum class Integrator {
@@ -28,7 +28,7 @@ enum class Integrator {
     kUnshadowed,  ///< direct light by light sampling without visibility: the rasterizer's quantity
     kLights,      ///< components of path: LightParts::emission and direct, Scene::lights and their shadows
     kEnvironment, ///< component of path: LightParts::environment, the environment's light on diffuse surfaces
-    kReflection,  ///< component of path: LightParts::reflection, light by way of metal and glass at the first hit
+    kReflection,  ///< component of path: LightParts::reflection, light through metal and glass at the first hit
     kNormal,      ///< the shading normal as a color: (n + 1)/2
     kAlbedo,      ///< base colors
 };
@@ -44,10 +44,10 @@ struct Settings : RenderSettings {
     FilterKind filter = FilterKind::kBox;
     int max_depth = 64; ///< most scattering events: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
-    BvhQuality bvh = BvhQuality::kDefault; ///< for prepare(): of the hierarchies; the image does not depend on it
+    BvhQuality bvh = BvhQuality::kDefault; ///< quality of the hierarchies; the image does not depend on it
     bool environment = true; ///< see raster::Settings::environment
     bool adaptive = false; ///< more samples where the error is larger; samples_per_pixel in the mean (schedule.h)
-    std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples: more than 0 for a shard
+    std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples; more than 0 in a shard
     std::filesystem::path film;     ///< file of the film, which is continued if it exists (film_keeper.h); empty: none
     double film_interval = 60;      ///< seconds between two writes of that file
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
@@ -64,7 +64,7 @@ struct Settings : RenderSettings {
 
 struct PreparedData; // raytrace/prepare.h
 
-/// A scene prepared for any number of views. It refers to the scene, which must outlive it.
+/// Holds a scene prepared for any number of views. It refers to the scene, which must outlive it.
 class Prepared {
 public:
     explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}

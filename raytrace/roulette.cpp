@@ -16,15 +16,15 @@ namespace {
 
 constexpr int kSamples = 16;                                            // samples per pixel, in two replicates
 constexpr std::size_t kMostPixels = 2048 / kSamples, kFewestPixels = 512 / kSamples;
-constexpr std::uint64_t kSeed = 0x70756c6c; // of its own, so that no render reuses its samples
-constexpr int kOctaves = 4, kSteps = 3; // of worth: octaves from 1 on, and steps per octave
+constexpr std::uint64_t kSeed = 0x70756c6c; // a seed of its own, so that no render reuses its samples
+constexpr int kOctaves = 4, kSteps = 3; // octaves of the factor from 1 on, and steps per octave
 
-// The record of the paths of one pixel.
+// Records the paths of one pixel.
 struct Pixel {
     std::vector<PathStep> steps;
-    std::array<std::size_t, kSamples> ends{}; // where each path's steps end
+    std::array<std::size_t, kSamples> ends{}; // ends of the paths' steps
     double camera_rays = 0;
-    double mean = 0, variance = 0; // of one sample; the variance is that of stratified samples
+    double mean = 0, variance = 0; // of one sample; the variance takes stratification into account
     double importance = 0;         // weight of its squared error
 };
 
@@ -74,8 +74,8 @@ Product error_and_cost(const Pixel& pixel, double worth) {
     return sum;
 }
 
-// The pixels of a trial, in groups. The differences between the groups show how certain the result of all of them
-// is.
+// Traces the pixels of a trial, in groups. The differences between the groups show how certain the result of all of
+// them is.
 class Trials {
 public:
     Trials(const RenderPlan& plan, const View& view, std::size_t count, int threads) : pixels_(count) {

@@ -9,7 +9,8 @@ namespace duet::raytrace {
 struct PreparedData;
 struct Settings;
 
-/// The default if nothing is known of the scene: a path with a throughput of at least 1/4 continues for certain.
+/// This is the default if nothing is known of the scene: a path with a throughput of at least 1/4 continues for
+/// certain.
 inline constexpr float kPlainWorth = 4;
 
 /// Returns the roulette survival factor: a path survives with a probability of its throughput × this factor, where

@@ -14,8 +14,8 @@ void raise_all(Film& film, std::uint32_t samples) {
         for (int x = 0; x < film.width(); ++x) film.pixels()(x, y).target = film.taken(x, y) + samples;
 }
 
-// The variance of one sample, as it is and divided by (mean² + 0.01), as the mean of the channels. Both are negative
-// if it is not known.
+// Holds the variance of one sample, as it is and divided by (mean² + 0.01), as the mean of the channels. Both are
+// negative if it is not known.
 struct OneSample {
     double absolute = -1, relative = -1;
 };
@@ -74,13 +74,13 @@ Image<double> needed_variance(const Film& film) {
     return s;
 }
 
-// A pixel's √s, and the number of samples that it has.
+// Holds a pixel's √s, and the number of samples that it has.
 struct Need {
     double root, taken;
     double more(double scale) const { return std::clamp(scale * root - taken, 0.0, taken); }
 };
 
-constexpr double kLeast = 0.01; // the least s; the mean of s is 1
+constexpr double kLeast = 0.01; // least s; the mean of s is 1
 
 double all_more(const std::vector<Need>& needs, double scale) {
     double sum = 0;
@@ -88,7 +88,7 @@ double all_more(const std::vector<Need>& needs, double scale) {
     return sum;
 }
 
-/// Returns the samples per pixel of the next pass towards an error limit. `ratio` > 1 is the current error over the
+/// Returns the samples per pixel of the next pass toward an error limit. `ratio` > 1 is the current error over the
 /// limit. The error falls at least in proportion to the number of samples, and adaptively distributed samples lower
 /// it much faster (in open-sky.json, from 16 to 20 samples, to the half). A pass therefore goes half of the way. If
 /// little is left, an adaptive pass takes at least a 32nd of the samples so far.
@@ -112,7 +112,7 @@ void spread_samples(Film& film, std::int64_t samples) {
         }
     const auto wanted = static_cast<double>(samples);
     double low = 0;
-    for (int i = 0; i < 24; ++i) { // bisects for the scale that uses up the samples
+    for (int i = 0; i < 24; ++i) { // bisection for the scale that uses up the samples
         const double middle = (low + high) / 2;
         (all_more(needs, middle) < wanted ? low : high) = middle;
     }
@@ -152,7 +152,8 @@ bool plan_pass(const Settings& settings, const Spent& spent, Film& film) {
         spread_samples(film, static_cast<std::int64_t>(count * pixels));
         if (!film.complete()) return true;
     }
-    // If this pass has less than one sample per pixel and few pixels, adaptive sampling may have distributed none.
+    // Adaptive sampling may have added no sample, if the image has few pixels and the pass less than one sample per
+    // pixel.
     raise_all(film, static_cast<std::uint32_t>(std::max(count, 1.0)));
     return true;
 }

@@ -10,7 +10,7 @@ namespace duet::raytrace {
 /// the lights look converged.
 inline constexpr double kMinForError = 16;
 
-/// What this render has spent. It excludes the film that the render continues.
+/// Counts what this render has spent. It excludes the film that the render continues.
 struct Spent {
     double seconds = 0;
     std::int64_t samples = 0;

@@ -9,13 +9,13 @@
 
 namespace duet::raytrace {
 
-/// The surface that a camera ray hits first, as the path tracer evaluates it.
+/// Describes the surface that a camera ray hits first, as the path tracer evaluates it.
 struct FirstSurface {
     SurfacePoint point;
     Bsdf bsdf;
 };
 
-/// One sample of one pixel.
+/// Describes one sample of one pixel.
 struct CameraSample {
     Ray ray;
     Hit hit;
