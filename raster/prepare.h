@@ -16,9 +16,9 @@ namespace duet::raster {
 
 struct PreparedObject {
     Box3 bounds;        ///< in world space, over all of the object's motion
-    std::optional<Rgb> one_color; ///< base color, if a single one covers the object
-    std::optional<RgbSlot> one_texture; ///< if a single filtered texture determines the base color
-    std::optional<MetalBsdf> metal; ///< if the object is metal of a single color and roughness
+    std::optional<Rgb> one_color; ///< base color, if it is the same all over the object
+    std::optional<RgbSlot> one_texture; ///< texture slot, if one filtered texture determines the base color
+    std::optional<MetalBsdf> metal; ///< BSDF, if the object is metal of one color and roughness
     bool closed = false; ///< a sphere, box or mesh that is closed and oriented outwards
     bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };

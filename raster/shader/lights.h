@@ -24,7 +24,7 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
         IncidentT<T> result = from(spot->position, spot->intensity);
         const T cosine = -dot(result.wi, spread<T>(spot->direction));
-        const float range = spot->cos_inner - spot->cos_outer; // 0: a hard edge
+        const float range = spot->cos_inner - spot->cos_outer; // 0 gives a hard edge
         const T s = clamp((cosine - T(spot->cos_outer)) / T(max(range, 1e-6f)), T(0), T(1));
         result.irradiance *= s * s * (T(3) - T(2) * s);
         return result;

@@ -239,7 +239,7 @@ private:
     std::vector<StripColors> colors_of_parts_;
     std::vector<std::uint32_t> seen_of_parts_;
     std::optional<ObjectView> sphere_view_; ///< view of the last sphere shaded
-    bool only_suns_;                   ///< the scene has no other lights
+    bool only_suns_;                   ///< true if all lights of the scene are suns
 };
 
 /// Implements a Program that owns a copy of its shader.
