@@ -39,7 +39,7 @@ inline constexpr double kGuardBand = 65536;
 /// The bits tell on the outer side of which clip planes a vertex lies. A primitive whose vertices share a frustum bit
 /// is invisible.
 enum Outcode : std::uint8_t {
-    kLeft = 1, ///< more than a pixel beyond the image edge: snapping can't bring it back
+    kLeft = 1, ///< more than a pixel beyond the image edge, so snapping can't move it inside
     kRight = 2,
     kTop = 4,
     kBottom = 8,

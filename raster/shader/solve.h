@@ -63,7 +63,7 @@ private:
     /// fused steps. The third barycentric, Σe minus the other two, accumulates three of these errors and two
     /// roundings of less than 4ε·M: 17ε·M in all.
     static constexpr D kError = 16 * std::numeric_limits<D>::epsilon(); // 32ε
-    /// Barycentrics e/Σe have an error of 6ε·M/Σe and two roundings. This is the upper bound of M/Σe.
+    /// The upper bound of M/Σe limits the error of the barycentrics e/Σe, which is 6ε·M/Σe and two roundings.
     static constexpr D kSteepest = Sixteen::kSteepest;
 
     void set_grid(SampleOffset offset);
