@@ -54,7 +54,7 @@ public:
     static constexpr std::size_t kLanes = kSimdLanes;
 
     std::size_t size() const { return size_; }
-    /// Returns whether `times` times kLanes more pairs fit.
+    /// Returns whether `times` · kLanes more pairs fit.
     bool has_room(std::size_t times) const { return size_ + times * kLanes <= kMost; }
     void clear() { size_ = 0; }
     std::uint32_t ray(std::size_t i) const { return rays_[i]; }
@@ -312,7 +312,7 @@ private:
     const std::span<const std::uint32_t> which_;
     const std::span<Hit> hits_;
     SlabRays<kSize> slabs_;
-    alignas(64) std::array<float, kSize> scales_; // filter_scale
+    alignas(64) std::array<float, kSize> scales_; // values of filter_scale
     std::array<Hit, kSize> best_;
 };
 
