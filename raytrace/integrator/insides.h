@@ -36,8 +36,8 @@ private:
     /// material `without` is ignored.
     const Dielectric* filling(std::int64_t without = -1) const;
 
-    /// This is the most boundaries that arrive() ignores in a row. It ends paths that make no progress for lack of
-    /// precision.
+    /// arrive() ignores at most this many boundaries in a row. The limit ends paths that make no progress for lack
+    /// of precision.
     static constexpr int kMostPassed = 1000;
 
     const RenderPlan* plan_;

@@ -119,7 +119,7 @@ public:
 private:
     struct Arrivals {
         std::array<Arrival, kLanes> all;
-        unsigned some = 0; // bit mask of the paths that have one
+        unsigned some = 0; // bit mask of the paths that have a light sample
         Columns wi, radiance;
         Column pdf, delta;
 
