@@ -46,7 +46,8 @@ public:
     /// and `bsdfs` must outlive this object.
     PlainSurfaces(const Scene& scene, const std::vector<std::optional<Bsdf>>& bsdfs);
 
-    /// This is the class of what
+    /// The class of a hit is the index of a Kind for a batched surface, kOther for any other surface, or kNothing for a
+    /// miss.
     static constexpr std::size_t kOther = Kind::kCount, kNothing = kOther + 1, kClasses = kNothing + 1;
     std::size_t class_of(const Hit& hit) const {
         // This is mostly without a branch, because the hits of incoherent rays are unpredictable.

@@ -12,7 +12,8 @@
 namespace duet::raytrace {
 
 struct RenderPlan {
-    /// `known_worth` is the value of `worth`. If it is empty, `worth` is learned.
+    /// Makes the plan. `known_worth` sets the roulette survival factor `worth`. If it is empty, the factor is
+    /// estimated by learned_worth.
     RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings,
                std::optional<float> known_worth = {});
     RenderPlan(const RenderPlan&) = delete; // bsdfs may point into the plan

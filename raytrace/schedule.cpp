@@ -89,9 +89,9 @@ double all_more(const std::vector<Need>& needs, double scale) {
 }
 
 /// Returns the samples per pixel of the next pass toward an error limit. `ratio` > 1 is the current error over the
-/// limit. The error falls at least in proportion to the number of samples, and adaptively distributed samples lower
-/// it much faster (in open-sky.json, from 16 to 20 samples, to the half). A pass therefore goes half of the way. If
-/// little is left, an adaptive pass takes at least a 32nd of the samples so far.
+/// limit. The error falls at least as fast as 1/n with n samples per pixel, and adaptively distributed samples lower
+/// it much faster (in open-sky.json it halves from 16 to 20 samples). A pass therefore covers half of the way to the
+/// limit. If little is left, an adaptive pass takes at least a 32nd of the samples so far.
 double samples_towards(double ratio, double done, bool spread) {
     const double half_way = done * (ratio - 1) / 2;
     return spread ? std::max(half_way, done / 32) : std::max(2 * std::ceil(half_way / 2), 2.0);
