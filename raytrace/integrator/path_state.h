@@ -5,8 +5,8 @@
 
 namespace duet::raytrace {
 
-/// How the ray left the previous vertex. MIS needs it to weight light that the ray finds against light samples
-/// there.
+/// Holds how the ray left the previous vertex. MIS needs it to weight light that the ray finds against light samples
+/// at that vertex.
 struct Departure {
     LightReceiver receiver;
     float pdf = 0;
