@@ -119,7 +119,7 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 struct Bvh {
     /// This is the greatest depth of a leaf below the root. It bounds the size of a traversal stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< most primitives
+    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< maximum number of primitives
 
     Box3 bounds;
     std::size_t references = 0; ///< primitives in leaves; a primitive cut by spatial splits counts once per leaf
