@@ -42,7 +42,7 @@ struct Settings : RenderSettings {
     Integrator integrator = Integrator::kPath;
     SamplerKind sampler = SamplerKind::kSobol;
     FilterKind filter = FilterKind::kBox;
-    int max_depth = 64; ///< most scattering events: 0 = emission only, 1 = direct light
+    int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
     BvhQuality bvh = BvhQuality::kDefault; ///< quality of the hierarchies; the image does not depend on it
     bool environment = true; ///< see raster::Settings::environment
