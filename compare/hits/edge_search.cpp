@@ -93,8 +93,8 @@ std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::
     return points;
 }
 
-/// Tries points just inside the border of that part. If a hidden face is nearly edge-on, this is where it meets
-/// the face in front of it.
+/// Tries points just inside the border of a polygon from within_reach(). If a hidden face is nearly edge-on,
+/// its border is where it meets the face in front of it.
 bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
     Vec2d middle;
     for (const Vec2d p : polygon) middle = middle + p * (1.0 / static_cast<double>(polygon.size()));

@@ -28,8 +28,8 @@ struct AcrossRay {
     }
 };
 
-/// Returns a value whose sign says on which side of edge ab the ray passes. The sign is exact or the result is 0, because
-/// rounding preserves the order of the two products.
+/// Returns a value whose sign says on which side of edge ab the ray passes. The sign is exact or the result is
+/// 0, because rounding preserves the order of the two products.
 double side(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 
 /// Returns the ray's t on triangle abc, edges and vertices included. The test is watertight: no ray slips

@@ -14,10 +14,9 @@ namespace duet::compare {
 enum class Verdict : std::uint8_t {
     kSame,     ///< same object and primitive, or both miss
     kEdge,     ///< double-precision rays within 1/128 pixel of the center find both primitives
-    kDepthTie, ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or as kEdge, but
-               ///< one of the two is hit just where the other or a neighbor hides it (kMeetingTolerance in
-               ///< edge_search.h)
-    kUnexplained ///< none of these: one of the pipelines is wrong
+    kDepthTie, ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
+               ///< find one, and hit the other within kMeetingTolerance of its occluder
+    kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 
 /// Two distances are equal if |Δt|·|cos θ| ≤ kDepthTolerance·t.
