@@ -49,7 +49,7 @@ struct Sum {
     std::int64_t count = 0;
 };
 
-/// Returns the similarity of all windows of one channel whose top row is y.
+/// Returns the sum and number of the similarities of all windows of one channel whose top row is y.
 Sum row_of_windows(const ImageRgb& a, const ImageRgb& b, int y, std::size_t channel, const Window& window) {
     std::vector<Moments> columns(static_cast<std::size_t>(a.width()));
     for (int k = 0; k < kWindow; ++k)

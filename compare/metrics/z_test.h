@@ -34,7 +34,7 @@ struct ZTest {
     std::int64_t tests = 0; ///< three per block and three for the whole image
     double p = 1; ///< smallest p-value, corrected for the number of tests: small if the images differ
     int x = 0, y = 0, width = 0, height = 0; ///< pixels of the test with the smallest p-value
-    int channel = 0;                         ///< channel of that test, 0 to 2
+    int channel = 0;                         ///< channel of the test with the smallest p-value, 0 to 2
 };
 
 /// Tests two images of the same size. Throws Error if sizes differ or if both images are taken as exact.
