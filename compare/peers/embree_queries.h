@@ -26,7 +26,7 @@
 
 namespace duet::compare {
 
-/// While an object lives, its thread flushes denormals to zero.
+/// Flushes denormals to zero in the current thread during the object's lifetime.
 class FlushToZero {
 public:
 #if defined(__SSE__)
