@@ -11,11 +11,11 @@ namespace duet::compare {
 struct BiasCheck {
     std::size_t tests = 0; ///< number of means compared: three channels of each block and of the whole image
     double worst_z = 0;    ///< most significant difference in standard errors, signed (first − second)
-    double worst_dof = 0;  ///< degrees of freedom of that standard error
+    double worst_dof = 0;  ///< degrees of freedom of the standard error in worst_z
     double p_value = 1;    ///< probability of any such difference by chance, over all tests
     int block_x = 0, block_y = 0, block_size = 0, channel = 0; ///< location; block_size 0: the whole image
     Rgbd relative_bias;    ///< difference of the whole images' means over the second mean, per channel
-    double detectable = 0; ///< smallest relative bias of that kind that is found with 99 % power
+    double detectable = 0; ///< smallest relative bias of the whole image that is found with 99 % power
 
     /// Significance level: one false alarm in a thousand runs.
     static constexpr double kSignificance = 1e-3;

@@ -11,7 +11,7 @@ namespace duet::compare {
 
 /// Returns the mean squared error of one contender at time `seconds`, interpolated linearly in the logarithms
 /// of time and error between its measurements. Returns nothing outside the measured times. If `rest` is set,
-/// the error excludes the excluded rectangles. The uncertainty is the larger one of the two neighboring
+/// the error omits the excluded rectangles. The uncertainty is the larger one of the two neighboring
 /// measurements; it combines the uncertainty of the error with that of the time, converted by the slope between
 /// them. Rows that are not counted are ignored. Without `sampler`, all samplers of the technique are used (for
 /// a peer these are its settings).

@@ -22,7 +22,7 @@ inline double shared_significance(double alpha, std::size_t tests) {
 struct Estimate {
     double value = 0;          ///< NaN: nothing was measured
     double relative_error = 0; ///< standard error / value; infinity: a single measurement
-    double dof = 1;            ///< degrees of freedom of that error
+    double dof = 1;            ///< degrees of freedom of relative_error
 
     /// Return the ends of the confidence band; 0 and infinity if the error is unknown.
     double low(double confidence = 0.95) const;
@@ -37,7 +37,7 @@ Estimate mean_of(const std::vector<double>& values);
 Estimate median_of(std::vector<double> values);
 /// Returns 1 / (mse × seconds) with propagated error; degrees of freedom by Welch (1947) and Satterthwaite (1946).
 Estimate efficiency_of(const Estimate& mse, const Estimate& seconds);
-/// Returns a / b with the error propagated in the same way.
+/// Returns a / b with the errors propagated as in efficiency_of.
 Estimate ratio_of(const Estimate& a, const Estimate& b);
 /// Returns the probability that two equal quantities are measured at least this different (Welch's test on logarithms).
 double equality_p_value(const Estimate& a, const Estimate& b);

@@ -40,7 +40,7 @@ KeptReference reference_by(const std::string& estimator, const Scene& scene, con
 /// spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
 inline constexpr int kReferenceSeeds = 8;
 struct EstimatorId {
-    std::string name;    ///< these three as in ReferenceKey
+    std::string name;    ///< name, version and program are as in ReferenceKey
     int version = 0;
     std::string program;
 };
