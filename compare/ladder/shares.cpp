@@ -64,7 +64,7 @@ Causes pixel_causes(const LadderPictures& pictures, std::size_t pixel) {
 Shares shares(const LadderPictures& pictures) {
     const int width = pictures.first.width(), height = pictures.first.height();
     Causes total{};
-    double squares = 0, light = 0; // of D, and of I₇
+    double squares = 0, light = 0; // sums of squares of D and of I₇
     for (int y = 0; y < height; ++y) {
         Causes row{}; // summed per row, because rounding errors grow with the length of a sum
         double row_squares = 0;

@@ -29,7 +29,7 @@ struct Shares {
 };
 Shares shares(const LadderPictures& pictures);
 
-/// Returns the same products for one pixel, without the division. They add up to |D|² there.
+/// Returns, for one pixel, the numerators of the shares in Shares. They add up to |D|² at that pixel.
 Causes pixel_causes(const LadderPictures& pictures, std::size_t pixel);
 
 /// A map of visible differences and their main causes. The causes of a single pixel are noisy, so the main
