@@ -40,7 +40,7 @@ private:
     Moments moments(std::size_t channel) const;
 
     std::vector<Rgbd> differences_;
-    Rgbd without_; ///< sum
+    Rgbd without_; ///< sum over the pairs
 };
 
 } // namespace duet::compare

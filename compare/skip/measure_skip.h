@@ -25,7 +25,7 @@ struct MeasureOptions {
     int repeats = 5;
     std::uint64_t seed = 0;
     double bias = 0.001; ///< relative bias that must be detectable
-    double budget = 120; ///< time limit in seconds for that; if it does not suffice, the skip is not proved
+    double budget = 120; ///< time limit in seconds for the bias test; if it does not suffice, the skip is not proved
 };
 
 /// Renders the view with and without the skip in turns. If stopped by `control`, returns an incomplete result.
