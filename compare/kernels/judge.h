@@ -29,7 +29,7 @@ public:
     explicit Judge(const Scene& scene) : scene_(scene) {}
 
     Finding closest(const Ray& ray, const Answer& answer) const;
-    /// As above, for a caller that already knows the double-precision ray's first hit.
+    /// Judges a closest hit, for a caller that already knows the double-precision ray's first hit.
     Finding closest(const Ray& ray, const Answer& answer, const ExactHit& first) const;
     ExactHit first_hit(const Ray& ray) const;
     /// Judges a shadow ray that ends at t_max and may be blocked by anything.

@@ -13,7 +13,7 @@ enum class Arrangement {
     kAlone,   ///< as in the file
     kRoom,    ///< inside a closed box, together with the camera
     kClutter, ///< 27 rotated copies on a grid inside a closed box: a test with incoherent rays
-    kInstances, ///< the same copies as instances of one mesh, with a two-level BVH
+    kInstances, ///< the copies of kClutter as instances of one mesh, with a two-level BVH
 };
 /// Returns the arrangement "alone", "room", "clutter" or "instances". Throws Error for another name.
 Arrangement parse_arrangement(const std::string& name);

@@ -20,7 +20,7 @@ struct KernelsOptions {
     PictureSize size{1920, 1080};                     ///< one camera ray per pixel
     int threads = 0;                                  ///< for the multithreaded rows; 0: all hardware threads
     int repeats = 7;
-    double seconds = 0.15;               ///< duration of one measurement
+    double seconds = 0.15;               ///< duration of one measurement in seconds
     std::int64_t watertight = 1'000'000; ///< number of rays aimed from inside closed scenes; 0: none
     std::uint64_t seed = 0;
     std::string stats; ///< file for the rows as JSON; "-" for standard output; empty: none

@@ -15,12 +15,12 @@ namespace duet::compare {
 struct MeasureKernels {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone
-    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< of Duet's BVH
+    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< build quality of Duet's BVH
     PictureSize size{1920, 1080};
-    int threads = 1; ///< for the second set of rows; 1: no second set
+    int threads = 1; ///< threads of the second set of rows; 1: no second set
     int repeats = 7;
     double seconds = 0.15;       ///< duration of one measurement of rays
-    std::int64_t watertight = 0; ///< number of rays; 0: none
+    std::int64_t watertight = 0; ///< number of rays of the watertightness test; 0: none
     std::uint64_t seed = 0;
 };
 
