@@ -13,7 +13,7 @@
 
 namespace duet {
 
-/// A block of 32 x 32 pixels of the image of 512 x 512 pixels, with its published mean. Blocks that are not listed
+/// Stores the published mean of a block of 32 x 32 pixels of the image of 512 x 512 pixels. Blocks that are not listed
 /// are black.
 struct CornellBlock {
     int row = 0, column = 0;
