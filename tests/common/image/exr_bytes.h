@@ -9,7 +9,7 @@
 
 namespace duet::test {
 
-/// A byte string to which numbers are appended in little-endian order.
+/// Builds a byte string to which numbers are appended in little-endian order.
 class Bytes {
 public:
     template <typename Number> Bytes& add(Number value) {
@@ -27,7 +27,8 @@ public:
     std::string text;
 };
 
-/// The header fields and the pixels of an EXR file. The defaults describe a valid file of 3 x 2 half-float pixels.
+/// Holds the header fields and the pixels of an EXR file. The defaults describe a valid file of 3 x 2 half-float
+/// pixels.
 struct ExrBytes {
     int min_x = -5, min_y = 7, max_x = -3, max_y = 8; // the data window; the display window differs
     // The version includes flags: 0x200 is tiled, 0x800 deep, 0x1000 multipart.

@@ -75,7 +75,7 @@ inline std::vector<NamedBsdf> all_materials() {
     return all;
 }
 
-/// Cosines of wo from straight above to 1e-7, on both sides.
+/// The cosines of wo range from straight above to 1e-7, on both sides.
 inline constexpr float kCosines[] = {1.0f,  0.999f, 0.7f,   0.3f,  0.05f, 1e-3f, 1e-5f,
                               1e-7f, -1e-7f, -1e-4f, -0.2f, -0.9f, -1.0f};
 

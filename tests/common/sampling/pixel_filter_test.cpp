@@ -11,7 +11,7 @@ using namespace duet;
 
 namespace {
 
-/// The moments of the positions of n × n uniformly spaced samples.
+/// Holds the moments of the positions of n × n uniformly spaced samples.
 struct Moments {
     double mean = 0, variance = 0, farthest = 0;
 };

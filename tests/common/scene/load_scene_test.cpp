@@ -15,7 +15,7 @@ using duet::test::ScratchFolder;
 
 namespace {
 
-/// A scene of one sphere in which each section can be replaced.
+/// Describes a scene of one sphere in which each section can be replaced.
 struct Parts {
     std::string camera = R"({"eye": [0, 0, 5], "look_at": [0, 0, 0]})";
     std::string materials = R"({"m": {"type": "diffuse"}})";

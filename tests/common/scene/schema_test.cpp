@@ -29,7 +29,7 @@ bool same(const JsonNode& a, const JsonNode& b) {
     return a.kind == b.kind && a.number == b.number && a.text == b.text && a.boolean == b.boolean;
 }
 
-/// The subset of JSON Schema (draft 2020-12) that scene.schema.json uses. Any other keyword fails the test.
+/// Implements the subset of JSON Schema (draft 2020-12) that scene.schema.json uses. Any other keyword fails the test.
 class Validator {
 public:
     explicit Validator(const JsonNode& schema) : root_(schema) {}
@@ -114,7 +114,7 @@ std::vector<std::string> sorted(std::vector<std::string> list) {
     return list;
 }
 
-/// A definition with fixed keys: the keys it requires and those it allows.
+/// Holds the required and the allowed keys of a definition with fixed keys.
 struct Definition {
     std::string name;
     std::vector<std::string> required, allowed;

@@ -32,7 +32,7 @@ double area_mean(const ImageRgb& image, double x0, double x1, double y0, double 
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-/// The covariance of a probe line's filter, in texels: that of the probe positions plus that of a single probe.
+/// Holds the covariance of a probe line's filter in texels: that of the probe positions plus that of a single probe.
 struct Covariance {
     double xx, xy, yy;
 };
