@@ -19,7 +19,7 @@ inline Rendering render_scene(const Scene& scene, int size, const Settings& sett
     return render(prepare(scene, settings), View{scene.camera, size, size}, settings, control);
 }
 
-/// The mean of an image's green channel over independent seeds, and the standard error of that mean.
+/// Holds the mean of an image's green channel over independent seeds, and the standard error of that mean.
 struct Estimate {
     double mean = 0, error = 0;
 };

@@ -19,7 +19,7 @@ Dielectric glass(float ior, int priority, Rgb absorption = Rgb(0.0f), float roug
     return material;
 }
 
-/// Two concentric spheres with radii 1 and ½.
+/// Builds a scene of two concentric spheres with radii 1 and ½.
 struct Balls {
     Scene scene;
     std::uint32_t outer, inner; // material indices
@@ -180,6 +180,6 @@ TEST_SUITE("unit") {
             return sum / (32 * 32);
         };
         CHECK(mean(0) == doctest::Approx(1).epsilon(1e-4));
-        CHECK(mean(0.3f) == doctest::Approx(1).epsilon(0.01)); // from tables, over several interfaces
+        CHECK(mean(0.3f) == doctest::Approx(1).epsilon(0.01)); // energy from tables, and several interfaces per path
     }
 }

@@ -50,7 +50,7 @@ inline void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
     }
 }
 
-// The number of objects in the room: so few that rays test them all, or so many that rays traverse a BVH.
+// Selects the number of objects in the room: so few that rays test them all, or so many that rays traverse a BVH.
 enum class Things { kFew, kSome, kMany };
 
 // Adds narrow and wide metal lobes, given by color and by name, mirrors and glass, on quads, spheres and meshes with
@@ -71,7 +71,7 @@ inline void add_shiny_things(SceneBuilder& builder, int levels, const Place& pla
     }
 }
 
-// The materials of walls and objects: mostly matte, or including all kinds of metal and glass.
+// Selects the materials of walls and objects: mostly matte, or including all kinds of metal and glass.
 enum class Finish { kMatt, kShiny };
 
 // Returns a room without a front wall that contains surfaces of every batched kind and of the other kinds.

@@ -25,8 +25,8 @@ std::vector<std::uint32_t> all_of(const std::vector<Ray>& rays) {
     return which;
 }
 
-// The number of paths of a small image that differ in any bit, among those that bring light, and the number that give
-// NaN, whose bits may differ.
+// Counts the paths of a small image whose result differs in any bit, the paths that bring light, and the paths that
+// give NaN, whose bits may differ.
 struct Differences {
     // plain and smooth count the paths whose first hit is a batched surface, and of these the ones of form kSmooth.
     int differ = 0, lit = 0, not_numbers = 0, plain = 0, smooth = 0;

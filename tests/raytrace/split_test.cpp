@@ -52,7 +52,7 @@ Settings with(int samples, int depth = 6) {
 
 View view_of(const Scene& scene) { return {scene.camera, kSize, kSize}; }
 
-/// Returns the mean of a per-sample quantity over an image.
+/// A Look extracts a quantity from a camera sample, and mean_over_samples() averages it over an image.
 using Look = std::function<Rgb(const CameraSample&)>;
 Rgbd mean_over_samples(const Scene& scene, const Settings& settings, const Look& look) {
     const SplitTracer tracer(prepare(scene, settings), view_of(scene), settings);

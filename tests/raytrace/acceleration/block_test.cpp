@@ -154,7 +154,7 @@ template <std::size_t kCorners> Counts polygons(float scale, float shift, int tr
     return counts;
 }
 
-// Returns rays at and beside the sphere: from afar, from its surface, from its interior and its exact center, and
+// Returns rays at and beside the sphere: from far away, from its surface, from its interior and its exact center, and
 // tangents.
 Ray sphere_ray(Random& random, const Sphere& s) {
     const Vec3 n = random.direction();

@@ -35,7 +35,7 @@ Real distance_to_segment(const Vec& p, const Vec& a, const Vec& b) {
     return size_of(a + along * s - p);
 }
 
-// The intersection of a line with a primitive.
+// Describes the intersection of a line with a primitive.
 struct Meeting {
     Real clearance; // distance of the line inside the silhouette, perpendicular to the line; negative: distance outside
     Real t = 0;     // of the intersection; meaningful if the clearance is positive
@@ -43,7 +43,7 @@ struct Meeting {
     Real nearest = 0; // no point of the primitive has a smaller t
 };
 
-// A convex planar polygon or a sphere, in world space.
+// Represents a convex planar polygon or a sphere, in world space.
 class Primitive {
 public:
     std::uint32_t object, number;
