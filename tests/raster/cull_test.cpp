@@ -18,7 +18,7 @@ std::int64_t skipped(const Rendering& rendering, const std::string& what) {
     return 0;
 }
 
-/// The number of pixels whose hits differ. A sample that only a snapped silhouette edge covers belongs to a front and
+/// Counts the pixels whose hits differ. A sample that only a snapped silhouette edge covers belongs to a front and
 /// a back face at their common edge, where rounding decides which is nearer. Culling may change the primitive there,
 /// but nothing else.
 struct Difference {

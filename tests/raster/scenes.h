@@ -186,7 +186,7 @@ private:
     std::vector<Ball> balls_;
 };
 
-/// The result of comparing an image's hits with the oracle's.
+/// Holds the result of comparing an image's hits with the oracle's.
 struct Agreement {
     int same = 0, edge = 0, tie = 0, unexplained = 0, wrong_distance = 0;
     std::string first; ///< the first unexplained or wrong pixel

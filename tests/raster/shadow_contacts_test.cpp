@@ -72,7 +72,8 @@ Mesh relief(std::uint32_t grid, float bump) {
     return mesh;
 }
 
-/// The profile of a quarter of a trough around the origin, below it, and the part of it that the sun reaches.
+/// Computes which part of the profile of a quarter of a trough the sun reaches. The trough is around the origin and
+/// below it.
 class Outline {
 public:
     Outline(double radius, int facets, Vec2d to_sun) : to_sun_(to_sun) {

@@ -125,7 +125,7 @@ TEST_SUITE("unit") {
         CHECK(found(2, 2) > 0.9f);
     }
 
-    // Viewed from just below the sphere, it covers only a few of the texels between the floor's lit part and the
+    // Near the contact point the sphere covers only a few shadow map texels between the floor's lit part and the
     // light.
     TEST_CASE("no light in the umbra: a slanting lamp beside a ball that nearly touches the floor") {
         constexpr double kRadius = 0.86, kMiddle = 0.98;

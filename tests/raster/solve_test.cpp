@@ -84,7 +84,7 @@ Scene shuffled_wall() {
     return scene;
 }
 
-/// The geometry of an image and its sample batches, tile by tile.
+/// Holds the geometry of an image and its sample batches, tile by tile.
 struct Strips {
     const Scene scene;
     const raster::Settings settings;
