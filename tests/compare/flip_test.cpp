@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An external image pair beside the checkout. The tests that use it are skipped if it is missing.
+/// This folder beside the checkout contains an external image pair. The tests that use it are skipped if it is missing.
 const fs::path kPair = fs::path(DUET_SOURCE_DIR) / ".." / "shared" / "flip";
 const bool kNoPair = !fs::exists(kPair / "a_ref.exr");
 

@@ -92,7 +92,7 @@ TEST_SUITE("image") {
 
 namespace {
 
-/// Sums of radiance over the pixels of one object.
+/// Holds sums of radiance over the pixels of one object.
 struct LightOnObject {
     Rgbd raster, raytrace, variance;
     int pixels = 0;

@@ -70,7 +70,7 @@ SkipMeasurement measured(const SkipCase& skip, const View& view, const MeasureOp
     return measure_skip(skip, view, options, control);
 }
 
-/// Returns the same skip with the change that `change` makes to its image.
+/// Returns the same skip case, but applies `change` to the image that is rendered with the skip.
 template <typename Change> SkipCase planted(const SkipCase& skip, const Change& change) {
     SkipCase result = skip;
     result.render = [skip, change](const View& view, std::uint64_t seed, bool with, Control& control) {

@@ -218,8 +218,8 @@ TEST_SUITE("image") {
         Control control;
         const Rendering b = raytrace::render(raytrace::prepare(scene, traced), view_of(scene), traced, control);
         int other_hit = 0, other_normal = 0, leaf = 0, veil = 0;
-        // Skip pixels covered by the partly transparent object: one pipeline blends normals there, the other uses the hit
-        // that stopped the ray.
+        // Skip pixels covered by the partly transparent object: one pipeline blends normals there, the other uses
+        // the hit that stopped the ray.
         const CameraModel camera(view_of(scene));
         const auto veiled = [&](std::size_t i) {
             const Ray ray = camera.ray({static_cast<double>(i % 192) + 0.5, static_cast<double>(i / 192) + 0.5});

@@ -12,7 +12,7 @@ using namespace duet::compare;
 
 namespace {
 
-/// An image of two replicates and the variance estimated from them, as Film does.
+/// Holds an image of two replicates and the variance estimated from them, as Film does.
 struct Noisy {
     ImageRgb values, variance;
     operator NoisyImage() const { return {values, variance}; }
