@@ -34,7 +34,7 @@ template <typename Set, typename Kind> bool holds(const Set& set) {
 
 bool same(Vec3 a, Vec3d b) { return a == Vec3(b); }
 
-/// The corners of one of the published boxes as (x, z), counterclockwise from above.
+/// Holds the corners of one of the published boxes as (x, z), counterclockwise from above.
 using Footprint = std::array<Vec2d, 4>;
 
 /// Checks that each vertex of the mesh is one of the box's eight corners to float precision, that each corner occurs,
