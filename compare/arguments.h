@@ -1,4 +1,4 @@
-// The subcommands of the program `compare`: each one's arguments stand beside what it runs.
+// Subcommands of the program `compare`. Each one's command-line arguments are defined next to the code they configure.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@ class App;
 
 namespace duet::compare {
 
-/// A subcommand: its arguments, and what runs where it is the one that was given.
+/// A subcommand: its command-line arguments and the function to call if it was given.
 struct Subcommand {
     CLI::App* arguments;
     std::function<int()> run; ///< returns the exit code
@@ -25,7 +25,7 @@ Subcommand add_kernels(CLI::App& app);
 Subcommand add_frames(CLI::App& app);
 Subcommand add_stress(CLI::App& app);
 
-/// The end of each --help.
+/// Text appended to each subcommand's --help.
 inline constexpr const char* kExitCodes =
     "\n\nExit codes: 0 done, 1 failed (a metric over its limit, a failed test, a result that could not be written), 2 "
     "unusable arguments or input, 130 interrupted (nothing is written).";

@@ -1,4 +1,4 @@
-// The program `compare`.
+// The main program of `compare`.
 
 #include "common/program/program.h"
 #include "common/program/render_program.h"

@@ -22,11 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A file's values as stored, and their variances where it has them.
+/// The values stored in a file, and their variances if the file has them.
 struct Picture {
     ImageRgb values, variance;
     Encoding encoding = Encoding::kLinear;
-    std::int64_t transparent = 0; ///< pixels whose alpha, which is not compared, is not 1
+    std::int64_t transparent = 0; ///< number of pixels whose alpha is not 1; alpha is not compared
 };
 
 ImageRgb stored_values(const PixelFile& file) {
@@ -40,14 +40,14 @@ ImageRgb stored_values(const PixelFile& file) {
 }
 
 std::int64_t transparent_pixels(const PixelFile& file) {
-    if (file.channels % 2 != 0) return 0; // grey or RGB
+    if (file.channels % 2 != 0) return 0; // gray or RGB
     const auto channels = static_cast<std::size_t>(file.channels);
     std::int64_t count = 0;
     for (std::size_t i = channels - 1; i < file.values.size(); i += channels) count += file.values[i] != 1;
     return count;
 }
 
-/// variance.R, variance.G and variance.B as `--aov variance` writes them; empty without all three.
+/// Returns variance.R, variance.G and variance.B as `--aov variance` writes them; empty unless all three are present.
 ImageRgb variance_channels(const ExrFile& file) {
     ImageRgb image(file.width, file.height);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -156,14 +156,14 @@ void print_table(std::ostream& out, const ImageMetrics& metrics, const Picture& 
 
 // The page ------------------------------------------------------------------------------------------------------------
 
-/// The files' names where these differ, else their paths as they were given.
+/// Returns the file names if they differ, else the paths as given.
 std::pair<std::string, std::string> page_names(const ImagesOptions& options) {
     const fs::path a = options.a.filename(), b = options.reference.filename();
     if (a != b) return {a.string(), b.string()};
     return {options.a.string(), options.reference.string()};
 }
 
-/// The metrics, and how many pixels of each have an alpha that they do not speak of.
+/// Returns the metrics, and for each image the number of pixels whose alpha was ignored.
 json figures_json(const ImageMetrics& metrics, const Picture& a, const Picture& b) {
     json figures = metrics_json(metrics, "a", "b");
     figures["transparent"] = {{"a", a.transparent}, {"b", b.transparent}};

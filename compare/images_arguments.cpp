@@ -1,4 +1,4 @@
-// The arguments of `compare images`.
+// Command-line arguments of `compare images`.
 #include "compare/arguments.h"
 #include "compare/images.h"
 #include "compare/metrics/limits.h"

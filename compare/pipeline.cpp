@@ -8,7 +8,7 @@ namespace duet::compare {
 
 namespace {
 
-/// One sample a pixel, and nothing but its hit.
+/// Returns the settings reduced to one sample per pixel and the hit AOV alone.
 template <typename Settings> Settings hits_only(Settings settings) {
     settings.samples_per_pixel = 1;
     settings.aovs = AovSet{};
@@ -24,7 +24,7 @@ Pipeline raster_pipeline(const Scene& scene, const PipelineSettings& common) {
     settings.threads = common.threads;
     settings.seed = common.seed;
     raster::Settings hits = hits_only(settings);
-    hits.shading = raster::Shading::kNormal; // the cheapest picture: only its hits are kept
+    hits.shading = raster::Shading::kNormal; // cheapest shading: only the hits are used
 
     const Stopwatch watch;
     const raster::Prepared prepared = raster::prepare(scene, settings);

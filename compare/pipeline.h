@@ -1,4 +1,4 @@
-// The two pipelines as one type: whoever compares them calls both alike.
+// The two pipelines behind one type, so that comparison code calls both the same way.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -10,26 +10,27 @@
 
 namespace duet::compare {
 
-/// What both renderings of a comparison share, and each one's number of samples.
+/// Settings that both renderings of a comparison share, and the sample count of each.
 struct PipelineSettings {
     int raster_spp = 16, raytrace_spp = 64;
-    int max_depth = 64; ///< the path tracer's scattering events at most
-    int threads = 0;    ///< 0: all
+    int max_depth = 64; ///< maximum number of scattering events of a path (path tracer)
+    int threads = 0;    ///< 0: all hardware threads
     std::uint64_t seed = 0;
 };
 
-/// One way from a scene to a picture, prepared for one scene, which must outlive it.
+/// A renderer prepared for one scene, which must outlive it.
 struct Pipeline {
     std::string name;       ///< "raster" or "raytrace"
-    RenderFunction picture; ///< the full picture
-    RenderFunction hits; ///< Rendering::hit of one ray a pixel: through its centre and the lens's, as the shutter opens
+    RenderFunction picture; ///< renders the full image
+    RenderFunction hits; ///< renders Rendering::hit: one ray per pixel through its center and the lens center, when
+                         ///< the shutter opens
     double prepare_seconds = 0;
 };
 
 Pipeline raster_pipeline(const Scene& scene, const PipelineSettings& settings);
 Pipeline raytrace_pipeline(const Scene& scene, const PipelineSettings& settings);
 
-/// The sentences (a rendering's approximations), a space between them.
+/// Joins the sentences (a rendering's approximations) with spaces.
 std::string paragraph(const std::vector<std::string>& sentences);
 
 } // namespace duet::compare

@@ -24,14 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// What one pipeline made.
+/// The results of one pipeline.
 struct Side {
     Rendering rendering;
     Image<Hit> hits;
     RenderContext context;
 };
 
-/// Renders the picture, then the hits. Empty where a signal came.
+/// Renders the image, then the hits. Returns nothing after an interrupt signal.
 std::optional<Side> render_side(const Pipeline& pipeline, const View& view, const RunOptions& options,
                                 const InterruptFlag& interrupt) {
     Side side;
@@ -58,7 +58,7 @@ void complete(RenderContext& context, const std::string& program, const RunOptio
     context.load_seconds = load_seconds;
 }
 
-/// Writes a side's picture, and keeps how long that took.
+/// Writes a side's image and records the time it took.
 void write_picture(Side& side, const fs::path& path) {
     const Stopwatch watch;
     write_image(path, side.rendering.radiance);

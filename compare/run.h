@@ -1,4 +1,4 @@
-// `compare run`: one scene, both pipelines, one report.
+// `compare run`: renders one scene with both pipelines and writes one report.
 #pragma once
 
 #include "compare/pipeline.h"
@@ -10,15 +10,16 @@ namespace duet::compare {
 
 struct RunOptions {
     std::filesystem::path scene, folder;
-    PictureSize size{0, 0}; ///< 0: the scene's
+    PictureSize size{0, 0}; ///< 0: the scene's size
     PipelineSettings settings;
-    std::string stats; ///< a file for the figures of report.json, "-" for standard output, empty: none
+    std::string stats; ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;
 };
 
-/// Renders the scene both ways and writes index.html, raster.png, raytrace.png, difference.png and report.json to the
-/// folder, which is made if it is missing; each whole or not at all. Returns the program's exit code: 0, or 130 where a
-/// signal came, and then nothing is written. Throws Error for a scene or folder that cannot be used.
+/// Renders the scene with both pipelines and writes index.html, raster.png, raytrace.png, difference.png and
+/// report.json to the folder, which is created if it is missing. Each file is written completely or not at all.
+/// Returns the program's exit code: 0, or 130 after an interrupt signal, in which case nothing is written.
+/// Throws Error for a scene or folder that cannot be used.
 int run(const RunOptions& options);
 
 } // namespace duet::compare

@@ -13,7 +13,7 @@
 namespace duet::raster {
 namespace {
 
-/// What the scene didn't need, and how much was culled.
+/// Lists the features that the scene does not need, and the numbers of culled primitives.
 std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& settings, const CullCounts& culled) {
     const SceneNeeds& needs = data.scene.needs;
     std::vector<Skipped> result;
@@ -48,7 +48,8 @@ std::vector<Skipped> list_skipped(const PreparedData& data, const Settings& sett
     return result;
 }
 
-/// Whether some glass is of an object that is not of glass alone, or has holes: its rays are not followed.
+/// Returns true if an object has glass together with other materials or with an alpha mask. Rays through such glass
+/// are not traced.
 bool has_mixed_glass(const PreparedData& data) {
     for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
         for (const std::uint32_t material : data.scene.objects[i].materials)
@@ -66,10 +67,13 @@ void list_shadow_approximations(const PreparedData& data, const Settings& settin
     if (scene.needs.delta_lights)
         result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
     if (scene.needs.surface_lights)
-        result.emplace_back("Soft shadows are estimated from the depths that the light's centre sees, with one width of "
-                            "penumbra a point.");
-    if (std::any_of(scene.maps.begin(), scene.maps.end(), [](const SurfaceMaps& maps) { return maps.cuts_out() && !(maps.cutoff > 0); }))
-        result.emplace_back("Shadows of what stops a part of the light are dithered: it stops all of that part of a map's texels.");
+        result.emplace_back(
+            "Soft shadows are estimated from the depths that the light's centre sees, with one width of "
+            "penumbra a point.");
+    if (std::any_of(scene.maps.begin(), scene.maps.end(),
+                    [](const SurfaceMaps& maps) { return maps.cuts_out() && !(maps.cutoff > 0); }))
+        result.emplace_back(
+            "Shadows of what stops a part of the light are dithered: it stops all of that part of a map's texels.");
     if (data.shadows->moments() > 1)
         result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
     if (data.shadows->coarser())
@@ -104,46 +108,59 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Light from the environment is unoccluded.");
     if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone) {
         const bool even = settings.ambient_occlusion == AmbientOcclusion::kSsao;
-        result.push_back(message("What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
-                                 occlusion_radius(data, settings), even ? " m away, as if all of it were equally bright." : " m away."));
+        result.push_back(message(
+            "What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
+            occlusion_radius(data, settings), even ? " m away, as if all of it were equally bright." : " m away."));
     }
     name(parts.environment && environment && !data.irradiance.is_closed_form(),
          "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
     const bool refracts = needs_screen_behind(data, settings);
-    const bool mirrors = needs_screen_radiance(data, settings), any = parts.reflection && (needs.specular || needs.glossy);
+    const bool mirrors = needs_screen_radiance(data, settings),
+               any = parts.reflection && (needs.specular || needs.glossy);
     const bool plain = needs.transmission && (!refracts || has_mixed_glass(data));
     const char* plain_glass = refracts ? "Glass with holes, or in one object with other materials," : "Glass";
-    name(any && !mirrors && !refracts, "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
+    name(any && !mirrors && !refracts,
+         "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
     if (any && (mirrors || refracts) && plain)
-        result.push_back(message(plain_glass, " mirrors the environment alone, no surfaces and no lights that have one."));
+        result.push_back(
+            message(plain_glass, " mirrors the environment alone, no surfaces and no lights that have one."));
     if ((mirrors || refracts) && data.unmirrored_lamps > 0)
-        result.push_back(message("The ", data.unmirrored_lamps, " weakest lamps are mirrored only where the picture shows them."));
+        result.push_back(
+            message("The ", data.unmirrored_lamps, " weakest lamps are mirrored only where the picture shows them."));
     name(any && (mirrors || refracts) && needs.glossy,
          "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
-    name(mirrors,
-         "Smooth and moderately rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
-         "things what is seen there is taken to go on.");
+    name(
+        mirrors,
+        "Smooth and moderately rough metal mirrors what the picture shows, and in that no reflections; past its edge and behind "
+        "things what is seen there is taken to go on.");
     const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
     name(parts.reflection && needs.glossy && environment && !prefiltered,
          "Rough metal and frosted glass show the environment as smooth ones do.");
     name(parts.reflection && needs.glossy && environment && prefiltered,
          "Rough metal and frosted glass show the environment blurred as by a surface that faces the viewer.");
-    name(parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
-         "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
+    name(
+        parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
+        "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its lobe.");
     name(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
          "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
     if (refracts)
-        result.push_back(message("Glass mirrors and refracts what the picture shows without it, up to ", kGlassDeep,
-                                 " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
+        result.push_back(
+            message("Glass mirrors and refracts what the picture shows without it, up to ", kGlassDeep,
+                    " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
     name(refracts && needs.insides, "Glass overlaps as if it did not.");
     if (parts.reflection && plain)
-        result.push_back(message(plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts "
-                                              "no caustics."));
+        result.push_back(message(
+            plain_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts "
+                         "no caustics."));
     if (parts.reflection && needs.insides && plain)
-        result.push_back(message(plain_glass, " absorbs as over the mean way through a ball of its size, and overlaps as if it did not."));
-    name(needs.layers, "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
+        result.push_back(message(
+            plain_glass, " absorbs as over the mean way through a ball of its size, and overlaps as if it did not."));
+    name(
+        needs.layers,
+        "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
     name(parts.direct && needs.lamp_textures, "Surfaces that emit a picture light others by its mean.");
-    name(parts.direct && data.unsampled_emitters, "Light surfaces that move, and stretched spheres, are seen but light nothing.");
+    name(parts.direct && data.unsampled_emitters,
+         "Light surfaces that move, and stretched spheres, are seen but light nothing.");
     return result;
 }
 
@@ -187,8 +204,8 @@ void fill_statistics(RenderStatistics& statistics, const PreparedData& data, con
         statistics.samples_per_pixel += static_cast<int>(passes[i].samples.size());
     statistics.seconds = account.seconds();
     statistics.triangles = data.primitives;
-    statistics.memory_bytes =
-        data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes + account.look_bytes + account.picture_bytes);
+    statistics.memory_bytes = data.memory_bytes + static_cast<std::int64_t>(account.geometry_bytes +
+                                                                            account.look_bytes + account.picture_bytes);
     statistics.skipped = list_skipped(data, settings, account.culled);
     statistics.approximations = list_approximations(data, settings);
 }

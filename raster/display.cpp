@@ -25,23 +25,27 @@ bool is_empty(const Geometry& geometry, std::size_t index) {
 
 constexpr int kBlock = DepthTile::kBlock;
 
-/// Rows of blocks of a tile to the picture, from pixel row y on: row_of(block, row) is where eight pixels of the block lie. Whole
-/// lines go past the caches: a frame is more than those keep until the next.
+/// Copies a row of a tile's blocks to the image, from pixel row y on. row_of(block, row) returns the address of
+/// eight pixels of a block. Whole cache lines are written with non-temporal stores, because a frame is larger than
+/// what caches retain until the next one.
 template <typename Pixel, typename RowOf>
 void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>& picture) {
     static_assert(2 * kBlock * sizeof(Pixel) == 64);
     for (int row = 0; row < std::min(kBlock, rect.y1 - y); ++row) {
         Pixel* to = &picture(rect.x0, y + row);
-        const auto block = [&](int column) { return row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row)); };
+        const auto block = [&](int column) {
+            return row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+        };
         int column = 0, left = rect.width();
         if (begins_line(to))
-            for (; left >= 2 * kBlock; left -= 2 * kBlock, column += 2) stream_line(block(column), block(column + 1), to + column * kBlock);
+            for (; left >= 2 * kBlock; left -= 2 * kBlock, column += 2)
+                stream_line(block(column), block(column + 1), to + column * kBlock);
         for (; left >= kBlock; left -= kBlock, ++column) std::copy_n(block(column), kBlock, to + column * kBlock);
         if (left > 0) std::copy_n(block(column), left, to + column * kBlock);
     }
 }
 
-/// A tile that nothing is in.
+/// Fills the pixels of an empty tile.
 template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& picture) {
     std::array<Pixel, kBlock> eight;
     eight.fill(pixel);
@@ -56,14 +60,15 @@ void copy_nearness(const DepthTile& tile, ImageFloat& picture) {
     for (int y = rect.y0; y < rect.y1; y += kBlock) {
         const std::size_t first = tile.place(rect.x0, y) / kBlockSamples;
         const auto row_of = [&](std::size_t column, std::size_t row) {
-            return tile.drawn(first + column) ? tile.nearness() + (first + column) * kBlockSamples + row * kBlock : kNothing.data();
+            return tile.drawn(first + column) ? tile.nearness() + (first + column) * kBlockSamples + row * kBlock
+                                              : kNothing.data();
         };
         copy_blocks(rect, y, row_of, picture);
     }
     finish_streams();
 }
 
-/// A tile's pixels, strip by strip: by the program, or one at a time.
+/// Shades a tile's pixels and stores them in the image: packet by packet with a program, else one by one.
 class TileDisplay {
 public:
     TileDisplay(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
@@ -79,7 +84,8 @@ public:
         for (int y = rect.y0; y < rect.y1; y += kBlock) {
             std::uint32_t place = tile_.place(rect.x0, y);
             std::size_t slot = 0;
-            for (int x = rect.x0; x < rect.x1; x += kBlock, place += kBlockSamples, slot += kStrips) block(x, y, place, slot);
+            for (int x = rect.x0; x < rect.x1; x += kBlock, place += kBlockSamples, slot += kStrips)
+                block(x, y, place, slot);
             shade_together();
             const auto row_of = [&](std::size_t column, std::size_t row) {
                 constexpr std::size_t kRows = kStripRows;
@@ -92,9 +98,9 @@ public:
 
 private:
     static constexpr int kStripRows = DepthTile::kStripRows;
-    static constexpr std::size_t kStrips = kBlock / kStripRows; ///< of a block
+    static constexpr std::size_t kStrips = kBlock / kStripRows; ///< per block
 
-    /// The block whose first pixel is (x, y).
+    /// Queues the packets of the block whose first pixel is (x, y), or fills them with the background.
     void block(int x, int y, std::uint32_t place, std::size_t slot) {
         if (background_ && !tile_.drawn(place / kBlockSamples)) {
             std::fill_n(codes_.begin() + static_cast<std::ptrdiff_t>(slot), kStrips, empty_strip_);
@@ -116,11 +122,12 @@ private:
         places_[next] = strip_place(tile_, x, y, place);
     }
 
-    /// The strips of a row of blocks that are left.
+    /// Shades the queued packets of a row of blocks.
     void shade_together() {
         if (count_ == 0) return;
         shader_->shade(std::span(places_).first(count_), colors_.data(), seen_.data());
-        encode_strips(std::span(colors_).first(count_), seen_.data(), *background_, codes_of_.data()); // a program has one
+        // A program implies a background.
+        encode_strips(std::span(colors_).first(count_), seen_.data(), *background_, codes_of_.data());
         count_ = 0;
     }
 
@@ -141,14 +148,14 @@ private:
     std::unique_ptr<StripShader> shader_;
     static constexpr std::size_t kMost = DepthTile::kBlocks * kStrips;
     std::array<StripCodes, kMost> codes_;  ///< of a row of blocks
-    std::array<StripPlace, kMost> places_; ///< strips to be shaded
-    std::array<StripCodes*, kMost> codes_of_{}; ///< and where their codes go
+    std::array<StripPlace, kMost> places_; ///< queued packets
+    std::array<StripCodes*, kMost> codes_of_{}; ///< destinations of the queued packets
     std::array<StripColors, kMost> colors_;
     std::array<std::uint32_t, kMost> seen_{};
     std::size_t count_ = 0;
-    std::optional<HitTile> hits_; ///< where one is needed
+    std::optional<HitTile> hits_; ///< created on first use
     std::optional<Rgba8> background_;
-    StripCodes empty_strip_; ///< of it
+    StripCodes empty_strip_; ///< filled with the background
 };
 
 } // namespace
@@ -164,15 +171,15 @@ void display_tile(const PreparedData& data, const Settings& settings, const Prog
     }
     DepthTile tile;
     draw_tile(geometry, view, view.samples.front(), rect, index, tile);
-    if (!background || program == nullptr) tile.empty_undrawn(); // what was not drawn to is looked at, too
+    if (!background || program == nullptr) tile.empty_undrawn(); // undrawn blocks are read as well
     TileDisplay(data, settings, program, geometry, view, tile, background, picture).run();
 }
 
 namespace {
 
-/// keep_nearness, by way of `depths`; false where there is nothing in the tile.
-bool keep_depths(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index, DepthTile& depths,
-                 ImageFloat& picture) {
+/// Does the same as keep_nearness(), and leaves the depth buffer in `depths`. Returns false if the tile is empty.
+bool keep_depths(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
+                 DepthTile& depths, ImageFloat& picture) {
     if (is_empty(geometry, index)) {
         fill(rect, 0.0f, picture);
         return false;
@@ -190,11 +197,12 @@ void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRe
     keep_depths(geometry, view, rect, index, depths, picture);
 }
 
-void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
-                              const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors) {
+void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view,
+                              const Program& program, const PixelRect& rect, std::size_t index, ImageFloat& nearness,
+                              ImageRgb& colors) {
     DepthTile depths;
     if (!keep_depths(geometry, view, rect, index, depths, nearness)) return;
-    depths.empty_undrawn(); // what was not drawn to is looked at, too
+    depths.empty_undrawn(); // undrawn blocks are read as well
     const auto shader = program.for_tile(data, geometry, view, rect);
     for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
         for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {
@@ -202,7 +210,8 @@ void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry
             const std::uint32_t seen = shader->shade(strip_place(depths, x0, y0), strip);
             for (std::size_t i = 0; i < kStrip; ++i) {
                 const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
-                if (x < rect.x1 && y < rect.y1 && (seen >> i & 1)) colors(x, y) = Rgb(strip.r[i], strip.g[i], strip.b[i]);
+                if (x < rect.x1 && y < rect.y1 && (seen >> i & 1))
+                    colors(x, y) = Rgb(strip.r[i], strip.g[i], strip.b[i]);
             }
         }
 }

@@ -1,5 +1,5 @@
-// The end of the pipeline for pictures that go straight to a display or a shadow map: a sample a pixel, and each tile
-// finished while it lies in the cache.
+// Implements the last stages for images that go directly to a display or a shadow map. They have one sample per
+// pixel, and each tile is completed while it is in the cache.
 #pragma once
 
 #include "raster/prepare.h"
@@ -7,19 +7,22 @@
 
 namespace duet::raster {
 
-/// Draws a tile and shades, encodes and keeps its pixels; `program` is null for Shading::kLit.
+/// Rasterizes, shades and encodes a tile. `program` is null for Shading::kLit. `index` is the tile's index in its
+/// grid.
 void display_tile(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
                   const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& picture);
 
-/// Draws a tile and keeps its depths, as near / depth.
+/// Rasterizes a tile and stores its reversed depth, near / depth; 0 on a miss.
 void keep_nearness(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
                    ImageFloat& picture);
 
-/// The same, and what a program shows there, black where nothing is.
-void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view, const Program& program,
-                              const PixelRect& rect, std::size_t index, ImageFloat& nearness, ImageRgb& colors);
+/// Does the same as keep_nearness() and stores the colors of `program`. `colors` is not changed where nothing is
+/// visible.
+void keep_nearness_and_colors(const PreparedData& data, const Geometry& geometry, const PassView& view,
+                              const Program& program, const PixelRect& rect, std::size_t index, ImageFloat& nearness,
+                              ImageRgb& colors);
 
-/// A whole picture of radiance, encoded.
+/// Encodes an image of radiance as 8-bit sRGB.
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& picture);
 
 } // namespace duet::raster

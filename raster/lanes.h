@@ -1,4 +1,5 @@
-// The rasterizer works through arrays of 16 samples, by batches as wide as the machine has them (common/vec/simd.h).
+// Implements the rasterizer's SIMD helpers. The rasterizer processes packets of 16 samples in batches as wide as the
+// CPU supports (common/vec/simd.h).
 #pragma once
 
 #include "common/vec/simd.h"
@@ -18,17 +19,18 @@ using Floats = xsimd::batch<float>;
 using Ints = xsimd::batch<std::int32_t>;
 using Doubles = xsimd::batch<double>;
 
-/// Samples that are worked on together: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
+/// A packet has 16 samples: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
 inline constexpr std::size_t kStrip = 16, kStripWidth = 8;
 static_assert(kStrip % Floats::size == 0 && Floats::size == Ints::size);
 
-/// Asks for a line of memory that will be read soon.
+/// Prefetches the cache line of an address that will be read soon.
 inline void prefetch(const void* address) {
     __builtin_prefetch(address);
-    asm volatile(""); // else GCC takes functions that do nothing but prefetch for empty, and leaves their calls out
+    asm volatile(""); // else GCC considers functions that only prefetch empty and removes calls to them
 }
 
-/// One number a sample of a strip, any until it is set: to clear them all would take longer than some of the work.
+/// Stores one value per sample of a packet. It is uninitialized, because clearing takes longer than some of the
+/// computations.
 template <typename T> struct alignas(64) StripOf {
     std::array<T, kStrip> v;
 
@@ -39,6 +41,7 @@ template <typename T> struct alignas(64) StripOf {
     const T* at(std::size_t i) const { return v.data() + i; }
 };
 
+/// Loads one batch of values from the i-th on.
 template <typename T> xsimd::batch<T> load(const StripOf<T>& strip, std::size_t i) {
     return xsimd::batch<T>::load_aligned(strip.at(i));
 }
@@ -48,17 +51,19 @@ template <typename T> void store(StripOf<T>& strip, std::size_t i, const xsimd::
 
 static_assert(Floats::size == 2 * Doubles::size);
 
-/// Doubles to a strip of either, rounded where need be.
+/// Stores one batch of doubles in a packet of doubles or floats, rounded if needed.
 inline void store_rounded(StripOf<double>& strip, std::size_t i, const Doubles& value) { store(strip, i, value); }
-inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& value) { store_floats(value, strip.at(i)); }
+inline void store_rounded(StripOf<float>& strip, std::size_t i, const Doubles& value) {
+    store_floats(value, strip.at(i));
+}
 
 using duet::fused;
 using duet::fused_minus;
 
-/// A line of memory, in two halves, past the caches: what is not read soon need not push out what is, nor be fetched before it is
-/// overwritten. Other threads see it after finish_streams().
+/// Writes a cache line from two halves with non-temporal stores. They do not evict data that is needed sooner, and
+/// do not fetch the line before overwriting it. Other threads see the data after finish_streams().
 inline void stream_line(const void* first_half, const void* second_half, void* line) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) // which do not see such stores
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) // which do not support such stores
     std::memcpy(line, first_half, 32);
     std::memcpy(static_cast<char*>(line) + 32, second_half, 32);
 #elif defined(__AVX__)
@@ -80,11 +85,13 @@ inline void stream_line(const void* first_half, const void* second_half, void* l
 inline void finish_streams() { _mm_sfence(); }
 inline bool begins_line(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
 
-/// Of as many vectors side by side, by fused steps.
-inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) { return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z))); }
+/// Returns the dot products of one batch of vectors, by fused multiply-add.
+inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) {
+    return fused(a.x, b.x, fused(a.y, b.y, Floats(a.z * b.z)));
+}
 
-/// Doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion; by way of memory it would
-/// wait for narrow stores to become a wide load.)
+/// Converts doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion. Converting
+/// through memory would stall, because the wide load would wait for several narrow stores.)
 inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #if defined(__AVX512F__)
     return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(_mm512_cvtpd_ps(low))),
@@ -101,7 +108,7 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #endif
 }
 
-/// Doubles, each rounded to what a float can be.
+/// Rounds doubles to float precision.
 inline Doubles as_floats(const Doubles& value) {
 #if defined(__AVX512F__)
     return _mm512_cvtps_pd(_mm512_cvtpd_ps(value));
@@ -115,7 +122,7 @@ inline Doubles as_floats(const Doubles& value) {
 #endif
 }
 
-/// Whole numbers of 32 bits to memory.
+/// Converts doubles with integer values to 32-bit integers and stores them.
 inline void store_ints(const Doubles& value, std::int32_t* to) {
 #if defined(__AVX512F__)
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtpd_epi32(value));
@@ -128,12 +135,13 @@ inline void store_ints(const Doubles& value, std::int32_t* to) {
 #endif
 }
 
-/// From a table of sixteen, by the lower four bits of each number.
+/// Looks up values in a table of sixteen by the lower four bits of each index.
 inline Floats look_up(const StripOf<float>& table, const Ints& index) {
 #if defined(__AVX512F__)
     return _mm512_permutexvar_ps(index, load(table, 0));
 #elif defined(__AVX2__)
-    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), index), _mm256_permutevar8x32_ps(load(table, 8), index),
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), index),
+                            _mm256_permutevar8x32_ps(load(table, 8), index),
                             _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
 #else
     alignas(64) std::array<std::int32_t, Ints::size> at;
@@ -146,7 +154,7 @@ inline Floats look_up(const StripOf<float>& table, const Ints& index) {
 inline Floats look_up(const StripOf<float>& table, const StripOf<std::int32_t>& index, std::size_t i) {
     return look_up(table, load(index, i));
 }
-/// The same of doubles, by numbers from the i-th on.
+/// Looks up doubles by the indices from the i-th on.
 inline Doubles look_up(const StripOf<double>& table, const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)
     const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
@@ -158,8 +166,9 @@ inline Doubles look_up(const StripOf<double>& table, const StripOf<std::int32_t>
 #endif
 }
 
-/// The same of addresses, to memory.
-template <typename T> void look_up(const std::array<const T*, kStrip>& table, const Ints& index, std::array<const T*, Ints::size>& found) {
+/// Looks up addresses and stores them in `found`. Indices must be below 16.
+template <typename T>
+void look_up(const std::array<const T*, kStrip>& table, const Ints& index, std::array<const T*, Ints::size>& found) {
 #if defined(__AVX512F__)
     const __m512i first = _mm512_loadu_si512(table.data()), second = _mm512_loadu_si512(table.data() + kStrip / 2);
     const auto eight = [&](__m256i at) { return _mm512_permutex2var_epi64(first, _mm512_cvtepi32_epi64(at), second); };
@@ -172,8 +181,9 @@ template <typename T> void look_up(const std::array<const T*, kStrip>& table, co
 #endif
 }
 
-/// From two tables of sixteen, one after the other, by the lower five bits of each number from the i-th on.
-inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index, std::size_t i) {
+/// Looks up values in two consecutive tables of sixteen by the lower five bits of the indices from the i-th on.
+inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index,
+                      std::size_t i) {
 #if defined(__AVX512F__)
     return _mm512_permutex2var_ps(load(first, 0), load(index, i), load(second, 0));
 #elif defined(__AVX2__)
@@ -188,9 +198,9 @@ inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second,
     return Floats::load_aligned(found.data());
 #endif
 }
-/// The same of whole numbers.
-inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32_t>& second, const StripOf<std::int32_t>& index,
-                    std::size_t i) {
+/// Looks up integers in two tables of sixteen; see above for floats.
+inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32_t>& second,
+                    const StripOf<std::int32_t>& index, std::size_t i) {
 #if defined(__AVX512F__)
     return _mm512_permutex2var_epi32(load(first, 0), load(index, i), load(second, 0));
 #else
@@ -202,11 +212,13 @@ inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32
     return Ints::load_aligned(found.data());
 #endif
 }
-/// The same of doubles.
-inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& second, const StripOf<std::int32_t>& index, std::size_t i) {
+/// Looks up doubles in two tables of sixteen; see above for floats.
+inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& second, const StripOf<std::int32_t>& index,
+                       std::size_t i) {
 #if defined(__AVX512F__)
     const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
-    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), look_up(first, index, i), look_up(second, index, i));
+    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), look_up(first, index, i),
+                                look_up(second, index, i));
 #else
     alignas(64) std::array<double, Doubles::size> found;
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -217,33 +229,34 @@ inline Doubles look_up(const StripOf<double>& first, const StripOf<double>& seco
 #endif
 }
 
-/// 1/√x of each lane, x > 0: the machine's estimate and a Newton step, to within a few units in the last place.
+/// Returns 1/√x of each lane, x > 0: the CPU's estimate and one Newton step, within a few units in the last place.
 inline Floats inverse_sqrt(const Floats& x) {
 #if defined(__AVX512F__)
-    const Floats y = _mm512_rsqrt14_ps(x); // xsimd 8's own names no instruction there is
+    const Floats y = _mm512_rsqrt14_ps(x); // xsimd 8's own function selects no instruction here
 #else
     const Floats y = xsimd::rsqrt(x);
 #endif
     return y * fused_minus(Floats(0.5f) * x * y, y, Floats(1.5f));
 }
 
-/// The same of one number.
+/// Returns 1/√x of a single number, x > 0.
 inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
 
 using Quads = FloatBatch<4>;
 
-/// Three numbers, and 0; nothing beyond them is read.
+/// Loads three floats and sets the fourth to 0. Memory beyond the three is not read.
 inline Quads load_three(const float* from) {
 #if defined(__AVX512VL__)
     return _mm_maskz_loadu_ps(7, from);
 #elif defined(__AVX__)
     return _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0));
 #else
-    return _mm_movelh_ps(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))), _mm_load_ss(from + 2));
+    return _mm_movelh_ps(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))),
+                         _mm_load_ss(from + 2));
 #endif
 }
 
-/// A bit for each lane that holds true, lane 0 the lowest.
+/// Returns one bit per lane that is true; lane 0 is the lowest bit.
 inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
 #if defined(__AVX512F__)
     return static_cast<std::uint32_t>(static_cast<__mmask16>(lanes));
@@ -254,19 +267,19 @@ inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
 #endif
 }
 
-using duet::lane_bits; // of floats and doubles
+using duet::lane_bits; // for floats and doubles
 
-/// A bit for each sample of a strip that holds a number.
+/// Returns one bit per sample of a packet whose value equals `number`.
 inline std::uint32_t lanes_of_number(const StripOf<std::int32_t>& strip, std::int32_t number) {
     std::uint32_t lanes = 0;
     for (std::size_t i = 0; i < kStrip; i += Ints::size) lanes |= lane_bits(load(strip, i) == Ints(number)) << i;
     return lanes;
 }
 
-/// A bit for the first sample of a strip that holds each of its numbers.
+/// Returns one bit per sample of a packet whose value does not occur at an earlier sample.
 inline std::uint32_t first_of_each(const StripOf<std::int32_t>& strip) {
 #if defined(__AVX512CD__)
-    const __m512i before = _mm512_conflict_epi32(load(strip, 0)); // of each, those before it that are equal
+    const __m512i before = _mm512_conflict_epi32(load(strip, 0)); // bits of the earlier lanes with an equal value
     return _mm512_testn_epi32_mask(before, before);
 #else
     std::uint32_t firsts = 0;
@@ -279,7 +292,7 @@ inline std::uint32_t first_of_each(const StripOf<std::int32_t>& strip) {
 #endif
 }
 
-/// The way back: true in those lanes of floats or doubles whose bits are set, of the lowest as many as there are lanes.
+/// Returns a batch whose lanes are true where the bits are set; the inverse of lane_bits().
 template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
 #if defined(__AVX512F__)
     return typename xsimd::batch_bool<T>::register_type(bits);
@@ -295,12 +308,13 @@ template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
 #endif
 }
 
-/// The column and row of each sample of a strip.
+/// Returns the column of each sample of a packet.
 template <typename T> StripOf<T> strip_columns() {
     StripOf<T> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i % kStripWidth);
     return result;
 }
+/// Returns the row of each sample of a packet.
 template <typename T> StripOf<T> strip_rows() {
     StripOf<T> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<T>(i / kStripWidth);
@@ -309,7 +323,7 @@ template <typename T> StripOf<T> strip_rows() {
 template <typename T> inline const StripOf<T> kColumns = strip_columns<T>();
 template <typename T> inline const StripOf<T> kRows = strip_rows<T>();
 
-/// What lies at as many places of an array.
+/// Gathers one batch of values at the given indices of an array.
 inline Floats gather(const float* from, const Ints& places) {
 #if defined(__AVX512F__)
     return _mm512_i32gather_ps(places, from, 4);
@@ -323,24 +337,24 @@ inline Floats gather(const float* from, const Ints& places) {
     return Floats::load_aligned(result.data());
 #endif
 }
-/// Towards zero.
+/// Truncates towards zero.
 inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
 
-/// The number of each sample of a strip.
+/// The constant holds the index of each sample of a packet.
 inline const StripOf<std::int32_t> kLanes = [] {
     StripOf<std::int32_t> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<std::int32_t>(i);
     return result;
 }();
 
-/// The same as floats.
+/// The constant holds the sample indices as floats.
 inline const StripOf<float> kLanesAsFloats = [] {
     StripOf<float> result;
     for (std::size_t i = 0; i < kStrip; ++i) result[i] = static_cast<float>(i);
     return result;
 }();
 
-/// And as doubles.
+/// The constant holds the lane indices as doubles.
 inline const Doubles kLanesAsDoubles = [] {
     alignas(64) std::array<double, Doubles::size> result;
     for (std::size_t i = 0; i < Doubles::size; ++i) result[i] = static_cast<double>(i);

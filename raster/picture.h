@@ -1,4 +1,4 @@
-// Stage 9: samples become pixels.
+// Implements stage 9, resolve, which averages samples into pixels.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -9,19 +9,20 @@
 
 namespace duet::raster {
 
-/// The picture and the auxiliary pictures that are asked for, each pixel the mean of its samples. Threads may add
-/// different tiles at once; a pixel's samples come in order, so the sums are the same for any number of threads.
+/// Accumulates the image and the requested auxiliary images (AOVs). Each pixel is the mean of its samples. Threads
+/// may add different tiles concurrently. The samples of a pixel are added in order, so the sums are the same for any
+/// number of threads.
 class Picture {
 public:
-    /// `many`: samples a pixel may be added; else one at most.
+    /// `many` allows several samples per pixel; otherwise at most one may be added.
     Picture(const View& view, const Settings& settings, bool many);
 
-    /// One sample of one pixel, or `count` that are alike: what each adds to the auxiliary pictures, then their radiance.
-    /// One that is NaN, infinite or negative is dropped and counted.
+    /// Adds one sample of a pixel, or `count` equal ones: first its auxiliary values, then its radiance. A radiance
+    /// that is NaN, infinite or negative is dropped and counted.
     void add_auxiliary(const HitTile& tile, int x, int y, const Shaded& shaded);
     void add(int x, int y, Rgb radiance, int count = 1);
 
-    /// Divides sums by counts. Pixels without a sample are black.
+    /// Divides the sums by the counts. Pixels without a sample are black.
     Rendering finish(int threads);
     std::size_t memory_bytes() const;
 
@@ -30,15 +31,15 @@ private:
 
     Settings settings_;
     Rendering rendering_;
-    Image<Rgbd> sums_;                   ///< of radiance; empty for a single sample, which needs none
-    Image<std::uint32_t> added_, valid_; ///< samples a pixel, and those among them whose radiance counts
+    Image<Rgbd> sums_;                   ///< of radiance; empty for a single sample per pixel, which is stored directly
+    Image<std::uint32_t> added_, valid_; ///< samples per pixel, and those of them with valid radiance
     struct Auxiliary {
         double depth = 0;
         Vec3d normal;
         Rgbd albedo;
     };
-    Image<Auxiliary> auxiliary_; ///< sums; where depth, normal or albedo are asked for
-    Image<std::uint32_t> hits_;  ///< samples that hit something; where depth, normal or albedo are asked for
+    Image<Auxiliary> auxiliary_; ///< sums; only if depth, normal or albedo are requested
+    Image<std::uint32_t> hits_;  ///< samples with a hit; only if depth, normal or albedo are requested
     std::atomic<std::int64_t> invalid_ = 0;
 };
 

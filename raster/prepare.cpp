@@ -24,8 +24,9 @@ bool can_be_seen_through(const Scene& scene, const Object& object) {
 }
 
 bool all_glass(const Scene& scene, const Object& object) {
-    return std::all_of(object.materials.begin(), object.materials.end(),
-                       [&](std::uint32_t material) { return std::holds_alternative<Dielectric>(scene.materials[material]); });
+    return std::all_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
+        return std::holds_alternative<Dielectric>(scene.materials[material]);
+    });
 }
 
 bool any_emissive(const Scene& scene, const Object& object) {
@@ -48,19 +49,21 @@ std::optional<MetalBsdf> one_metal(const Scene& scene, const Object& object) {
     return metal->at(scene.textures, SurfacePoint{});
 }
 
-/// The slot of the image texture that colours all of an object, if it is filtered.
+/// Returns the slot of the image texture that colors all of an object, if the texture is filtered.
 std::optional<RgbSlot> one_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
     const RgbSlot& slot = texture_slot(material);
-    if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt; // metal may have colours by a table
+    // Metal is excluded, because its colors may come from a table.
+    if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt;
     const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
-    const bool filtered = texture != nullptr && uses_footprint(texture->filter) && !scene.textures.smaller[texture->image].empty();
+    const bool filtered =
+        texture != nullptr && uses_footprint(texture->filter) && !scene.textures.smaller[texture->image].empty();
     return filtered ? std::optional(slot) : std::nullopt;
 }
 
-/// Whether quads enclose a space, as a box's six do, and face outwards: each side of one is a side of another the other way
-/// round. Places count as one that are apart by rounding.
+/// Returns true if the quads enclose a volume, as the six of a box do, and face outwards: each side of a quad is a
+/// side of exactly one other quad in the opposite direction. Points that differ by rounding count as equal.
 bool encloses(const QuadList& list) {
     struct Side {
         Vec3 from, to;
@@ -76,8 +79,9 @@ bool encloses(const QuadList& list) {
     }
     const auto same = [&](Vec3 a, Vec3 b) { return length(a - b) <= 1e-5f * size; };
     return volume > 0 && std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
-               return std::count_if(sides.begin(), sides.end(),
-                                    [&](const Side& other) { return same(side.from, other.to) && same(side.to, other.from); }) == 1;
+               return std::count_if(sides.begin(), sides.end(), [&](const Side& other) {
+                          return same(side.from, other.to) && same(side.to, other.from);
+                      }) == 1;
            });
 }
 
@@ -85,7 +89,7 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
     const Shape& shape = scene.shapes[object.shape];
     PreparedObject result;
     result.bounds = bounds(shape, object.to_world);
-    // Matrix entries are interpolated, so a point moves on a straight line: between the bounds of both ends.
+    // Matrix entries are interpolated, so a point moves on a straight line, within the union of both ends' bounds.
     if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
     result.one_color = one_color(scene, object);
     result.one_texture = one_texture(scene, object);
@@ -97,23 +101,25 @@ PreparedObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// The strongest surface lights: of more than a few, each mirrored ray would take too long to look for all.
+/// Selects the strongest area lights, because intersecting each reflected ray with all of them would take too long.
 void choose_lamps(PreparedData& data) {
     const std::vector<Light>& lights = data.scene.lights;
     for (std::size_t i = data.scene.first_surface_light; i < lights.size(); ++i) data.lamps.push_back(i);
     if (data.lamps.size() <= Surroundings::kMostLamps) return;
     const float radius = length(data.scene.bounds.diagonal()) / 2;
-    std::stable_sort(data.lamps.begin(), data.lamps.end(),
-                     [&](std::size_t a, std::size_t b) { return light_power(lights[a], radius) > light_power(lights[b], radius); });
+    std::stable_sort(data.lamps.begin(), data.lamps.end(), [&](std::size_t a, std::size_t b) {
+        return light_power(lights[a], radius) > light_power(lights[b], radius);
+    });
     data.unmirrored_lamps = data.lamps.size() - Surroundings::kMostLamps;
     data.lamps.resize(Surroundings::kMostLamps);
     std::sort(data.lamps.begin(), data.lamps.end());
 }
 
-/// What rough metal and frosted glass need of the scene's lights, made now rather than in the first picture.
+/// Prefilters the environment for rough metal and frosted glass, so that the first frame is not delayed.
 void prepare_glossy(const Settings& settings, PreparedData& data) {
     const SceneNeeds& needs = data.scene.needs;
-    const bool mirrors = settings.prefiltered_environment && settings.parts.reflection && settings.environment && needs.environment;
+    const bool mirrors =
+        settings.prefiltered_environment && settings.parts.reflection && settings.environment && needs.environment;
     if (mirrors) {
         data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
         data.memory_bytes += data.prefiltered->memory_bytes();
@@ -151,15 +157,16 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     for (const PackedShape& shape : data.shapes)
         packed += shape.vertices.size() * sizeof(PackedVertex) + shape.halves.size() * sizeof(PackedShape::Triangle);
     data.memory_bytes =
-        static_cast<std::int64_t>(packed + sizeof(PreparedData) +
-                                  data.objects.size() * sizeof(PreparedObject) + scene.objects.size() * sizeof(std::uint32_t));
+        static_cast<std::int64_t>(packed + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
+                                  scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMostCells));
-    const PartSet& parts = settings.parts; // a picture that is mirrored shows all of them
-    const bool direct = parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
+    const PartSet& parts = settings.parts; // a reflected image includes all parts
+    const bool direct =
+        parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
     if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();

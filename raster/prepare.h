@@ -1,4 +1,4 @@
-// What the rasterizer learns of a scene once, for any number of views.
+// Defines the data that the rasterizer computes once per scene, for any number of views.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -15,12 +15,12 @@
 namespace duet::raster {
 
 struct PreparedObject {
-    Box3 bounds;        ///< in the world, over all of the object's motion
-    std::optional<Rgb> one_color; ///< base colour, where no texture and no second material varies it
-    std::optional<RgbSlot> one_texture; ///< where that, filtered, is all of it
-    std::optional<MetalBsdf> metal; ///< where that, of one colour and roughness, is all of it
-    bool closed = false; ///< a sphere, a box or a mesh that is closed and oriented outwards
-    bool solid = false; ///< an opaque mesh, closed and oriented outwards: its back faces can't be seen from outside
+    Box3 bounds;        ///< in world space, over all of the object's motion
+    std::optional<Rgb> one_color; ///< base color, if it is the same all over the object
+    std::optional<RgbSlot> one_texture; ///< texture slot, if one filtered texture determines the base color
+    std::optional<MetalBsdf> metal; ///< BSDF, if the object is metal of one color and roughness
+    bool closed = false; ///< a sphere, box or mesh that is closed and oriented outwards
+    bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };
 
 class GeometryPool; // raster/geometry/geometry.h
@@ -30,24 +30,29 @@ class Prefiltered;  // raster/light/prefiltered.h
 struct PreparedData {
     const Scene& scene;
     std::vector<PreparedObject> objects;  ///< parallel to Scene::objects
-    std::vector<std::uint32_t> polygonal; ///< objects of triangles and quads, in order
-    std::vector<std::uint32_t> spheres;   ///< the others
-    std::vector<std::uint32_t> open_polygonal{}, open_spheres{}; ///< likewise those that may be seen through: in no list
-                                                                 ///< above (raster/visibility/layers.h)
-    std::vector<std::uint32_t> glass{};   ///< of those two above, what is of nothing but glass, in order (raster/screen/glass.h)
-    std::vector<std::size_t> lamps{};     ///< surface lights that mirrors look for beside the picture: the strongest, in order
-    std::size_t unmirrored_lamps = 0;     ///< the others
-    std::int64_t primitives = 0;          ///< triangles, quads and spheres over all objects
+    std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
+    std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order
+    /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above
+    /// (raster/visibility/layers.h).
+    std::vector<std::uint32_t> open_polygonal{}, open_spheres{};
+    /// The list holds those of `polygonal` and `spheres` that are all glass, in order (raster/screen/glass.h).
+    std::vector<std::uint32_t> glass{};
+    /// The list holds the indices of the strongest area lights, in order. Reflections include them even off-screen.
+    std::vector<std::size_t> lamps{};
+    std::size_t unmirrored_lamps = 0;     ///< number of the other area lights
+    std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
     Irradiance irradiance;                ///< from the environment
-    std::vector<PackedShape> shapes{};    ///< as the scene has them
-    std::vector<Texels> texels{};         ///< an image each
-    Rgb ambient{};                        ///< the environment's mean radiance: what Shading::kPhong has from all around
-    bool unsampled_emitters = false;      ///< surfaces that emit but are no lights: moving ones, stretched spheres
+    std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
+    std::vector<Texels> texels{};         ///< one per image
+    Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong
+    /// It is true if the scene has emissive surfaces that are not lights: moving objects, or non-uniformly scaled
+    /// spheres.
+    bool unsampled_emitters = false;
     std::int64_t memory_bytes = 0;
-    std::shared_ptr<const Shadows> shadows{};   ///< null where the settings or the scene ask for none
-    std::shared_ptr<const Prefiltered> prefiltered{}; ///< likewise
+    std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
+    std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
-    std::shared_ptr<GeometryPool> geometries{}; ///< memory that frames leave to the next
+    std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
 };
 
 } // namespace duet::raster

@@ -1,4 +1,4 @@
-// raster SCENE -o OUT: renders a scene by projecting its primitives onto the pixels.
+// Implements the program `raster SCENE -o OUT`, which renders a scene by rasterization.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "raster/render.h"
@@ -21,23 +21,27 @@ int main(int argc, char** argv) {
     program.spp_help = "Coverage samples a pixel (default 1: its centre)";
     program.add_options = [&](CLI::App& app) {
         app.add_option("--shading", shading_name, raster::shading_names() + " (default: lit, by materials and lights)");
-        app.add_option("--msaa", multisamples,
-                       "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
-                       "of --spp)");
+        app.add_option(
+            "--msaa", multisamples,
+            "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
+            "of --spp)");
         app.add_flag("--edges", edges, "Ink lines over the picture where depth, normals or objects change");
         app.add_flag("--sample-shading", sample_shading, "With --msaa: shade each sample")->needs("--msaa");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
         app.add_flag("--shadows,!--no-shadows", shadows,
                      "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
-        app.add_option("--shadow-map", shadow_map_side,
-                       "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter "
-                       "(default 2048); fewer where there would be too many for memory");
+        app.add_option(
+            "--shadow-map", shadow_map_side,
+            "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter "
+            "(default 2048); fewer where there would be too many for memory");
         app.add_option("--shadow-cells", shadow_cells,
                        "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
-        app.add_option("--ambient-occlusion", occlusion_name,
-                       "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
-        app.add_option("--occlusion-radius", occlusion_radius,
-                       "Metres that it may be away (default 0: half of the scene's size or the camera's distance, of ssao an eighth)")
+        app.add_option(
+            "--ambient-occlusion", occlusion_name,
+            "none, ssao or gtao (default): how what hides the environment is guessed from the picture's depths");
+        app.add_option(
+               "--occlusion-radius", occlusion_radius,
+               "Metres that it may be away (default 0: half of the scene's size or the camera's distance, of ssao an eighth)")
             ->check(nonnegative_number());
         app.add_flag("--prefiltered-environment,!--no-prefiltered-environment", prefiltered,
                      "Rough metal and frosted glass show a blurred environment, not as if smooth (default: on)");
@@ -55,7 +59,7 @@ int main(int argc, char** argv) {
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::shading(shading_name);
-        if (multisamples != 0) raster::multisample_pattern(multisamples); // refuses what there is not
+        if (multisamples != 0) raster::multisample_pattern(multisamples); // throws for an unsupported number
         settings.multisamples = multisamples;
         settings.edges = edges;
         settings.sample_shading = sample_shading;

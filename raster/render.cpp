@@ -45,20 +45,20 @@ std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraM
                        const Settings& settings) {
     if (settings.multisamples > 0) return {Pass{.samples = multisample_pattern(settings.multisamples)}};
     const bool shutter = view.camera.shutter_close != view.camera.shutter_open;
-    // Edges look at one sample of every pixel at a time.
+    // Edge detection needs exactly one sample of every pixel per pass.
     return plan_passes(settings.samples_per_pixel, settings.seed,
                        camera.has_lens() || !settings.skips.lens || draws_edges(settings),
                        (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
 
-/// What all passes of a rendering have in common.
+/// Holds the state that all passes of a rendering share.
 struct Frame {
     const PreparedData& data;
     const Settings& settings;
     const Program* program; ///< null for Shading::kLit
     TileGrid grid;
     Geometry& geometry;
-    Geometry* layers; ///< of the surfaces that may be seen through; null: there are none
+    Geometry* layers; ///< alpha-masked and alpha-blended surfaces; null if there are none
     Account& account;
     Progress& progress;
     Control& control;
@@ -72,7 +72,7 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
-/// One pass: its geometry, then each tile, which render_tile(view, index) makes.
+/// Renders one pass: processes its geometry, then calls render_tile(view, index) for each tile.
 template <typename RenderTile>
 void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
@@ -84,7 +84,8 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
         frame.account.add(*frame.layers);
     }
     const Stopwatch watch;
-    const std::unique_ptr<const Screen> screen = look_at_screen(frame.data, frame.settings, frame.grid, pass_view, frame.control);
+    const std::unique_ptr<const Screen> screen =
+        look_at_screen(frame.data, frame.settings, frame.grid, pass_view, frame.control);
     pass_view.screen = screen.get();
     frame.account.prepass += watch.seconds();
     if (screen) frame.account.add(*screen, *frame.data.geometries);
@@ -98,7 +99,7 @@ void render_pass(const Frame& frame, const CameraModel& camera, const View& view
     frame.account.tiles += tiles_watch.seconds();
 }
 
-/// Samples of a tile by a program, a row of strips at a time.
+/// Shades the samples of a tile with a program, one row of packets at a time.
 void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
     const PixelRect& rect = depths.rect();
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
@@ -120,21 +121,26 @@ void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depth
     }
 }
 
-/// Whether a tile has surfaces that may be seen through.
+/// Returns true if alpha-masked or alpha-blended surfaces overlap the tile.
 bool layered(const Frame& frame, std::size_t tile) { return frame.layers != nullptr && touches(*frame.layers, tile); }
-/// Whether its samples are shaded one by one: all of Shading::kLit, and with layers before them of any shading.
+/// Returns true if the tile's radiance is computed sample by sample: always for Shading::kLit, and for any shading
+/// in front of which there are transparent layers.
 bool all_one_by_one(const Frame& frame, std::size_t tile) { return frame.program == nullptr || layered(frame, tile); }
-/// The same, or auxiliary pictures of any shading.
-bool one_by_one(const Frame& frame, std::size_t tile) { return all_one_by_one(frame, tile) || frame.settings.aovs.any(); }
+/// Returns true if any output of the tile is computed sample by sample, auxiliary images included.
+bool one_by_one(const Frame& frame, std::size_t tile) {
+    return all_one_by_one(frame, tile) || frame.settings.aovs.any();
+}
 
-/// Samples of a tile one by one.
-void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths, Picture& picture) {
+/// Shades the samples of a tile one by one.
+void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths,
+                   Picture& picture) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
     if (layered(frame, index))
         layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
-    const bool central = view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
+    const bool central =
+        view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
             const Rgb* known = central && !layers ? seen_before(frame.data, frame.settings, tile, x, y) : nullptr;
@@ -145,7 +151,8 @@ void shade_samples(const Frame& frame, const PassView& view, std::size_t index, 
             Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
             if (layers) {
                 if (frame.program != nullptr && tile.hit(x, y).valid())
-                    shaded.radiance = frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
+                    shaded.radiance =
+                        frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
                 shaded = layers->over(x, y, shaded);
             }
             if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
@@ -153,10 +160,12 @@ void shade_samples(const Frame& frame, const PassView& view, std::size_t index, 
         }
 }
 
-/// One layer of a tile, each primitive once a pixel, as often as it has samples there.
-void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& tile, std::size_t layer, Picture& picture) {
+/// Shades one layer of a multisampled tile. Each primitive is shaded once per pixel and weighted by its number of
+/// samples.
+void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& tile, std::size_t layer,
+                 Picture& picture) {
     const PixelRect& rect = tile.rect();
-    const auto for_each = [&](const auto& visit) { // pixels that the layer has
+    const auto for_each = [&](const auto& visit) { // calls visit() for the pixels in the layer
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x)
                 if (const int count = tile.layer(layer).count(tile.place(x, y)); count > 0) visit(x, y, count);
@@ -192,7 +201,7 @@ void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& ti
         }
 }
 
-/// One tile of a picture by multisampling: all samples are covered, then shaded as far as they differ.
+/// Renders one tile with multisampling: determines the coverage of all samples, then shades each primitive once.
 void render_layers(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
     const PixelRect rect = frame.grid.tile(index);
     Stopwatch watch;
@@ -207,7 +216,7 @@ void render_layers(const Frame& frame, const PassView& view, std::size_t index, 
     frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
 }
 
-/// One tile of a picture: each of its samples a pixel is covered, then shaded.
+/// Renders one tile: determines the coverage of each sample, then shades it.
 void render_tile(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
     const PixelRect rect = frame.grid.tile(index);
     DepthTile depths;
@@ -221,11 +230,11 @@ void render_tile(const Frame& frame, const PassView& view, std::size_t index, Pi
     }
 }
 
-/// A pass with a single sample a pixel, and ink where what it sees changes.
+/// Renders a pass with one sample per pixel, and adds its edges to the overlay.
 void render_inked(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass, Picture& picture,
                   Overlay& overlay) {
     SeenPicture seen(view.width, view.height);
-    const std::unique_ptr<Program> normals = smooth_normal_program(); // relief is no edge
+    const std::unique_ptr<Program> normals = smooth_normal_program(); // bumps are not edges
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
         render_tile(frame, pass_view, i, picture);
         const SampleOffset offset = pass_view.samples.front();
@@ -233,12 +242,13 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
         cover(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
         if (layered(frame, i))
-            seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view), *normals);
+            seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view),
+                            *normals);
     });
     if (!frame.control.stopped()) overlay.add_edges(seen);
 }
 
-/// A pass a lens point or moment, all added up.
+/// Renders one pass per lens point or time, and averages them.
 Rendering render_picture(const Frame& frame, const CameraModel& camera, const View& view,
                          const std::vector<Pass>& passes) {
     const bool lines = frame.settings.shading == Shading::kLines, edges = draws_edges(frame.settings);
@@ -253,7 +263,7 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-            // What may be seen through is sorted for each sample, and so shaded for each.
+            // Transparent layers are sorted per sample, so each sample is shaded.
             if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
                 render_layers(frame, pass_view, i, picture);
             else
@@ -272,7 +282,7 @@ template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
     if (image.width() != view.width || image.height() != view.height) image = Image<Pixel>(view.width, view.height);
 }
 
-/// A single sample a pixel, straight to what a display or a shadow map takes.
+/// Renders one sample per pixel directly to the format of a display or a shadow map.
 void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
                     Rendering& result) {
     const bool depths_only = frame.settings.output == Output::kNearness;
@@ -290,7 +300,8 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
         else if (depths_only)
             keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
         else
-            display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
+            display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i,
+                         result.srgb);
     });
 }
 
@@ -337,9 +348,9 @@ void render(const Prepared& prepared, const View& view, const Settings& settings
     render_with(prepared, view, settings, built_in.get(), control, result);
 }
 
-void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program, Control& control,
-            Rendering& result) {
-    Settings other = settings; // what Shading::kLit alone has: light of the environment behind all
+void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program,
+            Control& control, Rendering& result) {
+    Settings other = settings; // the environment must not be in the background, which only kLit shows
     if (other.shading == Shading::kLit) other.shading = Shading::kAlbedo;
     render_with(prepared, view, other, &program, control, result);
 }

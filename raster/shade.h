@@ -1,4 +1,4 @@
-// Stage 8: from a Hit to what the picture shows there, by the shared surface point, materials and lights.
+// Implements stage 8, which shades a Hit with the shared surface point, materials and lights.
 #pragma once
 
 #include "raster/prepare.h"
@@ -7,16 +7,16 @@
 
 namespace duet::raster {
 
-/// What one sample gives to the picture and to the auxiliary pictures.
+/// Holds the contributions of one sample to the image and to the auxiliary images.
 struct Shaded {
     Rgb radiance;
-    Vec3 normal; ///< shading normal, on the viewer's side
+    Vec3 normal; ///< shading normal on the viewer's side
     Rgb albedo;
 };
 
-/// Shades one sample of a tile as Shading::kLit; of another shading, whose colours come from its Program, it makes the
-/// rest, with no radiance. Where nothing is hit, radiance is the environment's, or black where that is off or the
-/// shading shows none. The albedo is filled in where the settings ask for it.
+/// Shades one sample of a tile for Shading::kLit. For the other shadings, whose colors come from a Program, it
+/// computes the other fields, and radiance is 0. On a miss, radiance is that of the environment, or black if the
+/// environment is off or the shading does not show it. albedo is set only if the settings request it.
 Shaded shade(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
 
 } // namespace duet::raster

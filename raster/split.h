@@ -1,5 +1,4 @@
-// The rasterizer's shading, for hits that its caller has found: its light split into parts, for those who ask where
-// light comes from.
+// Declares the rasterizer's shading for hits found by the caller. The light is split into parts, for analysis.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -9,28 +8,30 @@ namespace duet::raster {
 
 class Screen; // raster/screen/screen.h
 
-/// Radiance towards the viewer, as Shading::kLit approximates it: the parts add up to what a picture shows. A part that
-/// Settings::parts leaves out is black.
+/// Holds the radiance towards the viewer as Shading::kLit approximates it. The parts sum to the color of the image. A
+/// part that Settings::parts turns off is black.
 struct LightParts {
-    Rgb emission;    ///< seen directly: emissive surfaces, and the environment behind all
-    Rgb direct;      ///< from Scene::lights by diffuse surfaces and rough metal
-    Rgb environment; ///< from the environment by diffuse surfaces, its occlusion guessed where there is a screen
-    Rgb reflection;  ///< by way of metal and glass: of what the picture shows where there is a screen, of lamps, of the environment
-    Rgb shadowed;    ///< no part of the sum: what `direct` lacks by the shadow maps
+    Rgb emission;    ///< directly visible emissive surfaces, and the environment as the background
+    Rgb direct;      ///< from Scene::lights, reflected by diffuse surfaces and rough metal
+    /// This part is light from the environment that diffuse surfaces reflect. Its occlusion is estimated if a
+    /// G-buffer is given.
+    Rgb environment;
+    Rgb reflection;  ///< from metal and glass: area lights, the environment, and the image if there is a screen
+    Rgb shadowed;    ///< not included in the sum: the direct light that the shadow maps block
 
     Rgb sum() const { return emission + direct + environment + reflection; }
 };
 
-/// How a picture of these settings would show what `ray`, of unit direction, hits; the background where that is
-/// nothing. `footprint`: of the ray at the hit; null: textures are not filtered.
+/// Shades the hit of `ray`, whose direction must be unit. A miss gives the background. `footprint` is that of the ray
+/// at the hit. If it is null, textures are not filtered.
 LightParts shade_hit(const Prepared& prepared, const Settings& settings, const Ray& ray, const Hit& hit,
                      const RayFootprint* footprint = nullptr, const Screen* screen = nullptr);
-/// The same of a surface point whose BSDF the caller has worked out. to_viewer: unit, in the world.
+/// Shades a surface point with a BSDF that the caller has computed. `to_viewer` is unit, in world space.
 LightParts shade_surface(const Prepared& prepared, const Settings& settings, const SurfacePoint& surface,
                          const Bsdf& bsdf, Vec3 to_viewer, const Screen* screen = nullptr);
 
-/// The depths that a view shows through the lens's centre as the shutter opens: what effects in screen space look at.
-/// Null where these settings have none.
+/// Returns the G-buffer of a view, from the lens center at the time the shutter opens, for screen-space effects.
+/// Returns null if these settings need none.
 std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings);
 
 } // namespace duet::raster

@@ -19,7 +19,8 @@ void AovBuffers::add(int x, int y, std::uint32_t index, const Ray& ray, const Hi
     if (!asked_.normal && !asked_.albedo) return;
     const SurfacePoint point = camera_surface_point(plan_, ray, hit, index);
     sums.normal += Vec3d(dot(point.ng, ray.direction) > 0 ? -point.ns : point.ns);
-    if (asked_.albedo) sums.albedo += Rgbd(base_color(plan_.scene.materials[point.material], plan_.scene.textures, point));
+    if (asked_.albedo)
+        sums.albedo += Rgbd(base_color(plan_.scene.materials[point.material], plan_.scene.textures, point));
 }
 
 void AovBuffers::finish(const Film& film, Rendering& rendering) {

@@ -1,4 +1,4 @@
-// Auxiliary pictures of what the camera rays hit.
+// AovBuffers accumulates auxiliary images (AOVs) of what the camera rays hit.
 #pragma once
 
 #include "common/film/film.h"
@@ -6,17 +6,17 @@
 
 namespace duet::raytrace {
 
-/// Gathers depth, normal, albedo and hit: as many of them as are asked for. Threads may add to different pixels at
-/// once.
+/// Accumulates depth, normal, albedo and hit, as many of them as are requested. Threads may add to different pixels
+/// at the same time.
 class AovBuffers {
 public:
     AovBuffers(const RenderPlan& plan, const View& view, const AovSet& asked);
 
-    /// Whether anything of a sample is looked at.
+    /// Returns whether any of these images is requested, so that add() has to be called.
     bool any() const { return asked_.depth || asked_.normal || asked_.albedo || asked_.hit; }
-    /// The first hit (or none) of a camera ray, sample `index` of its pixel.
+    /// Adds the first hit of a camera ray, which is sample `index` of its pixel. The hit may be invalid.
     void add(int x, int y, std::uint32_t index, const Ray& ray, const Hit& hit);
-    /// Moves the pictures to where they were asked for; those of the film, too.
+    /// Moves the requested images to `rendering`, also those that the film provides.
     void finish(const Film& film, Rendering& rendering);
     std::int64_t memory_bytes() const;
 
@@ -28,7 +28,7 @@ private:
         std::uint32_t hits = 0;
     };
     const RenderPlan& plan_;
-    Vec3d forward_; // of the camera
+    Vec3d forward_; // view direction of the camera
     AovSet asked_;
     Image<Sums> sums_;
     Image<Hit> hits_;

@@ -1,4 +1,4 @@
-// `raytrace --pixel`: one sample of one pixel, told readably.
+// explain() implements `raytrace --pixel`, which prints what happens along the path of one sample of one pixel.
 #pragma once
 
 #include "raytrace/render.h"
@@ -7,16 +7,16 @@
 
 namespace duet::raytrace {
 
-/// One sample of one pixel.
+/// Names one sample of one pixel, as named on the command line.
 struct SampleName {
     int x = 0, y = 0;
     std::uint32_t index = 0;
 };
-/// "x,y" or "x,y,sample"; throws Error for anything else.
+/// Parses "x,y" or "x,y,sample", where the default sample is 0. Throws Error for anything else.
 SampleName parse_sample_name(const std::string& text);
 
-/// Renders that sample as render() does, to the same bits, and tells what happens on its way, in lines of text. Throws
-/// Error for a pixel outside the picture.
+/// Renders the named sample bit-equal to render(), and returns lines of text about what happens along its path.
+/// Throws Error for a pixel outside the image.
 std::string explain(const Prepared& prepared, const View& view, const Settings& settings, const SampleName& name);
 
 } // namespace duet::raytrace

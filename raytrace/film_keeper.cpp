@@ -31,7 +31,7 @@ std::string camera_hash(const Camera& camera) {
     return hexadecimal(hash_bytes(0, {reinterpret_cast<const char*>(numbers), sizeof numbers}));
 }
 
-// A film as the file has it, if there is one, else an empty one.
+// Returns the film in the file if the file exists, else an empty film.
 KeptFilm opened(const Scene& scene, const View& view, const Settings& settings) {
     KeptFilm fresh{Film(view.width, view.height), {}, settings.first_sample};
     if (settings.film.empty()) return fresh;
@@ -77,7 +77,7 @@ void FilmKeeper::add(const std::function<void()>& work) {
         work();
     }
     if (path_.empty()) return;
-    const std::unique_lock one(writing_, std::try_to_lock); // another is at it: no need
+    const std::unique_lock one(writing_, std::try_to_lock); // another thread is writing it
     if (!one || since_written_.seconds() < interval_) return;
     keep();
     since_written_.restart();
@@ -89,7 +89,7 @@ void FilmKeeper::keep() {
         const std::unique_lock alone(at_rest_);
         return kept_;
     }();
-    write_film(path_, now); // while others go on
+    write_film(path_, now); // other threads continue meanwhile
 }
 
 } // namespace duet::raytrace

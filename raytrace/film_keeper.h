@@ -1,4 +1,4 @@
-// A render's film, and the file that keeps it while the render runs.
+// FilmKeeper owns the film of a render and saves it to a file while the render runs.
 #pragma once
 
 #include "common/film/film_file.h"
@@ -12,30 +12,31 @@
 
 namespace duet::raytrace {
 
-/// Everything that decides the bits of a film's samples, but for their numbers: of which films can be continued by a
-/// render, and joined with others.
+/// Returns everything that decides the bits of a film's samples, except for the sample numbers. A render can
+/// continue a film, and films can be merged, only if these settings are equal.
 std::vector<KeptFilm::Setting> film_settings(const Scene& scene, const View& view, const Settings& settings);
 
-/// The film of one render. With Settings::film it begins as that file has it, if there is one, and is written there at
-/// intervals and at the end; else it begins empty.
+/// Owns the film of one render. With Settings::film, it starts from that file if the file exists, and writes the
+/// film there at intervals and at the end. Otherwise it starts empty.
 class FilmKeeper {
 public:
-    /// Throws Error for a file that is no film, or one of another picture or other samples.
+    /// Throws Error if the file is no film, or is a film of another image or of other samples.
     FilmKeeper(const Scene& scene, const View& view, const Settings& settings);
 
     Film& film() { return kept_.film; }
 
-    /// Runs work that adds to some pixels, from any thread; then writes the film, if it is time.
+    /// Runs `work`, which adds to some pixels, then writes the film if the interval has passed. Any thread may call
+    /// it.
     void add(const std::function<void()>& work);
-    /// Writes the film. Throws Error (exit code 1) where that fails.
+    /// Writes the film if there is a file to write to. Throws Error (exit code 1) if writing fails.
     void keep();
 
 private:
-    const std::filesystem::path path_; // empty: nothing is kept
+    const std::filesystem::path path_; // empty: nothing is written
     const double interval_;
     KeptFilm kept_;
     Stopwatch since_written_;
-    std::shared_mutex at_rest_; // held by all who add, and by who looks at all pixels alone
+    std::shared_mutex at_rest_; // shared by threads that add to pixels, exclusive to copy all pixels
     std::mutex writing_;
 };
 

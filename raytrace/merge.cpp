@@ -34,7 +34,8 @@ void add(Film& film, const Film& other) {
     }
 }
 
-// Whether the film is one that could have been rendered in one go: every pixel has the same samples, none is left out.
+// Returns whether the merged film is one that a single run could have rendered: every pixel has the same samples,
+// and none is missing.
 bool whole(const std::vector<NamedFilm>& films) {
     std::uint64_t next = films.front().kept.first_sample;
     for (const NamedFilm& film : films) {

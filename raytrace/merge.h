@@ -1,4 +1,4 @@
-// `raytrace merge`: shards of a rendering, joined.
+// These functions implement `raytrace merge`, which merges the films of a rendering's shards.
 #pragma once
 
 #include "common/film/film_file.h"
@@ -8,17 +8,17 @@
 
 namespace duet::raytrace {
 
-/// A film and the name of the file that it is from.
+/// Holds a film and the name of its file.
 struct NamedFilm {
     std::string name;
     KeptFilm kept;
 };
 
-/// The sums of all, added in the order of their samples. Throws Error, naming files, for none, films of different
-/// pictures, and films that share samples.
+/// Returns the sums of all films, added in the order of their samples. Throws Error, naming the files, if there are
+/// none, if they are films of different images, or if they share samples.
 KeptFilm merged(std::vector<NamedFilm> films);
 
-/// The program's body: `raytrace merge -o OUT FILM…`, argv[0] being "merge". Returns its exit code.
+/// Runs `raytrace merge -o OUT FILM…`, where argv[0] is "merge". Returns the exit code.
 int run_merge(int argc, char** argv);
 
 } // namespace duet::raytrace

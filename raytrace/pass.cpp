@@ -15,8 +15,8 @@ namespace {
 
 Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
 
-// (Number by number, each to where it stays: a whole point read back right after its parts were written would wait for
-// them.)
+// This function writes each number directly to its destination. If a whole point were copied right after its
+// components were written, that load would wait for their stores.
 void set_point(CameraModel::Point& point, const RenderPlan& plan, int x, int y, const CameraNumbers& u) {
     const Vec2d offset = plan.filter.sample(u.pixel);
     point.pixel.x = x + 0.5 + offset.x;
@@ -59,17 +59,18 @@ private:
     int columns_;
 };
 
-// Camera rays are traced some at a time: those of neighbouring pixels, and of one pixel's samples, run close together.
+// Camera rays are traced in batches, because those of neighboring pixels, and of one pixel's samples, are coherent.
 class CameraBatch {
 public:
-    /// most: samples to come.
+    /// `most` is the number of samples to come.
     CameraBatch(const PassTarget& target, const CameraModel& camera, std::size_t most)
         : target_(target), camera_(camera), size_(std::min(most, kMost)),
-          samplers_(size_, target.settings.make_sampler()), points_(size_), rays_(size_), hits_(size_), radiances_(size_) {
+          samplers_(size_, target.settings.make_sampler()), points_(size_), rays_(size_), hits_(size_),
+          radiances_(size_) {
         samples_.reserve(size_);
     }
 
-    // Samples [begin, end) of a pixel.
+    // Adds samples [begin, end) of a pixel.
     void add(int x, int y, std::uint32_t begin, std::uint32_t end) {
         while (begin < end) {
             const std::size_t old = samples_.size();
@@ -80,7 +81,7 @@ public:
         }
     }
 
-    // Renders what has been added and not been rendered yet.
+    // Renders the samples that have been added but not been rendered yet.
     void finish() {
         const std::size_t size = samples_.size();
         if (size == 0) return;
@@ -106,14 +107,15 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    // So many that few are left alone at what seldom is found, and that all of them stay at hand.
+    // The batch is so large that few paths are alone at a rare class of surface, and so small that it stays in the
+    // cache.
     static constexpr std::size_t kMost = 2048;
     struct Sample {
         int x, y;
         std::uint32_t index;
     };
 
-    // As camera_ray has them.
+    // Makes the camera rays of the batch, equal to those of camera_ray.
     void start_rays(std::span<Ray> rays) {
         constexpr std::size_t kSome = 256;
         std::array<CameraNumbers, kSome> numbers;
@@ -133,8 +135,8 @@ private:
     const CameraModel& camera_;
     RayCounts counts_;
     std::optional<InvalidSample> first_invalid_;
-    const std::size_t size_; // at once
-    std::vector<Sample> samples_; // so many of those below
+    const std::size_t size_; // samples in a batch
+    std::vector<Sample> samples_; // samples_.size() elements of the arrays below are in use
     std::vector<Sampler> samplers_;
     std::vector<CameraModel::Point> points_;
     std::vector<Ray> rays_;
@@ -142,7 +144,7 @@ private:
     std::vector<Rgb> radiances_;
 };
 
-// The bits at even places of a number below 2¹⁶, together: a Morton code's x, or y after a shift.
+// Returns the even bits of a 16-bit number, packed together: x of a Morton code, or y after a shift.
 int even_bits(unsigned code) {
     int bits = 0;
     for (int i = 0; i < 8; ++i) bits |= static_cast<int>(code >> (2 * i) & 1u) << i;
@@ -156,7 +158,8 @@ struct TileTally {
 
 TileTally render_tile(const PassTarget& target, const CameraModel& camera, const Tile& tile) {
     const Film& film = target.keeper.film();
-    const auto for_pixels = [&](const auto& visit) { // along a Z-curve: pixels near in order are near
+    // Pixels are visited in Z-order, so that pixels close in order are close in the image.
+    const auto for_pixels = [&](const auto& visit) {
         for (unsigned code = 0; code < kTile * kTile; ++code) {
             const int x = tile.x0 + even_bits(code), y = tile.y0 + even_bits(code >> 1);
             if (x < tile.x1 && y < tile.y1) visit(x, y, film.taken(x, y), film.pixels()(x, y).target);
@@ -166,7 +169,8 @@ TileTally render_tile(const PassTarget& target, const CameraModel& camera, const
     for_pixels([&](int, int, std::uint32_t begin, std::uint32_t end) { all += end > begin ? end - begin : 0; });
     CameraBatch batch(target, camera, all);
     const std::uint32_t first = target.settings.first_sample;
-    for_pixels([&](int x, int y, std::uint32_t begin, std::uint32_t end) { batch.add(x, y, first + begin, first + end); });
+    for_pixels(
+        [&](int x, int y, std::uint32_t begin, std::uint32_t end) { batch.add(x, y, first + begin, first + end); });
     batch.finish();
     return {batch.counts(), batch.first_invalid()};
 }
@@ -177,7 +181,7 @@ bool render_pass(const PassTarget& target, double begin, double end) {
     const Tiles tiles(target.view);
     const CameraModel camera(target.view);
     std::atomic<bool> complete = true;
-    std::mutex mutex; // of the counts and the progress
+    std::mutex mutex; // guards the counts and the progress
     std::size_t finished = 0;
     parallel_for(tiles.count(), target.settings.threads, [&](std::size_t i) {
         if (target.control.stopped()) {

@@ -1,4 +1,4 @@
-// A render's passes over the whole picture, each some samples of its pixels.
+// A render consists of passes over the whole image. Each pass takes some samples of its pixels.
 #pragma once
 
 #include "common/film/film.h"
@@ -8,10 +8,10 @@
 
 namespace duet::raytrace {
 
-/// The camera ray of the sample that the sampler stands at, of pixel (x, y).
+/// Returns the camera ray of pixel (x, y) for the sampler's current sample.
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler);
 
-/// Everything that a pass reads and adds to.
+/// Holds everything that a pass reads and everything that it adds to.
 struct PassTarget {
     const RenderPlan& plan;
     const View& view;
@@ -23,8 +23,9 @@ struct PassTarget {
     std::optional<InvalidSample>& first_invalid;
 };
 
-/// Renders the samples that the film's pixels have been promised and do not have yet, tile by tile on all threads. False
-/// where it was stopped: tiles at hand are finished, others left out. Reports progress from `begin` to `end`.
+/// Renders the samples that the film's pixels lack to reach their targets (Film::Pixel::target), tile by tile on all
+/// threads. Returns false if it was stopped: tiles in progress are finished, and the others are left out. Reports
+/// progress from `begin` to `end`.
 bool render_pass(const PassTarget& target, double begin, double end);
 
 } // namespace duet::raytrace

@@ -14,7 +14,7 @@ std::optional<PlainSurfaces::Form> form_of(const Scene& scene, const Object& obj
 
 std::optional<PlainSurfaces::Scattering> scattering_of(const Bsdf& bsdf) {
     if (const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf)) {
-        if (is_black(diffuse->albedo)) return {}; // which ends paths
+        if (is_black(diffuse->albedo)) return {}; // such surfaces end paths
         return PlainSurfaces::Scattering::kMatt;
     }
     if (const auto* metal = std::get_if<MetalBsdf>(&bsdf))
@@ -25,7 +25,8 @@ std::optional<PlainSurfaces::Scattering> scattering_of(const Bsdf& bsdf) {
 
 } // namespace
 
-PlainSurfaces::PlainMaterial PlainSurfaces::plain(const Scene& scene, std::uint32_t material, const std::optional<Bsdf>& bsdf) {
+PlainSurfaces::PlainMaterial PlainSurfaces::plain(const Scene& scene, std::uint32_t material,
+                                                  const std::optional<Bsdf>& bsdf) {
     if (!bsdf || surface_detail(scene, material) != SurfaceDetail::kWithoutUv) return {};
     if (emitter(scene.materials[material]) != nullptr) return {};
     const auto scattering = scattering_of(*bsdf);
@@ -45,7 +46,8 @@ PlainSurfaces::PlainSurfaces(const Scene& scene, const std::vector<std::optional
         if (plain.several || plain.material.bsdf != nullptr) plain.form = form_of(scene, object);
         if (!plain.form) continue;
         classes_[objects_.size() - 1] =
-            plain.several ? kAsMaterial : static_cast<std::uint8_t>(Kind{*plain.form, plain.material.scattering}.index());
+            plain.several ? kAsMaterial
+                          : static_cast<std::uint8_t>(Kind{*plain.form, plain.material.scattering}.index());
     }
 }
 

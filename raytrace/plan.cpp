@@ -35,9 +35,10 @@ int depth(const Settings& settings) {
 
 } // namespace
 
-RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth)
-    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), plain(scene.objects.size()), max_depth(depth(settings)),
-      russian_roulette(settings.russian_roulette && max_depth > 1) {
+RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings,
+                       std::optional<float> known_worth)
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), plain(scene.objects.size()),
+      max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1) {
     const Skips& skips = settings.skips;
     const CameraModel camera(view);
     lens = camera.has_lens() || !skips.lens;
@@ -60,10 +61,11 @@ RenderPlan::RenderPlan(const PreparedData& prepared_, const View& view, const Se
                                                      : prepared.finite_lights;
     const bool any_use = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && any_use) lights = &chooser;
-    // Nothing that paths keep besides, or that tests ask for; and some lanes.
+    // Paths are scattered in batches only with at least 4 lanes of doubles, and only if they need nothing that
+    // batches do not support: a medium stack, footprints, or the shadow rays and light samples that tests request.
     if (kDoubleLanes >= 4 && !insides && !pixel && !black_shadow_rays && !mirror_light)
         plain = PlainSurfaces(scene, *bsdfs);
-    // The naive one stays as plain as it is.
+    // The naive integrator does not learn this factor, so that it stays simple.
     const bool learns = russian_roulette && settings.integrator != Integrator::kNaive;
     worth = known_worth ? *known_worth : learns ? learned_worth(prepared, view, settings) : kPlainWorth;
 }
@@ -111,7 +113,7 @@ std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings) {
     return list;
 }
 
-/// Paths of this many scatterings, the default of Settings::max_depth, count as whole.
+/// A limit of at least this many scatterings, the default of Settings::max_depth, counts as no limit.
 constexpr int kWholePath = 64;
 
 std::vector<std::string> approximations(const RenderPlan& plan, const Settings& settings) {

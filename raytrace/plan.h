@@ -1,4 +1,5 @@
-// What a render decides once, before its loop: which parts of path tracing this scene, view and settings need.
+// RenderPlan is what a render decides once before its loop: which steps of path tracing this scene, view and
+// settings need.
 #pragma once
 
 #include "common/camera/pixel_footprint.h"
@@ -11,38 +12,40 @@
 namespace duet::raytrace {
 
 struct RenderPlan {
-    /// known_worth: what `worth` is; empty: it is learned.
-    RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings, std::optional<float> known_worth = {});
-    RenderPlan(const RenderPlan&) = delete; // bsdfs may point into it
+    /// Makes the plan. `known_worth` sets the roulette survival factor `worth`. If it is empty, the factor is
+    /// estimated by learned_worth.
+    RenderPlan(const PreparedData& prepared_, const View& view, const Settings& settings,
+               std::optional<float> known_worth = {});
+    RenderPlan(const RenderPlan&) = delete; // bsdfs may point into the plan
     RenderPlan& operator=(const RenderPlan&) = delete;
 
     const PreparedData& prepared;
     const Scene& scene;
     const PixelFilter filter;
-    const LightChooser* lights = nullptr;                    ///< null: no light is sampled
-    const Environment* environment = nullptr;                ///< null: rays that escape find nothing
-    const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material: made once, where no texture varies it
+    const LightChooser* lights = nullptr;                    ///< null if no light is sampled
+    const Environment* environment = nullptr;                ///< null if rays that escape find no light
+    const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material; empty where a texture varies it
     std::vector<SurfaceDetail> details; ///< by material: what its surface points need
-    bool emission = false;                                   ///< surfaces that are hit may emit
-    bool hits_find_light = false;   ///< a ray may find light by itself: an emitter, or the environment
-    bool mirror_light = false;      ///< light is sampled at mirrors and glass, too, which cannot reflect it
-    bool insides = false;           ///< some dielectric absorbs, or knows of others that it may stand in
-    bool black_shadow_rays = false; ///< shadow rays are sent to light that the surface would not reflect, too
-    PlainSurfaces plain;            ///< those at which paths may scatter side by side (plain_vertices.h)
+    bool emission = false;                                   ///< whether surfaces that are hit may emit
+    bool hits_find_light = false;   ///< whether BSDF samples may find an emitter or the environment
+    bool mirror_light = false;      ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
+    bool insides = false; ///< whether a dielectric absorbs or has a priority, so that paths need a medium stack
+    bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
+    PlainSurfaces plain;            ///< surfaces at which paths are scattered in batches (plain_vertices.h)
     int max_depth = 0;
-    bool russian_roulette = false;  ///< paths of more than one scattering may be ended
-    float worth = kPlainWorth;      ///< of throughput, to roulette: see learned_worth
-    std::optional<PixelFootprint> pixel; ///< of a camera ray that stands for all of one; empty where no texture is filtered
-    bool lens = false;   ///< rays start all over the lens
-    bool motion = false; ///< rays have times of their own
+    bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
+    float worth = kPlainWorth;      ///< survival probability divided by throughput; see learned_worth
+    std::optional<PixelFootprint> pixel; ///< of a ray that covers a whole pixel; empty if no texture is filtered
+    bool lens = false;   ///< whether rays start at points sampled on the lens
+    bool motion = false; ///< whether rays have sampled times
 
 private:
-    std::vector<std::optional<Bsdf>> none_; ///< what bsdfs is where each is to be made at the hit
+    std::vector<std::optional<Bsdf>> none_; ///< what bsdfs points to if each BSDF is to be made at the hit
 };
 
-/// What the plan leaves out, and why.
+/// Returns what the plan leaves out, and why.
 std::vector<Skipped> skipped(const RenderPlan& plan, const Settings& settings);
-/// What the integrator leaves out though the scene has it.
+/// Returns what the integrator leaves out although the scene has it.
 std::vector<std::string> approximations(const RenderPlan& plan, const Settings& settings);
 
 } // namespace duet::raytrace

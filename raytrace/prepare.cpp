@@ -29,7 +29,8 @@ PreparedData::PreparedData(const Scene& scene_, int threads, BvhQuality quality)
     scatters_diffusely = any_used_material(scene, [&](const Material& material) {
         const auto* metal = std::get_if<Metal>(&material);
         const auto* glass = std::get_if<Dielectric>(&material);
-        return (metal != nullptr && !metal->roughness.constant()) || (glass != nullptr && !glass->roughness.constant()) ||
+        return (metal != nullptr && !metal->roughness.constant()) ||
+               (glass != nullptr && !glass->roughness.constant()) ||
                !is_specular(bsdf_at(material, scene.textures, SurfacePoint{}));
     });
 }

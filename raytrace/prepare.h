@@ -1,4 +1,4 @@
-// What prepare() makes of a scene, once for any number of views.
+// PreparedData is what prepare() makes of a scene, once for any number of views.
 #pragma once
 
 #include "common/light/light_choice.h"
@@ -11,18 +11,18 @@
 namespace duet::raytrace {
 
 struct PreparedData {
-    /// threads: for building, 0 = all; quality: of the hierarchies.
+    /// `threads` is the number of build threads (0 = all), and `quality` is that of the hierarchies.
     PreparedData(const Scene& scene_, int threads, BvhQuality quality);
 
     const Scene& scene;
     Accelerator accelerator;
-    LightChooser lights;                    ///< the scene's lights, and its environment if it is uneven
+    LightChooser lights; ///< the scene's lights, and its environment if that is sampled
     LightChooser finite_lights;             ///< without the environment, for settings that leave it out
     LightChooser environment_light;         ///< the environment alone
-    std::vector<std::optional<Bsdf>> bsdfs; ///< by material: made once, where no texture varies it
-    bool emitters = false;                  ///< some object emits: hits can find light
-    bool environment = false;               ///< it is not black: rays that escape can find light
-    bool scatters_diffusely = false;        ///< some object has a material that light samples can find
+    std::vector<std::optional<Bsdf>> bsdfs; ///< by material; empty where a texture varies it
+    bool emitters = false;                  ///< whether some object emits, so that hits can find light
+    bool environment = false;               ///< whether it is not black, so that rays that escape can find light
+    bool scatters_diffusely = false;        ///< whether some object's material can reflect light samples
 };
 
 } // namespace duet::raytrace

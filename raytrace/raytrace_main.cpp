@@ -1,4 +1,4 @@
-// raytrace SCENE -o OUT: renders a scene by sending rays from the pixels into it.
+// The program `raytrace SCENE -o OUT` renders a scene with the path tracer.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "common/system/error.h"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace duet;
 
-// "A:B" → first_sample and samples_per_pixel.
+// Sets first_sample and samples_per_pixel from "A:B".
 void set_samples(const std::string& text, raytrace::Settings& settings) {
     std::uint32_t first = 0, last = 0;
     const char* const end = text.data() + text.size();
@@ -24,8 +24,8 @@ void set_samples(const std::string& text, raytrace::Settings& settings) {
     const bool colon = a.ec == std::errc() && a.ptr != end && *a.ptr == ':';
     const auto b = std::from_chars(colon ? a.ptr + 1 : end, end, last);
     if (!colon || b.ec != std::errc() || b.ptr != end || first >= last || last > 1u << 24)
-        throw Error(message("--samples: found ", text, ", expected FIRST:END such as 0:128, FIRST below END, END at most ",
-                            1 << 24));
+        throw Error(message("--samples: found ", text,
+                            ", expected FIRST:END such as 0:128, FIRST below END, END at most ", 1 << 24));
     settings.first_sample = first;
     settings.samples_per_pixel = static_cast<int>(last - first);
 }
@@ -61,10 +61,11 @@ int main(int argc, char** argv) {
                        "visibility), lights (emission and direct light of lights), environment (its light on diffuse "
                        "surfaces), reflection (what is seen by way of "
                        "metal and glass), normal or albedo");
-        app.add_option("--sampler", sampler,
-                       "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
-                       "samples is even over the picture), stratified, independent, or center (pixel and lens centre, "
-                       "shutter open)");
+        app.add_option(
+            "--sampler", sampler,
+            "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
+            "samples is even over the picture), stratified, independent, or center (pixel and lens centre, "
+            "shutter open)");
         app.add_option("--filter", filter,
                        "How a pixel weighs the light around its centre: box (default, the pixel itself) or "
                        "blackman-harris (a smooth bell over 3 x 3 pixels)");
@@ -72,19 +73,20 @@ int main(int argc, char** argv) {
             ->check(positive_number());
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(positive_number());
-        // As a function: of an optional flag CLI11 would make false what is not given.
+        // This is a flag function, because CLI11 would set an optional flag that is not given to false.
         app.add_flag_function("--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
                               "More samples where the error is, --spp in the mean (default with --time or --error, "
                               "but for --samples and samplers that need to know the number)");
         auto* const film_option = app.add_option(
             "--film", film,
-            "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
-            "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows its "
-            "error, and goes on with these alone. `raytrace merge` joins films");
+        "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
+        "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows its "
+        "error, and goes on with these alone. `raytrace merge` joins films");
         app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
             ->check(nonnegative_number())
             ->needs(film_option);
-        app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
+        app.add_option("--samples", samples,
+                       "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
         app.add_option("--pixel", pixel,
                        "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
                        "needs no -o");

@@ -25,12 +25,14 @@ void check(const View& view, const Settings& settings) {
         throw Error(message("samples of the ", sampler_name(settings.sampler),
                             " sampler depend on how many there are, and are not taken in parts: expected another"));
     if (settings.adaptive && (settings.first_sample > 0 || depends_on_count(settings.sampler)))
-        throw Error("adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
-                    "samples do not depend on how many there are");
+        throw Error(
+            "adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
+            "samples do not depend on how many there are");
     if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
 }
 
-// The part of the work that is done after `samples`, as far as the limits let one know.
+// Returns the fraction of the work that is done after `samples` samples per pixel and `seconds`, as far as the
+// limits on samples and time determine it.
 double fraction_done(const Settings& settings, double samples, double seconds) {
     const double by_count = samples / static_cast<double>(settings.samples_per_pixel);
     const double by_time = settings.time_limit > 0 ? seconds / settings.time_limit : 0;
@@ -64,7 +66,7 @@ Rendering render(const Prepared& prepared, const View& view, const Settings& set
     RenderStatistics& statistics = rendering.statistics;
     const auto pixels = static_cast<double>(film.pixels().size());
     const std::int64_t begun = film.all_taken();
-    double finished = film.least_taken(), progress = 0; // samples a pixel in the mean, of finished passes
+    double finished = film.least_taken(), progress = 0; // finished: mean samples per pixel
     for (;;) {
         const Spent spent{watch.seconds(), film.all_taken() - begun};
         if (film.complete() && !plan_pass(settings, spent, film)) break;

@@ -14,18 +14,18 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr int kSamples = 16;                                            // of a pixel, in two replicates
+constexpr int kSamples = 16;                                            // samples per pixel, in two replicates
 constexpr std::size_t kMostPixels = 2048 / kSamples, kFewestPixels = 512 / kSamples;
-constexpr std::uint64_t kSeed = 0x70756c6c;                             // of its own: no render's samples are used twice
-constexpr int kOctaves = 4, kSteps = 3;                                 // of worth, from 1 on; and steps of each
+constexpr std::uint64_t kSeed = 0x70756c6c; // a seed of its own, so that no render reuses its samples
+constexpr int kOctaves = 4, kSteps = 3; // octaves of the factor from 1 on, and steps per octave
 
-// What the paths of one pixel were like.
+// Records the paths of one pixel.
 struct Pixel {
     std::vector<PathStep> steps;
-    std::array<std::size_t, kSamples> ends{}; // of each path's steps
+    std::array<std::size_t, kSamples> ends{}; // ends of the paths' steps
     double camera_rays = 0;
-    double mean = 0, variance = 0; // of one sample, as well placed as they are
-    double importance = 0;         // of its light's square
+    double mean = 0, variance = 0; // of one sample; the variance takes stratification into account
+    double importance = 0;         // weight of its squared error
 };
 
 Pixel traced_pixel(const RenderPlan& plan, const CameraModel& camera, int x, int y) {
@@ -57,12 +57,12 @@ struct Product {
     double log() const { return std::log(error) + std::log(cost); }
 };
 
-// Of a pixel with this worth.
+// Returns the error and the cost of a pixel if roulette used this factor.
 Product error_and_cost(const Pixel& pixel, double worth) {
     Product sum{kSamples * pixel.importance * pixel.variance, pixel.camera_rays};
     std::size_t k = 0;
     for (const std::size_t end : pixel.ends) {
-        double chance = 1; // of the path to get here
+        double chance = 1; // probability that the path gets here
         for (; k < end; ++k) {
             const PathStep& step = pixel.steps[k];
             const double before = chance, weight = static_cast<double>(step.weight);
@@ -74,7 +74,8 @@ Product error_and_cost(const Pixel& pixel, double worth) {
     return sum;
 }
 
-// Some pixels, in groups: how much these differ tells what all together are worth.
+// Traces the pixels of a trial, in groups. The differences between the groups show how certain the result of all of
+// them is.
 class Trials {
 public:
     Trials(const RenderPlan& plan, const View& view, std::size_t count, int threads) : pixels_(count) {
@@ -89,7 +90,7 @@ public:
         weigh();
     }
 
-    // Whether there is anything to learn from.
+    // Returns whether the trial has any variance to learn from.
     bool tell() const { return absolute_ > 0 && std::isfinite(absolute_); }
 
     using Groups = std::array<Product, 16>;
@@ -100,7 +101,8 @@ public:
     }
 
 private:
-    // So that the importance × variance of all pixels, beside which roulette's own is seen, is 1 in the mean.
+    // Sets the importance of all pixels so that the mean of importance × variance is 1. The error that roulette adds
+    // is relative to that.
     void weigh() {
         double relative = 0;
         const auto count = static_cast<double>(pixels_.size());
@@ -117,8 +119,8 @@ private:
     double absolute_ = 0;
 };
 
-// The logarithm of error × cost over what they are otherwise, and two standard errors, by the jackknife: leaving out a group
-// at a time (Efron and Tibshirani 1993, «An Introduction to the Bootstrap», §11).
+// Returns the logarithm of error × cost relative to `otherwise`, plus two standard errors, by the jackknife, which
+// leaves out one group at a time (Efron and Tibshirani 1993, "An Introduction to the Bootstrap", §11).
 double certain_loss(const Trials::Groups& groups, const Trials::Groups& otherwise) {
     const auto loss = [&](std::size_t left_out) {
         Product one, other;
@@ -139,7 +141,8 @@ double certain_loss(const Trials::Groups& groups, const Trials::Groups& otherwis
 } // namespace
 
 float learned_worth(const PreparedData& prepared, const View& view, const Settings& settings) {
-    const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) / (8 * kSamples);
+    const std::size_t pixels =
+        static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) / (8 * kSamples);
     if (pixels < kFewestPixels) return kPlainWorth;
     Settings trial = settings;
     trial.skips = {};

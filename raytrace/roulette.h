@@ -1,4 +1,5 @@
-// Russian roulette by expected contribution: how much throughput a path must have left to be worth its rays.
+// Russian roulette decides by expected contribution: learned_worth estimates below which throughput it may end a
+// path.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -8,20 +9,24 @@ namespace duet::raytrace {
 struct PreparedData;
 struct Settings;
 
-/// Where nothing is known of the scene: a path of a quarter of its throughput goes on for certain.
+/// This is the default if nothing is known of the scene: a path with a throughput of at least 1/4 continues for
+/// certain.
 inline constexpr float kPlainWorth = 4;
 
-/// A path goes on with a chance of its throughput × worth, where that is below 1 (survival). The worth for which error ×
-/// cost of the picture are least: error is half MSE and half relMSE, each over what it is without roulette, cost is rays.
-/// Every path that goes on saves its successors from standing for others (their light squared is variance), and costs its
-/// rays; how both add up is known from a few paths of the picture, traced beforehand almost without roulette, which leave a
-/// record of each step (Bolin and Meyer 1997, Vorba and Křivánek 2016 and Rath et al. 2022 weigh the same two; here there is
-/// one number for all of a picture: README.md has what more would gain). Few paths tell little: another worth than
-/// kPlainWorth has to be better by two standard errors.
+/// Returns the roulette survival factor: a path survives with a probability of its throughput × this factor, where
+/// that is below 1 (see survival). The factor minimizes error × cost of the image. The error is half MSE and half
+/// relMSE, each relative to its value without roulette, and the cost is the number of rays.
 ///
-/// At most 2,048 paths, and no more than an eighth of the pixels; kPlainWorth for pictures so small that this tells nothing.
-/// The paths have a seed of their own, and neither samples nor threads nor skips decide: shards and continued films have one
-/// worth. Between 1, by which no survivor stands for more than a path from the camera does, and 16.
+/// A path that continues costs its rays. A path that may end adds variance, because survivors are weighted up: the
+/// squares of their light count. Both are summed over a few paths of the image, which are traced beforehand almost
+/// without roulette and leave a record of each step. (Bolin and Meyer 1997, Vorba and Křivánek 2016 and Rath et al.
+/// 2022 weigh the same two; here one number serves the whole image, and README.md says what more would gain.) A few
+/// paths are a noisy estimate: another factor than kPlainWorth must be better by two standard errors.
+///
+/// At most 2,048 paths are traced, and at most one for every 8 pixels. Images too small for 512 paths get
+/// kPlainWorth. The paths have a seed of their own and do not depend on samples, threads or skips, so that shards
+/// and continued films have the same factor. The factor is in [1, 16]; with 1, a survivor's throughput is at most
+/// that of a camera path.
 float learned_worth(const PreparedData& prepared, const View& view, const Settings& settings);
 
 } // namespace duet::raytrace

@@ -14,7 +14,8 @@ void raise_all(Film& film, std::uint32_t samples) {
         for (int x = 0; x < film.width(); ++x) film.pixels()(x, y).target = film.taken(x, y) + samples;
 }
 
-// The variance of one sample, as it is and over (mean² + 0.01), mean of the channels; negative where it is not known.
+// Holds the variance of one sample, as it is and divided by (mean² + 0.01), as the mean of the channels. Both are
+// negative if it is not known.
 struct OneSample {
     double absolute = -1, relative = -1;
 };
@@ -30,7 +31,7 @@ OneSample variance_of_one(const Film& film, int x, int y) {
     return {sum.absolute / 3 * samples, sum.relative / 3 * samples};
 }
 
-// What each pixel's neighbours have, in the mean; 0 where none knows.
+// Returns the mean of each pixel's neighbors, of those that are known (not negative), or 0 if none is.
 Image<double> of_neighbours(const Image<double>& own) {
     Image<double> result(own.width(), own.height());
     for (int y = 0; y < own.height(); ++y)
@@ -48,7 +49,7 @@ Image<double> of_neighbours(const Image<double>& own) {
     return result;
 }
 
-// Divides by the mean, if there is one.
+// Divides all values by their mean, if the mean is positive.
 void normalize(Image<double>& values) {
     double sum = 0;
     for (const double v : values) sum += v;
@@ -57,7 +58,7 @@ void normalize(Image<double>& values) {
         for (std::size_t i = 0; i < values.size(); ++i) values[i] /= mean;
 }
 
-// s of each pixel.
+// Returns s of each pixel; see spread_samples.
 Image<double> needed_variance(const Film& film) {
     Image<double> absolute(film.width(), film.height()), relative(film.width(), film.height());
     for (int y = 0; y < film.height(); ++y)
@@ -73,13 +74,13 @@ Image<double> needed_variance(const Film& film) {
     return s;
 }
 
-// A pixel: √s, and the samples it has.
+// Holds a pixel's √s, and the number of samples that it has.
 struct Need {
     double root, taken;
     double more(double scale) const { return std::clamp(scale * root - taken, 0.0, taken); }
 };
 
-constexpr double kLeast = 0.01; // of s, whose mean is 1
+constexpr double kLeast = 0.01; // least s; the mean of s is 1
 
 double all_more(const std::vector<Need>& needs, double scale) {
     double sum = 0;
@@ -87,9 +88,10 @@ double all_more(const std::vector<Need>& needs, double scale) {
     return sum;
 }
 
-/// So many samples a pixel bring the error nearer to where it should be, from `ratio` > 1 times as much. It falls with their
-/// number or sooner; spread ones, much sooner (in open-sky.json from 16 to 20 to the half): so half of the way, and where
-/// what is left is little, a 32nd of what is done.
+/// Returns the samples per pixel of the next pass toward an error limit. `ratio` > 1 is the current error over the
+/// limit. The error falls at least as fast as 1/n with n samples per pixel, and adaptively distributed samples lower
+/// it much faster (in open-sky.json it halves from 16 to 20 samples). A pass therefore covers half of the way to the
+/// limit. If little is left, an adaptive pass takes at least a 32nd of the samples so far.
 double samples_towards(double ratio, double done, bool spread) {
     const double half_way = done * (ratio - 1) / 2;
     return spread ? std::max(half_way, done / 32) : std::max(2 * std::ceil(half_way / 2), 2.0);
@@ -110,11 +112,12 @@ void spread_samples(Film& film, std::int64_t samples) {
         }
     const auto wanted = static_cast<double>(samples);
     double low = 0;
-    for (int i = 0; i < 24; ++i) { // the scale at which the samples are just used up, or hardly too many
+    for (int i = 0; i < 24; ++i) { // bisection for the scale that uses up the samples
         const double middle = (low + high) / 2;
         (all_more(needs, middle) < wanted ? low : high) = middle;
     }
-    // Even numbers, so that replicates grow alike; what one pixel's rounding takes, the next one's gets.
+    // The numbers of new samples are even, so that both replicates grow equally. What rounding takes from one pixel
+    // goes to the next.
     double carried = 0;
     for (std::size_t i = 0; i < needs.size(); ++i) {
         carried += needs[i].more(high) / 2;
@@ -149,7 +152,9 @@ bool plan_pass(const Settings& settings, const Spent& spent, Film& film) {
         spread_samples(film, static_cast<std::int64_t>(count * pixels));
         if (!film.complete()) return true;
     }
-    raise_all(film, static_cast<std::uint32_t>(std::max(count, 1.0))); // of a few pixels a part of a sample each is none
+    // Adaptive sampling may have added no sample, if the image has few pixels and the pass less than one sample per
+    // pixel.
+    raise_all(film, static_cast<std::uint32_t>(std::max(count, 1.0)));
     return true;
 }
 

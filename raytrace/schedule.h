@@ -1,4 +1,4 @@
-// How many samples each pixel gets, pass by pass.
+// The schedule decides how many samples each pixel gets, pass by pass.
 #pragma once
 
 #include "common/film/film.h"
@@ -6,32 +6,36 @@
 
 namespace duet::raytrace {
 
-/// A first few samples that all miss the lights look converged: what the film tells of errors is asked from so many a
-/// pixel on.
+/// The film's error estimates are used only from this many samples per pixel on, because a few samples that all miss
+/// the lights look converged.
 inline constexpr double kMinForError = 16;
 
-/// What a render has done itself; the film that it went on from is left out.
+/// Counts what this render has spent. It excludes the film that the render continues.
 struct Spent {
     double seconds = 0;
     std::int64_t samples = 0;
 };
 
-/// Tells each pixel of a complete film how many samples it is to have after the next pass (Film::Pixel::target); false
-/// where a limit is reached: the mean number of samples, the time, or the error. The first 16 samples are taken at once,
-/// since no error is known before, and so are all others 16 by 16 where there is no limit. With one, passes grow with
-/// what is done, so that the end comes near the limit, and go no more than half of the way to an error asked for; before a
-/// limit of time they start with 2, and the last is cut to what the time is good for, as near as 2 samples.
+/// Sets the number of samples that each pixel of a complete film is to have after the next pass
+/// (Film::Pixel::target). Returns false if a limit is reached: the mean number of samples, the time, or the error.
+/// The first 16 samples are taken in one pass, because no error is known before. Without a limit of time or error,
+/// all other passes take 16 samples, too. With such a limit, passes grow with the number of samples so far, so that
+/// the render ends near the limit, and go at most half of the way to the requested error. With a time limit, they
+/// start with 2 samples, and the last pass is cut to the nearest 2 samples that fit into the remaining time.
 ///
-/// With Settings::adaptive the passes from the 16th sample on are spread (see spread_samples).
+/// With Settings::adaptive, passes from the 16th sample on distribute their samples by spread_samples.
 bool plan_pass(const Settings& settings, const Spent& spent, Film& film);
 
-/// Raises the targets by `samples` in all, so that the error after them is least, as far as the film tells: with an error
-/// of √(s/n) at n samples that is n ∝ √s. s is the variance of one sample, half as it is, and half over (mean² + 0.01),
-/// each over its mean in the picture: so that the sum of what becomes of MSE and of relMSE, beside as many samples spread
-/// evenly, is least, and neither is bought with the other. It is estimated from the pixel's eight neighbours: what its own
-/// samples say would bias it, because pixels that look dark and quiet by chance would keep what they look like (Kirk and
-/// Arvo 1991, «Unbiased Sampling Techniques for Image Synthesis»). No pixel gets more than it has already, and none is
-/// left behind for good: s counts as a hundredth of the mean at least.
+/// Raises the targets by `samples` in total, so that the error after them is least by the film's estimates. If the
+/// error is √(s/n) after n samples, n must be proportional to √s. Here s is the variance of one sample: half as it
+/// is, and half divided by (mean² + 0.01), each relative to its mean over the image. This minimizes the sum of MSE
+/// and relMSE, each relative to its value with as many evenly distributed samples, so that neither is reduced at the
+/// expense of the other.
+///
+/// s is estimated from the pixel's eight neighbors. The pixel's own samples would bias it, because pixels that look
+/// dark and noiseless by chance would remain so (Kirk and Arvo 1991, "Unbiased Sampling Techniques for Image
+/// Synthesis"). No pixel gets more new samples than it has already. s counts as at least a hundredth of its mean, so
+/// that every pixel gets new samples in the end.
 void spread_samples(Film& film, std::int64_t samples);
 
 } // namespace duet::raytrace

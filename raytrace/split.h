@@ -1,4 +1,5 @@
-// The path tracer, one camera sample at a time, its light split into parts: for those who ask where light comes from.
+// SplitTracer traces one camera sample at a time and splits its light into components, for callers that need to know
+// where light comes from.
 #pragma once
 
 #include "raytrace/integrator/light_parts.h"
@@ -8,29 +9,30 @@
 
 namespace duet::raytrace {
 
-/// The surface that a camera ray meets first, as the path tracer sees it.
+/// Describes the surface that a camera ray hits first, as the path tracer evaluates it.
 struct FirstSurface {
     SurfacePoint point;
     Bsdf bsdf;
 };
 
-/// One sample of one pixel.
+/// Describes one sample of one pixel.
 struct CameraSample {
     Ray ray;
     Hit hit;
-    std::optional<FirstSurface> surface;   ///< empty where nothing is hit
-    std::optional<RayFootprint> footprint; ///< of the ray there; empty where no texture is filtered, too
+    std::optional<FirstSurface> surface;   ///< empty on a miss
+    std::optional<RayFootprint> footprint; ///< of the ray there; empty on a miss, or if no texture is filtered
     LightParts light;
 };
 
-/// Traces what render() with the same settings traces: sample `index` of pixel (x, y) is the same ray, the same path
-/// and, but for rounding, the same radiance, light.sum(). Where those know their error, even and
-/// odd indices are two independent halves (see Sampler). The integrator must be path or direct.
+/// Traces what render() with the same settings traces: sample `index` of pixel (x, y) has the same ray, the same
+/// path and, except for rounding, the same radiance, light.sum(). If the settings need an error estimate
+/// (Settings::knows_error), even and odd indices are two independent halves (see Sampler). The integrator must be
+/// path or direct.
 class SplitTracer {
 public:
     SplitTracer(const Prepared& prepared, const View& view, const Settings& settings);
 
-    /// Any number of threads may call it at once.
+    /// Traces one sample. Any number of threads may call it at once.
     CameraSample sample(int x, int y, std::uint32_t index) const;
 
 private:

@@ -11,9 +11,9 @@ namespace duet {
 
 namespace {
 
-// The nearest point with float coordinates. Both pipelines then see the scene, whose vertices are floats, from the very
-// same point. (By the instruction, not by a cast there and back: GCC 12 takes that for nothing where it works on several
-// numbers at once, and rays through the lens no longer met their origin.)
+// Rounds a point to float coordinates. Both pipelines then use exactly the same eye point, as they use the same float
+// vertices. The code uses conversion instructions instead of casts to float and back, because GCC 12 removes such a
+// pair of casts when it vectorizes; rays through the lens then no longer passed through their origin.
 Vec3d rounded(Vec3d p) {
     const auto one = [](double x) {
         return _mm_cvtsd_f64(_mm_cvtss_sd(_mm_setzero_pd(), _mm_cvtsd_ss(_mm_setzero_ps(), _mm_set_sd(x))));
@@ -30,15 +30,16 @@ Vec3T<DoubleBatch> rounded(const Vec3T<DoubleBatch>& p) {
     return {one(p.x), one(p.y), one(p.z)};
 }
 
-// A vector not parallel to `forward` to stand for an `up` that is.
+// Returns `up`, or another vector if `up` is parallel to `forward`.
 Vec3d usable_up(Vec3d forward, Vec3d up) {
     const double sine_squared = length_squared(cross(forward, up));
     if (sine_squared > 1e-24 * length_squared(up)) return up;
     return std::abs(forward.y) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
 }
 
-// The inverse of the pixel-to-ray map. For q = p − origin and camera coordinates c = (right·q, up·q, forward·q):
-// perspective: c = w·(direction + x·dx + y·dy) with w = depth; orthographic: c = (x·dx, y·dy, depth) with w = 1.
+// Returns the inverse of the map from pixels to rays. Let q = p − origin, with camera coordinates c = (right·q,
+// up·q, forward·q). A perspective view has c = w·(direction + x·dx + y·dy) with w = depth. An orthographic view
+// has c = (x·dx, y·dy, depth) with w = 1.
 Mat4d pixel_matrix(const Pinhole& view, Vec3d right, Vec3d up, bool orthographic) {
     const Vec3d dx = orthographic ? view.origin_dx : view.direction_dx;
     const Vec3d dy = orthographic ? view.origin_dy : view.direction_dy;
@@ -59,7 +60,7 @@ Mat4d pixel_matrix(const Pinhole& view, Vec3d right, Vec3d up, bool orthographic
 
 Rayd Pinhole::ray(Vec2d pixel, double time) const {
     const Vec3d d = direction + direction_dx * pixel.x + direction_dy * pixel.y;
-    const double per_depth = length(d); // distance along the ray for each unit of depth
+    const double per_depth = length(d); // distance along the ray per unit of depth
     Rayd ray;
     ray.origin = origin + origin_dx * pixel.x + origin_dy * pixel.y;
     ray.direction = d / per_depth;
@@ -85,7 +86,7 @@ CameraModel::CameraModel(const View& view)
     right_ = normalize(cross(forward, usable_up(forward, camera.up)));
     up_ = cross(right_, forward);
 
-    // Half the picture's extent, in metres (orthographic) or at unit depth (perspective).
+    // Half the extent of the image is in meters (orthographic) or at unit depth (perspective).
     const double half_height = orthographic ? camera.height / 2 : std::tan(radians(camera.fov_degrees) / 2);
     const double half_width = half_height * view.width / view.height;
     const Vec3d corner = up_ * half_height - right_ * half_width;
@@ -107,21 +108,21 @@ CameraModel::CameraModel(const View& view)
     center_.world_to_pixel = pixel_matrix(center_, right_, up_, orthographic);
 }
 
-// What a ray is computed in before it is rounded, T being double or a batch of doubles.
+// Holds a ray before its rounding to float. T is double or a batch of doubles.
 template <typename T> struct CameraModel::Exact {
     Vec3T<T> origin, direction;
     T t_min;
 };
 
-// The lens point's offset from the centre, ending on float coordinates.
+// Returns the offset of a lens point from the lens center. The lens point itself is rounded to float coordinates.
 template <typename T> Vec3T<T> CameraModel::lens_offset(Vec2T<T> on_disk) const {
     const Vec2T<T> lens = on_disk * T(aperture_radius_);
     const Vec3T<T> origin = spread<T>(center_.origin);
     return rounded(origin + spread<T>(right_) * lens.x + spread<T>(up_) * lens.y) - origin;
 }
 
-// Seen from another point of the lens, the plane in focus stays where it is: a pixel's ray goes to the point
-// focus_distance · direction from the centre. (The offset has a tiny depth of its own, from rounding.)
+// The plane of focus is the same for all lens points: the ray of a pixel passes through the point at
+// focus_distance · direction from the lens center. Because of rounding, the lens offset itself has a tiny depth.
 Pinhole CameraModel::through(Vec2d lens_sample) const {
     if (!has_lens()) return center_;
     const Vec3d offset = lens_offset(Vec2d(concentric_disk(Vec2(lens_sample))));
@@ -135,7 +136,8 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
     return view;
 }
 
-// As through(lens point).ray(pixel), without the matrix.
+// Computes the same ray as through(lens_sample).ray(pixel), but without the matrix. `on_disk` is the lens sample mapped
+// to the unit disk.
 template <typename T> CameraModel::Exact<T> CameraModel::exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const {
     Vec3T<T> d = spread<T>(center_.direction) + spread<T>(center_.direction_dx) * pixel.x +
                  spread<T>(center_.direction_dy) * pixel.y;
@@ -148,7 +150,7 @@ template <typename T> CameraModel::Exact<T> CameraModel::exact_ray(Vec2T<T> pixe
         origin = spread<T>(center_.origin) + spread<T>(center_.origin_dx) * pixel.x +
                  spread<T>(center_.origin_dy) * pixel.y;
     }
-    const T per_depth = length(d); // distance along the ray for each unit of depth
+    const T per_depth = length(d); // distance along the ray per unit of depth
     return {origin, d / per_depth, T(center_.near) * per_depth};
 }
 
@@ -187,8 +189,9 @@ void CameraModel::rays(std::span<const Point> points, std::span<Ray> rays) const
             }
         alignas(64) std::array<Row, 7> numbers;
         for (std::size_t i = 0; i < kLanes; i += kDoubleLanes) {
-            const auto exact = exact_ray<DoubleBatch>({DoubleBatch::load_aligned(&x[i]), DoubleBatch::load_aligned(&y[i])},
-                                                      {load_doubles(&lens_x[i]), load_doubles(&lens_y[i])});
+            const auto exact =
+                exact_ray<DoubleBatch>({DoubleBatch::load_aligned(&x[i]), DoubleBatch::load_aligned(&y[i])},
+                                       {load_doubles(&lens_x[i]), load_doubles(&lens_y[i])});
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 store_floats(exact.origin[axis], &numbers[axis][i]);
                 store_floats(exact.direction[axis], &numbers[3 + axis][i]);

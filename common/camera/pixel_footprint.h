@@ -1,4 +1,4 @@
-// How far apart the rays of neighbouring samples are.
+// A pixel footprint measures the spacing of the rays of neighboring samples.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -9,8 +9,8 @@
 
 namespace duet {
 
-/// Of a view whose pixels take a number of samples each: every one stands for its share of the pixel's area, so steps
-/// are those of pixels over √samples.
+/// With n samples per pixel, each sample represents 1/n of the pixel's area. The spacing of samples is therefore the
+/// spacing of pixels divided by √n.
 class PixelFootprint {
 public:
     PixelFootprint(const Pinhole& view, int samples_per_pixel)
@@ -18,12 +18,12 @@ public:
           origin_dx_(Vec3(view.origin_dx) * scale_), origin_dy_(Vec3(view.origin_dy) * scale_),
           direction_dx_(Vec3(view.direction_dx) * scale_), direction_dy_(Vec3(view.direction_dy) * scale_) {}
 
-    /// At distance t along a camera ray of unit direction.
+    /// Returns the footprint at distance t along a camera ray, whose direction must have unit length.
     RayFootprint at(const Ray& ray, float t) const {
         const float depth = t * dot(ray.direction, forward_);
         return {origin_dx_ + direction_dx_ * depth, origin_dy_ + direction_dy_ * depth};
     }
-    /// 1/√samples.
+    /// Returns 1/√n, where n is the number of samples per pixel.
     float scale() const { return scale_; }
 
 private:

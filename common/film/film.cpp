@@ -29,8 +29,9 @@ Rgbd Film::mean(int x, int y) const {
     return n > 0 ? (pixel.sum[0] + pixel.sum[1]) / n : Rgbd();
 }
 
-// With n₀ and n₁ samples of variance s in the replicates, E (m₀ − m₁)² = s (1/n₀ + 1/n₁), and the mean of all has the
-// variance s / (n₀ + n₁): the factor between them is n₀ n₁ / (n₀ + n₁)², one quarter for equal halves.
+// Let the replicates have n₀ and n₁ samples, each of variance s. Then E (m₀ − m₁)² = s (1/n₀ + 1/n₁).
+// The mean of all samples has the variance s / (n₀ + n₁), which is E (m₀ − m₁)² times n₀·n₁ / (n₀ +
+// n₁)². For replicates of equal size, this factor is 1/4.
 Rgbd Film::variance(int x, int y) const {
     const Pixel& pixel = pixels_(x, y);
     if (pixel.count[0] == 0 || pixel.count[1] == 0) return Rgbd(std::numeric_limits<double>::infinity());
@@ -93,7 +94,7 @@ std::int64_t Film::invalid_samples() const {
 
 namespace {
 
-// The largest of each channel among a pixel's neighbours.
+// Returns the maximum of each channel over the up to eight neighbors of a pixel.
 Rgbd brightest_neighbour(const Image<Rgbd>& means, int x, int y) {
     Rgbd most;
     for (int j = std::max(y - 1, 0); j <= std::min(y + 1, means.height() - 1); ++j)

@@ -1,4 +1,4 @@
-// The film: sums of samples in double precision, from which mean and variance follow at any time.
+// The film accumulates samples in double precision. It provides the mean and its variance of each pixel at any time.
 #pragma once
 
 #include "common/image/image.h"
@@ -8,53 +8,62 @@
 
 namespace duet {
 
-/// Each pixel keeps its samples' sums by replicate (see Sampler): where there are two, scrambled independently,
-/// half the difference of their means, squared, estimates the variance of the pixel's mean without bias, whatever the
-/// sampler. 2^24 and more samples add up without stalling. Threads may add to different pixels at once.
+/// Each pixel stores one sum of samples per replicate (see Sampler). Where there are two replicates of equal size,
+/// scrambled independently, the square of half the difference of their means is an unbiased estimate of the variance of
+/// the pixel's mean, for every sampler. Sums in double still grow after 2^24 samples, where sums in float would stall.
+/// Different threads may add samples to different pixels at the same time.
 class Film {
 public:
-    /// Whether a sample counts: neither NaN, nor infinite, nor negative.
+    /// Returns whether a sample is valid: no component is NaN, infinite or negative.
     static bool valid(Rgb sample) { return is_finite(sample) && sample.r >= 0 && sample.g >= 0 && sample.b >= 0; }
 
     static constexpr std::size_t kReplicates = 2;
 
     Film(int width, int height);
 
-    /// Adds a sample. One that is NaN, infinite or negative is dropped and counted instead: false.
+    /// Adds a valid sample to a replicate of pixel (x, y) and returns true. An invalid sample is dropped and only
+    /// counted; the function then returns false. The replicate is 0 or 1.
     bool add(int x, int y, std::size_t replicate, Rgb sample);
 
     int width() const { return pixels_.width(); }
     int height() const { return pixels_.height(); }
-    /// Mean of all samples of a pixel; black where there is none.
+    /// Returns the mean of all valid samples of a pixel, or black if it has none.
     Rgbd mean(int x, int y) const;
-    /// Samples that were added or dropped: the next one's number, where they are taken in order.
+    /// Returns the number of samples taken for a pixel, including the dropped ones. If samples are taken in order, this
+    /// is the index of the next sample.
     std::uint32_t taken(int x, int y) const;
-    /// The fewest taken of any pixel, and all of all pixels.
+    /// Returns the minimum of taken() over all pixels.
     std::uint32_t least_taken() const;
+    /// Returns the sum of taken() over all pixels.
     std::int64_t all_taken() const;
-    /// Whether each pixel has the samples it was promised.
+    /// Returns whether every pixel has reached its target number of samples (see Pixel::target).
     bool complete() const;
-    /// Estimated variance of that mean, by channel; infinity where a replicate has no sample.
+    /// Returns the estimated variance of mean(x, y) for each channel, or infinity if a replicate has no sample.
     Rgbd variance(int x, int y) const;
+    /// Returns the number of valid samples of a pixel.
     std::uint32_t samples(int x, int y) const;
+    /// Returns the number of dropped samples of a pixel: those that are NaN, infinite or negative.
     std::uint32_t invalid(int x, int y) const { return pixels_(x, y).invalid; }
 
     ImageRgb image() const;
     ImageRgb variance_image() const;
     Image<std::uint32_t> samples_image() const;
     std::int64_t invalid_samples() const;
-    /// Mean of variance / (mean² + 0.01) over channels and the pixels whose variance is known; −1 where that is fewer
-    /// than half. By a pixel's own mean a rare bright sample would hide itself, for it raises mean² as much as the variance: with
-    /// caustics half of the error was not seen. So a mean counts as no more than the brightest neighbour's, or the
-    /// replicate's that has less, whichever is more: what both replicates find is really there.
+    /// Returns the mean of variance / (mean² + 0.01) over the channels of all pixels with a known variance. Returns
+    /// −1 if fewer than half of the pixels have one.
+    ///
+    /// A rare bright sample raises mean² as much as the variance and would thus hide its own error: with caustics,
+    /// half of the error went undetected. The formula therefore limits a pixel's mean to the larger of two values. The
+    /// first is the mean of the brightest neighbor. The second is the mean less its standard error, which for
+    /// replicates of equal size is the smaller of their two means: a brightness that both replicates contain is real.
     double estimated_relmse() const;
 
-    /// What a pixel keeps.
+    /// A pixel stores the sum and the number of valid samples for each replicate.
     struct Pixel {
         std::array<Rgbd, kReplicates> sum{};
         std::array<std::uint32_t, kReplicates> count{};
         std::uint32_t invalid = 0;
-        std::uint32_t target = 0; ///< how many are to be taken by the end of the pass at hand
+        std::uint32_t target = 0; ///< number of samples that the pixel must have at the end of the current pass
     };
     const Image<Pixel>& pixels() const { return pixels_; }
     Image<Pixel>& pixels() { return pixels_; }

@@ -1,4 +1,5 @@
-// Films in files: kept while a render runs, continued by a later one, joined with those of other machines.
+// These functions write and read film files. A render can store its film as a checkpoint, a later render can continue
+// it, and the films of several computers can be merged.
 #pragma once
 
 #include "common/film/film.h"
@@ -9,30 +10,32 @@
 
 namespace duet {
 
-/// A film, and what it is a film of.
+/// A film together with the settings that it was rendered with.
 struct KeptFilm {
-    /// A setting that decides the samples, such as {"seed", "0"}.
+    /// A setting that determines the samples, for example {"seed", "0"}.
     struct Setting {
         std::string name, value;
         friend bool operator==(const Setting&, const Setting&) = default;
     };
 
     Film film;
-    std::vector<Setting> settings;  ///< of different names, in any order
-    std::uint32_t first_sample = 0; ///< every pixel has samples from this one on, as many as Film::taken says
+    std::vector<Setting> settings;  ///< settings with distinct names, in any order
+    std::uint32_t first_sample = 0; ///< index of every pixel's first sample; Film::taken is the number of samples
 };
 
-/// An EXR that any viewer shows: R, G and B are the means. Beside them lies all that the film keeps, exactly: each sum
-/// of doubles as two channels of 32-bit integers, sumN.C.high and sumN.C.low (N the replicate, C of R, G, B), countN,
-/// invalid and target; the settings are text attributes, `duet:film.NAME`. Whole or absent. Throws Error (exit code 1) where
-/// writing fails.
+/// Writes a film as an EXR file that any viewer can display: channels R, G and B are the means of the pixels. Further
+/// channels of 32-bit integers store the film's data exactly. Each sum, a double, is stored as the two channels
+/// sumN.C.high and sumN.C.low, where N is the replicate and C is R, G or B; the other channels are countN, invalid and
+/// target. The settings are text attributes named `duet:film.NAME`. The file is written atomically: it is complete or
+/// absent. Throws an Error (exit code 1) if writing fails.
 void write_film(const std::filesystem::path& path, const KeptFilm& kept);
 
-/// The same bits that were written. Throws Error naming the file and what is missing or wrong for one that is no film.
+/// Reads a film file. The film has exactly the bits that were written. Throws an Error that names the file and the
+/// missing or wrong data if the file is not a film.
 KeptFilm read_film(const std::filesystem::path& path);
 
-/// Throws Error, naming the film and both values, for the first of size and settings in which `found` is not as
-/// expected.
+/// Checks that two films belong to the same image. Throws an Error for the first difference in size or in one of the
+/// settings of `expected`; its message contains `name`, the value found and the value expected.
 void check_same_picture(const std::string& name, const KeptFilm& found, const KeptFilm& expected);
 
 } // namespace duet

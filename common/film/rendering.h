@@ -1,4 +1,4 @@
-// What a pipeline is asked for and what it returns: the same types for both.
+// This file defines the settings and the results of a render. Both pipelines use the same types.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -12,95 +12,95 @@
 
 namespace duet {
 
-/// Auxiliary pictures, made on request only.
+/// Selects the auxiliary images (arbitrary output variables, AOVs) that a render produces.
 struct AovSet {
     bool depth = false, normal = false, albedo = false, hit = false, variance = false, samples = false;
     bool any() const { return depth || normal || albedo || hit || variance || samples; }
 };
 
-/// What may be left out because it cannot change the expected picture (`compare skip` proves it). All are on; a
-/// pipeline reads those that it has, once, before its loops.
+/// Each flag enables a shortcut that skips work which cannot change the expected image; `compare skip` verifies this.
+/// All shortcuts are on by default. A pipeline reads the flags that it supports once, before its loops.
 struct Skips {
-    bool lens = true;          ///< lens points of a pinhole
-    bool motion = true;        ///< moments where nothing moves
-    bool environment = true;   ///< one that is black
-    bool frustum = true;       ///< primitives and objects that no pixel can see (rasterizer, as the next three)
-    bool back_faces = true;    ///< of closed, opaque meshes seen from outside
-    bool subpixel = true;      ///< triangles between the samples
-    bool degenerate = true;    ///< triangles of no area on the sub-pixel grid
-    bool textures = true;      ///< BSDFs anew at each hit, where no texture varies them (path tracer, as all below)
-    bool light_samples = true; ///< where nothing emits, or no material can take them
-    bool mirror_light = true;  ///< light samples at mirrors and glass
-    bool emission = true;      ///< of the surfaces hit, where none emits
-    bool last_bounce = true;   ///< rays that could only find a light, where none can be found
-    bool shadow_rays = true;   ///< to light that the surface would not reflect
+    bool lens = true;          ///< skips lens samples for a pinhole camera
+    bool motion = true;        ///< skips time samples where nothing moves
+    bool environment = true;   ///< skips a black environment
+    bool frustum = true;       ///< culls primitives and objects outside the view frustum (rasterizer)
+    bool back_faces = true;    ///< culls back faces of closed, opaque meshes seen from outside (rasterizer)
+    bool subpixel = true;      ///< culls triangles that cover no sample (rasterizer)
+    bool degenerate = true;    ///< culls triangles of zero area on the subpixel grid (rasterizer)
+    bool textures = true;      ///< reuses BSDFs that no texture varies (path tracer, as all flags below)
+    bool light_samples = true; ///< skips light samples where nothing emits or no material can use them
+    bool mirror_light = true;  ///< skips light samples at mirrors and glass
+    bool emission = true;      ///< skips the emission of hit surfaces where no surface emits
+    bool last_bounce = true;   ///< skips last rays, which can only find a light, where there is no light to hit
+    bool shadow_rays = true;   ///< skips shadow rays to light that the surface does not reflect
 };
 
-/// Settings that both pipelines have.
+/// These settings apply to both pipelines.
 struct RenderSettings {
     int samples_per_pixel = 1;
-    int threads = 0; ///< 0: all
+    int threads = 0; ///< number of threads; 0: all available
     std::uint64_t seed = 0;
     AovSet aovs;
     Skips skips;
 };
 
-/// Something left out because the scene doesn't need it: why, or how many.
+/// Reports work that a render skipped because the scene does not need it. Either `why` or `count` describes it.
 struct Skipped {
     std::string what, why;
-    std::int64_t count = -1; ///< −1: `why` says it; else how many were skipped
+    std::int64_t count = -1; ///< number of skipped items; −1: not counted, `why` gives the reason
 };
 
-/// The path tracer's bounding volume hierarchies, all together.
+/// These statistics are sums over all bounding volume hierarchies (BVHs) of the path tracer.
 struct HierarchyStatistics {
-    std::string quality;         ///< "default" or "high"; empty: there are none
-    std::int64_t nodes = 0;      ///< wide ones
-    std::int64_t references = 0; ///< primitives and instances in leaves; one that is cut counts in each
+    std::string quality;         ///< "default" or "high"; empty: there is no BVH
+    std::int64_t nodes = 0;      ///< number of wide nodes
+    std::int64_t references = 0; ///< primitives and instances in leaves; a split primitive counts once per leaf
 };
 
-/// A sample whose radiance is NaN, infinite or negative: `raytrace --pixel x,y,sample` tells its path.
+/// Identifies a sample whose radiance is NaN, infinite or negative. `raytrace --pixel x,y,sample` prints its path.
 struct InvalidSample {
     std::uint32_t sample = 0;
     int y = 0, x = 0;
 
-    /// The first is that of the lowest number, in the uppermost row, farthest to the left.
+    /// Samples are ordered by sample index, then by row from the top, then by column from the left.
     friend auto operator<=>(const InvalidSample&, const InvalidSample&) = default;
 };
-/// The earlier of two; either may be none.
+/// Returns the earlier of two samples. If one of them is empty, returns the other.
 inline std::optional<InvalidSample> first_of(std::optional<InvalidSample> a, std::optional<InvalidSample> b) {
     return !a || (b && *b < *a) ? b : a;
 }
 
-/// What a rendering cost and what it did.
+/// These statistics describe the cost and the work of a render.
 struct RenderStatistics {
-    std::vector<std::pair<std::string, double>> seconds; ///< by stage, in order ("transform", "cover", "shade" …)
-    int samples_per_pixel = 0;                           ///< as rendered; where interrupted, of the finished passes
+    std::vector<std::pair<std::string, double>> seconds; ///< time of each stage, in order ("transform", "cover", …)
+    int samples_per_pixel = 0;                           ///< samples taken; if interrupted, in the finished passes
     int passes = 0;
     std::int64_t camera_rays = 0, indirect_rays = 0, shadow_rays = 0;
-    std::int64_t triangles = 0;       ///< triangles, quads and spheres of the flattened scene
-    std::int64_t memory_bytes = 0;    ///< of what `prepare` built and the render kept
-    std::int64_t invalid_samples = 0; ///< NaN, infinite or negative: dropped from the film, and reported
-    std::optional<InvalidSample> first_invalid; ///< of those that this render took (path tracer)
-    double estimated_relmse = -1;     ///< mean over pixels of variance / (mean² + 0.01); −1: not estimated
+    std::int64_t triangles = 0;       ///< number of triangles, quads and spheres of the flattened scene
+    std::int64_t memory_bytes = 0;    ///< bytes of the data that `prepare` built and of the render's buffers
+    std::int64_t invalid_samples = 0; ///< dropped samples: NaN, infinite or negative
+    std::optional<InvalidSample> first_invalid; ///< first invalid sample of this render (path tracer only)
+    double estimated_relmse = -1;     ///< see Film::estimated_relmse; −1: not estimated
     HierarchyStatistics bvh;
     std::vector<Skipped> skipped;
-    std::vector<std::string> approximations; ///< what is not the path tracer's truth, each named in a sentence
+    std::vector<std::string> approximations; ///< differences from the path-traced reference, one sentence each
     bool interrupted = false;
 };
 
 struct Rendering {
-    ImageRgb radiance; ///< linear
-    // Auxiliary pictures, empty unless asked for. Depth, normal and albedo are means over the samples that hit; hit is
-    // of sample 0.
-    ImageFloat depth;   ///< camera-space −z in metres; infinity where nothing is seen
-    Image<Vec3> normal; ///< shading normal in the world, facing the camera; (0, 0, 0) where nothing is seen
-    ImageRgb albedo;    ///< base colour; black where nothing is seen
+    ImageRgb radiance; ///< linear radiance
+    // Auxiliary images are empty unless requested. Depth, normal and albedo are means over the samples that hit a
+    // surface; hit is the hit of sample 0.
+    ImageFloat depth;   ///< camera-space −z in meters; infinity on a miss
+    Image<Vec3> normal; ///< shading normal in world space, facing the camera; (0, 0, 0) on a miss
+    ImageRgb albedo;    ///< base color; black on a miss
     Image<Hit> hit;
-    ImageRgb variance;            ///< of the pixel's mean; of replicates (see Film)
+    ImageRgb variance;            ///< variance of the pixel's mean, estimated from the replicates (see Film)
     Image<std::uint32_t> samples; ///< number of samples taken
-    // Instead of radiance, where the rasterizer is asked for them (raster::Output).
-    Image<Rgba8> srgb;   ///< 8 bits a channel, encoded by the sRGB curve, opaque
-    ImageFloat nearness; ///< near / depth, in (0, 1]; 0 where nothing is seen
+    // The rasterizer fills these images instead of radiance where raster::Output requests them.
+    Image<Rgba8> srgb;   ///< 8 bits per channel, sRGB-encoded, opaque
+    ImageFloat nearness; ///< reversed depth near / depth, in (0, 1]; 0 on a miss
     RenderStatistics statistics;
 };
 

@@ -1,21 +1,22 @@
-// How much of a surface, and of its texture, a pixel's sample stands for.
+// This file computes the footprint of a sample of a pixel on a surface and in texture coordinates.
 #pragma once
 
 #include "common/geometry/surface_point.h"
 
 namespace duet {
 
-/// Where the neighbouring samples' rays are, beside a ray at the distance of its hit: one step along the picture's x and
-/// y each (Igehy 1999, «Tracing Ray Differentials»). What of it lies along the ray is of no account.
+/// The ray differentials dx and dy are the offsets from a ray at its hit to the rays of the neighboring samples in the
+/// image's x and y direction (Igehy 1999, "Tracing Ray Differentials"). Their components along the ray have no effect.
 struct RayFootprint {
     Vec3 dx, dy;
 
     friend RayFootprint operator*(const RayFootprint& f, float s) { return {f.dx * s, f.dy * s}; }
 };
 
-/// The steps of texture coordinates on the surface that go with those of the ray: the neighbours meet the point's tangent
-/// plane, and dpdu and dpdv say what uv they find there. On a triangle these are the very derivatives of perspective-
-/// correct interpolation. (0, 0) where the uv are degenerate; infinite or NaN where the plane is seen edge-on.
+/// Sets point.duv_dx and point.duv_dy, the change of uv from this sample to its neighbors. The neighboring rays are
+/// intersected with the tangent plane of the point, and dpdu and dpdv convert the offsets there to uv. On a triangle,
+/// the results equal the derivatives of perspective-correct interpolation. They stay unchanged where the uv are
+/// degenerate, and are infinite or NaN where the plane is seen edge-on. `direction` is the direction of the ray.
 void set_footprint(const RayFootprint& footprint, Vec3 direction, SurfacePoint& point);
 
 } // namespace duet

@@ -16,8 +16,8 @@ std::uint32_t primitive_count(const Shape& shape) {
 
 namespace {
 
-// An ellipsoid's extent along an axis is r times the length of the matrix's row (Sigg et al. 2006, eq. 4, in affine
-// form).
+// Returns the bounds of a sphere under an affine map. The half extent of the resulting ellipsoid along an axis is r
+// times the length of the matrix row (Sigg et al. 2006, eq. 4, in affine form).
 Box3d sphere_bounds(const Sphere& sphere, const Mat4d& m) {
     const Vec3d center = transform_point(m, Vec3d(sphere.center));
     Vec3d extent;
@@ -26,7 +26,7 @@ Box3d sphere_bounds(const Sphere& sphere, const Mat4d& m) {
     return {center - extent, center + extent};
 }
 
-// Rounded outwards to float, with room for the rounding of a point that was transformed in float.
+// Rounds a box outward to float. The box is enlarged by the rounding error of points that are transformed in float.
 Box3 rounded_outwards(const Box3d& box) {
     Box3 result;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ Box3 bounds(const Shape& shape, const Mat4& transform) {
 
 QuadList box_quads(Vec3 low, Vec3 high) {
     const Vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
-    const Vec3 far(low.x + x.x, low.y + y.y, low.z + z.z); // as rounded sums have it, like the faces' own corners
+    const Vec3 far(low.x + x.x, low.y + y.y, low.z + z.z); // the same rounded sums as in corners()
     return {{
         {low, z, y},                   // −x
         {{far.x, low.y, low.z}, y, z}, // +x
@@ -68,7 +68,7 @@ QuadList box_quads(Vec3 low, Vec3 high) {
 
 bool is_closed_outwards(const Mesh& mesh) {
     if (mesh.triangles.empty()) return false;
-    // Vertices at the same position are one: seams of texture or normals do not open a mesh.
+    // Merge vertices at the same position, because a seam in the uvs or normals does not open a mesh.
     std::vector<std::uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto key = [&](std::uint32_t i) {
@@ -78,7 +78,8 @@ bool is_closed_outwards(const Mesh& mesh) {
     for (std::size_t i = 0; i < order.size(); ++i)
         merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];
 
-    // Each connected part must enclose a positive volume: an inside-out part is seen from what it calls its back.
+    // Each connected component must enclose a positive volume. A component with reversed orientation would show its
+    // back faces to the outside. The components are found by union-find over the edges.
     std::vector<std::uint32_t> parent = merged;
     const auto part = [&](std::uint32_t i) {
         while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -93,10 +94,12 @@ bool is_closed_outwards(const Mesh& mesh) {
             edges.emplace_back(from, to);
             parent[part(from)] = part(to);
         }
-    std::vector<double> volume(mesh.positions.size(), 0.0); // six times the volume of a part, by the divergence theorem
+    // The divergence theorem gives six times the volume of each component.
+    std::vector<double> volume(mesh.positions.size(), 0.0);
     for (const auto& t : mesh.triangles) {
         const std::uint32_t whole = part(merged[t[0]]);
-        const Vec3d origin(mesh.positions[whole]); // a vertex of the part: no cancellation far from the world's origin
+        // Coordinates relative to a vertex of the component avoid cancellation far from the world's origin.
+        const Vec3d origin(mesh.positions[whole]);
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
         volume[whole] += dot(corner(0), cross(corner(1), corner(2)));
     }

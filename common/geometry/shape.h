@@ -1,4 +1,4 @@
-// The closed set of shapes: sphere, quads (one, or the six of a box), triangle mesh.
+// This file defines the shapes of the renderer: sphere, list of quads (one, or the six of a box) and triangle mesh.
 #pragma once
 
 #include "common/vec/box.h"
@@ -17,12 +17,13 @@ struct Sphere {
     float radius = 1;
 };
 
-/// The parallelogram corner + a·u + b·v, a and b in [0, 1]. Its normal, and the side it emits on, is u × v.
+/// A quad is the parallelogram corner + a·u + b·v with a and b in [0, 1]. Its normal is u × v; an emissive quad
+/// emits on that side.
 struct Quad {
     Vec3 corner, u, v;
 };
 
-/// corner, corner + u, corner + u + v, corner + v: the floats that both pipelines draw and intersect.
+/// Returns corner, corner + u, corner + u + v and corner + v. Both pipelines use exactly these floats.
 inline std::array<Vec3, 4> corners(const Quad& q) {
     return {q.corner, q.corner + q.u, (q.corner + q.u) + q.v, q.corner + q.v};
 }
@@ -31,26 +32,32 @@ struct QuadList {
     std::vector<Quad> quads;
 };
 
-/// Triangles over shared vertices, counter-clockwise seen from the front.
+/// A mesh consists of triangles with shared vertices. The vertices are in counter-clockwise order seen from the front.
 struct Mesh {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals; ///< one a position, unit length, or empty: flat
-    std::vector<Vec2> uvs;     ///< one a position, or empty: the triangle's own (u, v) is used
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<std::uint16_t> material_slots; ///< one a triangle, or empty: all 0
-    bool closed = false; ///< each edge, by position, is shared by two triangles that run it in opposite directions,
-                         ///< and each connected part encloses a positive volume: it is oriented outwards
+    std::vector<Vec3> normals; ///< one unit normal per position, or empty for flat shading
+    std::vector<Vec2> uvs;     ///< one uv per position, or empty: barycentric (u, v) of the triangle
+    std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices of the vertices
+    std::vector<std::uint16_t> material_slots;           ///< one slot per triangle, or empty: all 0
+    /// A closed mesh fulfills two conditions. First, each edge, identified by the positions of its ends, is shared by
+    /// two triangles that traverse it in opposite directions. Second, each connected component encloses a positive
+    /// volume, so its triangles face outward.
+    bool closed = false;
 };
 
 using Shape = std::variant<Sphere, QuadList, Mesh>;
 
+/// Returns the number of triangles of a mesh or of quads of a list, or 1 for a sphere.
 std::uint32_t primitive_count(const Shape& shape);
-/// Bounds of the shape under an affine map; conservative (they contain every point the surface routines return).
+/// Returns the bounds of a shape under an affine map. They are conservative: they contain every point that
+/// surface_point() returns.
 Box3 bounds(const Shape& shape, const Mat4& transform);
-/// The six quads of an axis-aligned box, normals outwards: −x, +x, −y, +y, −z, +z. low < high on each axis. Neighbours
-/// have the very same corners, so no ray slips between them; for that `high` moves by its rounding.
+/// Returns the six quads of an axis-aligned box in the order −x, +x, −y, +y, −z, +z; their normals point outward.
+/// Requires low < high on each axis. Adjacent quads have exactly the same corners, so no ray passes between them. To
+/// achieve this, the corner `high` moves by the rounding error of low + (high − low).
 QuadList box_quads(Vec3 low, Vec3 high);
-/// Whether the mesh is closed and oriented outwards, judged by position: see Mesh::closed.
+/// Returns whether a mesh is closed and oriented outward, as defined at Mesh::closed. Vertices at the same position
+/// count as one vertex.
 bool is_closed_outwards(const Mesh& mesh);
 
 } // namespace duet

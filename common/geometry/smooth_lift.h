@@ -1,4 +1,5 @@
-// Facets and the smooth surface that their vertex normals mean.
+// This file computes the smooth surface that the vertex normals of a flat triangle represent. It fixes the shading
+// terminator: without it, smooth-shaded triangles near the terminator cast stepped shadows on each other.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -7,11 +8,17 @@
 
 namespace duet {
 
-/// From a point of a triangle to the surface that its vertex normals mean, on the side that `direction` comes from: the
-/// mean of its projections onto the vertices' tangent planes (Hanika 2021; Boubekeur and Alexa 2008, «Phong
-/// Tessellation»). Zero unless it lies below all of them, but for a tenth of the farthest: where the surface is flat,
-/// hollow, a saddle, or its normals merely lean. weights: the point's barycentric coordinates; ng: the facet's normal, of
-/// any length, as the others. T is double or a batch of doubles.
+/// Returns the vector from a point p of a triangle to the smooth surface, on the side from which a ray of the given
+/// direction arrives. The smooth point is the weighted mean of the projections of p onto the tangent planes of the
+/// vertices (Hanika 2021; Boubekeur and Alexa 2008, "Phong Tessellation").
+///
+/// The result is zero unless the surface is convex toward the viewer, that is, unless p lies below all three tangent
+/// planes. As a tolerance, p may lie above a plane by up to a tenth of its largest depth below another plane. The
+/// result is thus zero for flat, concave and saddle-shaped surfaces, and where all vertex normals only tilt in one
+/// direction.
+///
+/// `normals` are the unit vertex normals, `weights` are the barycentric coordinates of p, and `ng` is the geometric
+/// normal of the triangle. `ng` and the direction may have any length. T is double or a batch of doubles.
 template <typename T>
 Vec3T<T> lift_to_smooth(const Vec3T<T>& p, const std::array<Vec3T<T>, 3>& vertices,
                         const std::array<Vec3T<T>, 3>& normals, const std::array<T, 3>& weights, const Vec3T<T>& ng,

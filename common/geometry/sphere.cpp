@@ -9,7 +9,7 @@ namespace duet {
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
     SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), SphereLine<double>(Vec3d(ray.direction)),
                             static_cast<double>(sphere.radius));
-    if (sabotaged(Guard::kSphereRoots)) { // the textbook's, in float
+    if (sabotaged(Guard::kSphereRoots)) { // the usual discriminant b² − a·c, in float
         const Vec3 g = ray.origin - sphere.center, e = ray.direction;
         const float half = dot(g, e);
         test.discriminant =
@@ -25,7 +25,7 @@ std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
 
 Vec2 sphere_uv(Vec3 n) {
     const double u = 0.5 + std::atan2(static_cast<double>(n.x), static_cast<double>(n.z)) / (2 * kPiDouble);
-    // atan2 of both components is accurate at the poles, where acos(y) is not.
+    // atan2 is accurate at the poles, where acos(y) is not.
     const double v =
         0.5 + std::atan2(static_cast<double>(n.y), std::hypot(static_cast<double>(n.x), static_cast<double>(n.z))) /
                   kPiDouble;
@@ -39,7 +39,7 @@ Vec3 sphere_direction(Vec2 uv) {
     return Vec3(Vec3d(ring * std::sin(longitude), std::sin(latitude), ring * std::cos(longitude)));
 }
 
-// From inside, left and right are exchanged: what lies behind a mirror at z = 0 is seen so from outside.
+// An environment map is seen from inside, which exchanges left and right. Negating z mirrors the direction accordingly.
 Vec2 latlong_uv(Vec3 w) { return sphere_uv({w.x, w.y, -w.z}); }
 
 Vec3 latlong_direction(Vec2 uv) {

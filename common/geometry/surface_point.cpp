@@ -11,21 +11,21 @@ namespace duet {
 
 namespace {
 
-// The point of a shape in the space of its object. Positions are evaluated in double from the float vertices, so the
-// one rounding to float is all their error.
+// Holds a point of a shape in object space. Positions are computed in double from the float vertices, so their only
+// error is the final rounding to float.
 struct LocalPoint {
     Vec3d p;
-    Vec3d magnitude; // of the terms p was made of, per axis: p's error is a multiple of it
-    Vec3d ng, ns;      // any length; ns may be (0, 0, 0): ng
-    bool unit = false; // both are of length 1
-    Vec3d lift;        // to the smooth surface, on the side that is seen
+    Vec3d magnitude;   // sum of the magnitudes of p's terms, per axis; the error of p is a multiple of it
+    Vec3d ng, ns;      // any length; an ns of (0, 0, 0) stands for ng
+    bool unit = false; // whether ng and ns have unit length
+    Vec3d lift;        // vector to the smooth surface on the viewer's side (see lift_to_smooth)
     Vec2 uv;
     Vec3d dpdu, dpdv;
 };
 
 LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t, SurfaceDetail detail) {
     const Vec3d center(sphere.center);
-    const Vec3d n = normalize(ray.at(t) - center); // back onto the sphere: the error of t drops out along n
+    const Vec3d n = normalize(ray.at(t) - center); // projecting onto the sphere removes the error of t along n
     LocalPoint local;
     local.p = center + n * static_cast<double>(sphere.radius);
     local.magnitude = abs(local.p);
@@ -34,7 +34,7 @@ LocalPoint on_sphere(const Sphere& sphere, const Rayd& ray, double t, SurfaceDet
     if (detail == SurfaceDetail::kWithoutUv) return local;
     local.uv = sphere_uv(Vec3(n));
     const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
-    if (ring > 0) { // at the poles u has no direction
+    if (ring > 0) { // at the poles, the direction of u is undefined
         local.dpdu = Vec3d(n.z, 0, -n.x) * (2 * kPiDouble * r);
         local.dpdv = Vec3d(-n.y * n.x / ring, ring, -n.y * n.z / ring) * (kPiDouble * r);
     }
@@ -45,7 +45,7 @@ LocalPoint on_quad(const Quad& quad, double u, double v) {
     const Vec3d corner(quad.corner), du(quad.u), dv(quad.v);
     LocalPoint local;
     local.p = corner + du * u + dv * v;
-    local.magnitude = abs(corner) + abs(du) + abs(dv); // its far corners are rounded sums of these
+    local.magnitude = abs(corner) + abs(du) + abs(dv); // the other corners are rounded sums of these
     local.ng = local.ns = cross(du, dv);
     local.uv = {static_cast<float>(u), static_cast<float>(v)};
     local.dpdu = du;
@@ -88,7 +88,8 @@ LocalPoint on_triangle(const Mesh& mesh, std::uint32_t primitive, double u, doub
 
 Vec3 unit(Vec3d v) { return Vec3(normalize(v)); }
 
-// |M| |v|: bounds the magnitude of the terms of M v (with the translation for a point).
+// Returns |M| |v|, a bound on the magnitude of the terms of M v. w is 1 for a point, which includes the translation,
+// and 0 for a vector.
 Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
     const auto row = [&](std::size_t r) {
         const auto entry = [&](std::size_t c) { return std::abs(static_cast<double>(m[r][c])); };
@@ -151,8 +152,9 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         const Mat4d m(to_world), inverse(to_object);
         const Vec3d p = transform_point(m, local.p);
         point.p = Vec3(p);
-        // A ray that leaves here is taken back into the object's space in float: its origin is off there by γ₄ |M⁻¹|
-        // |p − M 0|, and here by |M| times that. The stored inverse is itself rounded.
+        // A ray that starts here is transformed to object space in float. Its origin there has an error of γ₄
+        // |M⁻¹| |p − M 0|, which is an error of |M| times that in world space. γ₅ instead of γ₄ covers the
+        // rounding of the stored inverse.
         const Vec3d from_place = abs(p - transform_point(m, Vec3d()));
         const Vec3d in_object = local.magnitude * kRounding +
                                 absolute_transform(to_object, from_place, 0) * static_cast<double>(gamma_bound(5));
@@ -168,7 +170,7 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     if (!is_finite(point.ns)) point.ns = point.ng;
     if (dot(point.ns, point.ng) < 0) point.ns = -point.ns;
     point.horizon = point.ng;
-    if (point.lift != Vec3()) { // no farther than the facets' own error, the smooth surface is the flat one
+    if (point.lift != Vec3()) { // a lift within the error of p is ignored
         const bool bulges = abs(dot(point.lift, point.ng)) > dot(abs(point.ng), point.p_error);
         if (bulges)
             point.horizon = point.ns;

@@ -1,4 +1,4 @@
-// Ray and triangle.
+// This file defines the intersection of a ray and a triangle.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -15,26 +15,27 @@
 
 namespace duet {
 
-/// Where a ray meets a triangle abc: distance t, and the barycentric coordinates u of b and v of c.
+/// A hit of a triangle abc consists of the ray parameter t and the barycentric coordinates u of b and v of c.
 struct TriangleHit {
     float t, u, v;
 };
 
-/// The axes and the shear that take a ray, or each ray of a batch, to (0, 0, 1): its largest axis becomes z (Woop,
-/// Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3).
+/// This permutation of the axes and shear together map a ray's direction to (0, 0, 1). T is float, or a batch for many
+/// rays. The axis of the largest component becomes z (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+/// Intersection", §3).
 template <typename T> struct Shear {
-    std::size_t kx, ky, kz; ///< axes of the world; x and y swapped where z runs backwards, to keep triangles' winding
-    Vec3T<T> origin;        ///< of the rays, its axes in that order
-    T sx, sy, sz;
-    T speed; ///< of the largest axis, |d.z|: a stretch of t is as long in the world times this
+    std::size_t kx, ky, kz; ///< world axes; x and y are swapped if d.z < 0, to preserve the winding of triangles
+    Vec3T<T> origin;        ///< origin of the rays, with permuted axes
+    T sx, sy, sz;           ///< d.x / d.z, d.y / d.z and 1 / d.z for a direction d with permuted axes
+    T speed;                ///< |d.z|: converts a difference in t to a difference in depth along the z axis
 };
 
-/// A vertex as seen from the ray's origin: the difference of the two.
+/// A relative vertex is the difference between a vertex and the ray's origin.
 template <typename Vertex> struct Relative {
     Vertex vertex;
 };
 
-/// A ray prepared for watertight tests.
+/// A sheared ray stores the precomputed values of the watertight test.
 struct ShearedRay {
     Vec3 origin, direction;
     float t_min, t_max;
@@ -42,7 +43,7 @@ struct ShearedRay {
 
     explicit ShearedRay(const Ray& ray)
         : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
-        // Without a branch: the axes of incoherent rays cannot be predicted.
+        // The code avoids branches, because the axes of incoherent rays are unpredictable.
         constexpr std::array<std::array<std::uint8_t, 2>, 6> kAcross{{{1, 2}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {1, 0}}};
         const std::array<float, 3> d{direction.x, direction.y, direction.z}, o{origin.x, origin.y, origin.z};
         const std::size_t kz = longest_axis(abs(direction)), backwards = std::bit_cast<std::uint32_t>(d[kz]) >> 31;
@@ -51,25 +52,27 @@ struct ShearedRay {
     }
 };
 
-/// What a ray meets of triangles, T being a number or a batch of them, of one ray and many triangles or the other way
-/// round: the vertices sheared, the edge functions (twice the signed areas that the ray's foot spans with the edges) in
-/// T's precision. (All inlined by order: calls with batches in memory cost a ray tracer a tenth of its rays.)
+/// Holds the sheared vertices and the edge functions of a ray and a triangle, in the precision of T. If T is a SIMD
+/// batch, the lanes are many triangles for one ray, or many rays for one triangle. In the sheared x and y, the ray is
+/// the point (0, 0). An edge function is twice the signed area of the triangle that an edge forms with this point. All
+/// functions are force-inlined, because calls that pass batches in memory reduce the rays per second by a tenth.
 template <typename T> struct TriangleTest {
-    Vec3T<T> at, bt, ct; ///< vertices in the ray's frame: it runs along +z from the origin
-    T e0, e1, e2;        ///< of the edges opposite a, b and c
+    Vec3T<T> at, bt, ct; ///< vertices in the ray's frame, where the ray starts at the origin and points along +z
+    T e0, e1, e2;        ///< edge functions of the edges opposite a, b and c
 
-    /// a, b, c: the vertices; their components at index 0, 1, 2.
+    /// Constructs the test from the vertices a, b and c, whose components have the indices 0, 1 and 2.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] TriangleTest(const Shear<S>& ray, const Vertex& a, const Vertex& b, const Vertex& c)
         : TriangleTest(sheared(ray, a), sheared(ray, b), sheared(ray, c)) {}
-    /// Of sheared vertices.
+    /// Constructs the test from sheared vertices.
     [[gnu::always_inline]] TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c)
         : TriangleTest(a, b, c, edge(c, b), edge(a, c), edge(b, a)) {}
-    /// Of these and their edge functions.
+    /// Constructs the test from sheared vertices and their edge functions.
     [[gnu::always_inline]] TriangleTest(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c, T ea, T eb, T ec)
         : at(a), bt(b), ct(c), e0(ea), e1(eb), e2(ec) {}
 
-    /// A vertex relative to the ray's origin and sheared, which makes the test one of the origin in a 2D triangle.
+    /// Translates a vertex by the ray's origin and shears it. The remaining test is whether a 2D triangle contains the
+    /// origin.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Vertex& p) {
         return shear(ray, {T(p[ray.kx]) - T(ray.origin.x), T(p[ray.ky]) - T(ray.origin.y),
@@ -79,35 +82,38 @@ template <typename T> struct TriangleTest {
     [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Relative<Vertex>& p) {
         return shear(ray, {T(p.vertex[ray.kx]), T(p.vertex[ray.ky]), T(p.vertex[ray.kz])});
     }
-    /// The same edge gives the same numbers in both of its triangles, but for the sign: no ray slips between.
+    /// Returns the edge function of the edge from p to q. In both triangles that share an edge, it has exactly the same
+    /// magnitude and opposite signs, so no ray passes between them. Fused multiply-add would break this symmetry.
     [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
         using std::fma;
         if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
         return p.x * q.y - p.y * q.x;
     }
 
+    /// Returns the sum of the edge functions: twice the signed area of the sheared triangle.
     T det() const { return e0 + e1 + e2; }
-    /// The distance along the ray; inv_det = 1 / det().
+    /// Returns the ray parameter t of the hit. inv_det must be 1 / det().
     [[gnu::always_inline]] T distance(T inv_det) const {
         return e0 * inv_det * at.z + e1 * inv_det * bt.z + e2 * inv_det * ct.z;
     }
 
-    /// The bound on the error of that distance t = Σ bᵢ zᵢ where the triangle is met, after Pharr, Jakob and Humphreys
-    /// 2023, §6.8.7. There no |bᵢ| is above 1, and with |x| at most X, |y| at most Y, W = X + Y and D the depth, the
-    /// sheared coordinates are off by γ₅(X + D) and γ₅(Y + D), an edge function by no more than
-    /// 2(γ₂XY + γ₅(2XY + DW)) ≤ 2γ₅W(W + D). Products are ordered so that they stay in range wherever the edge functions
-    /// do. `speed` is the shear's: x and y, of the world's measure, were sheared by depths of that measure, while z
-    /// counts in the ray's own t.
+    /// Returns a bound on the error of distance(), t = Σ bᵢ zᵢ, for a ray that hits the triangle (after Pharr,
+    /// Jakob and Humphreys 2023, §6.8.7). At a hit, every |bᵢ| is at most 1. Let |x| ≤ X, |y| ≤ Y, W = X + Y,
+    /// and let D be the largest depth. The errors of the sheared coordinates are at most γ₅(X + D) and γ₅(Y + D),
+    /// and the error of an edge function is at most 2(γ₂XY + γ₅(2XY + DW)) ≤ 2γ₅W(W + D). The order of the
+    /// products prevents overflow wherever the edge functions do not overflow. `speed` is Shear::speed. It is needed
+    /// because x and y are sheared by depths in world units, while z is in units of t.
     template <typename S> [[gnu::always_inline]] T distance_error(T inv_det, const S& speed) const {
         const T z = max(farthest(), -nearest()), width = this->width();
-        const T weights = width * abs(inv_det) * (width + z * T(speed)); // their error, over 2γ₅
+        const T weights = width * abs(inv_det) * (width + z * T(speed)); // error of the weights bᵢ, divided by 2γ₅
         return z * (T(6 * gamma_bound(3)) + T(6 * gamma_bound(5)) * weights);
     }
 
-    /// Whether the triangle is a needle as the ray sees it, so that the distance may be off by more than that. The
-    /// sheared coordinates are off by some u·max_z, an edge function by that times the triangle's width: the hit moves
-    /// along the triangle by as much over det, across depths of `spread` (in the world: the shear's `speed` makes them
-    /// so). That is no more than z's own rounding, but where the triangle is much thinner than it is deep.
+    /// Returns whether the triangle is a needle: so thin, seen along the ray, that the error of distance() may exceed
+    /// distance_error(). The error of the sheared coordinates is about u·max_z, where u is the unit roundoff. The
+    /// error of an edge function is that times the width of the triangle. Divided by det, it moves the hit along the
+    /// triangle, whose depth range is `spread`; the factor Shear::speed converts the range to world units. The
+    /// resulting error is no larger than the rounding of z, except where the triangle is much thinner than it is deep.
     template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& speed) const {
         const T spread = farthest() - nearest();
         const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
@@ -117,7 +123,7 @@ template <typename T> struct TriangleTest {
 private:
     [[gnu::always_inline]] T farthest() const { return max(max(at.z, bt.z), ct.z); }
     [[gnu::always_inline]] T nearest() const { return min(min(at.z, bt.z), ct.z); }
-    /// Of the largest |x| and the largest |y| the sum.
+    /// Returns the sum of the largest |x| and the largest |y|.
     [[gnu::always_inline]] T width() const {
         return max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));
     }
@@ -126,8 +132,9 @@ private:
     }
 };
 
-/// The distance along the ray to the plane of a, b and c in double, from the unrounded differences: its sign is right
-/// even for an origin that is one float away from the plane of a triangle a million times as wide.
+/// Returns the ray parameter of the intersection with the plane of a, b and c. T is double or a batch of doubles, so
+/// the differences are not rounded to float. The sign is then right even if the origin is one float away from the plane
+/// of a triangle a million times as wide.
 template <typename T>
 [[gnu::always_inline]] inline T plane_distance(const Vec3T<T>& origin, const Vec3T<T>& direction, const Vec3T<T>& a,
                                                const Vec3T<T>& b, const Vec3T<T>& c) {
@@ -139,8 +146,10 @@ inline float plane_distance(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
         plane_distance(Vec3d(ray.origin), Vec3d(ray.direction), Vec3d(a), Vec3d(b), Vec3d(c)));
 }
 
-/// Watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. Both sides
-/// are hit; a triangle seen edge-on or of zero area is missed. The test uses the unsnapped float vertices.
+/// Intersects a ray with a triangle from either side. Returns the hit with t in (t_min, t_max], or nothing on a miss.
+/// The test is watertight: a ray through a shared edge or vertex of a closed mesh hits at least one of its triangles. A
+/// triangle that is seen edge-on or has zero area is missed. The test uses the float vertices, without the rasterizer's
+/// snapping to a subpixel grid.
 std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c);
 
 } // namespace duet

@@ -26,19 +26,19 @@ std::uint32_t crc32(std::string_view bytes) {
     return ~c;
 }
 
-// Throws unless the bytes of compressed pixels can unfold to the size in the header chunk's data (13 bytes): deflate
-// shrinks no more than 1032 to 1.
+// Throws an Error if `pixel_bytes` bytes of compressed pixels are too few for the image size in the header chunk.
+// `header` is that chunk's data (13 bytes). The compression ratio of deflate is at most 1032:1.
 void check_png_size(const ImageBytes& file, std::string_view header, std::size_t pixel_bytes) {
     const long long width = word_at(header, 0), height = word_at(header, 4);
     check_image_size(file.name, width, height);
-    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by colour type
+    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by color type
     const double channels = byte_at(header, 9) < kChannels.size() ? kChannels[byte_at(header, 9)] : 0;
     const double bytes = static_cast<double>(width * height) * channels * byte_at(header, 8) / 8;
     check_claim(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
 }
 
-// stb has room for 256 codes a table, and the standard for 255 (ITU-T T.81, §B.2.4.2). Read as stb reads: beyond the
-// segment's end, too.
+// Throws an Error for a Huffman table of more than 256 codes, the capacity of stb's tables; the standard allows 255
+// (ITU-T T.81, §B.2.4.2). Like stb, the loop also reads a table that extends beyond the end of its segment.
 void check_huffman_tables(const ImageBytes& file, std::size_t at, std::size_t end) {
     while (at < end) {
         std::uint32_t codes = 0;
@@ -49,11 +49,13 @@ void check_huffman_tables(const ImageBytes& file, std::size_t at, std::size_t en
     }
 }
 
-// `at`: of the frame header's data: bits, height, width …
+// Checks the image size in a frame header. `at` is the offset of the header's data, which starts with the bit depth,
+// the height and the width.
 void check_jpeg_size(const ImageBytes& file, std::size_t at) {
     const long long height = pair_at(file.bytes, at + 1), width = pair_at(file.bytes, at + 3);
     check_image_size(file.name, width, height);
-    // A block of 8 x 8 values takes a bit at least, and stands for 16 blocks at most where all channels are subsampled.
+    // A block of 8 x 8 values takes at least one bit. If all channels are subsampled, it covers the area of at most 16
+    // blocks.
     check_claim(file, width, height, static_cast<double>(width * height) / (64 * 16 * 8),
                 static_cast<double>(file.bytes.size()));
 }
@@ -64,7 +66,8 @@ bool is_frame(std::uint32_t marker) {
 
 } // namespace
 
-// Chunks of length, type, data and checksum (ISO/IEC 15948, §5; the checksum: Annex D).
+// A PNG is a sequence of chunks. Each chunk consists of length, type, data and checksum (ISO/IEC 15948, §5; Annex D
+// defines the checksum).
 void check_png(const ImageBytes& file) {
     constexpr std::size_t kSignature = 8, kFrame = 12;
     std::size_t pixel_bytes = 0;
@@ -86,8 +89,8 @@ void check_png(const ImageBytes& file) {
     check_png_size(file, file.bytes.substr(kSignature + 8, 13), pixel_bytes);
 }
 
-// Segments that begin with 0xff and a marker; between them padding, and after a scan's header its data, in which 0xff
-// is followed by 0 or a restart marker (ITU-T T.81, §B.1.1).
+// A JPEG is a sequence of segments, which begin with 0xff and a marker and may have padding between them. The data of a
+// scan follow the scan's header; in these data, 0xff is followed by 0 or a restart marker (ITU-T T.81, §B.1.1).
 void check_jpeg(const ImageBytes& file) {
     constexpr std::uint32_t kTables = 0xc4, kFirstRestart = 0xd0, kLastRestart = 0xd7, kEnd = 0xd9;
     bool framed = false;

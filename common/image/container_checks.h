@@ -1,16 +1,17 @@
-// What stb leaves unchecked in PNG and JPEG files: it takes a file that ends early for one that goes on with zeros,
-// ignores PNG's checksums, takes memory for any size that a header claims, and writes beyond its tables for some
-// Huffman codes.
+// These functions check what stb does not check in PNG and JPEG files. stb reads a truncated file as if zeros followed,
+// ignores the checksums of PNG, allocates memory for any size that a header claims, and for some Huffman codes writes
+// beyond the end of its tables.
 #pragma once
 
 #include "common/image/formats.h"
 
 namespace duet {
 
-/// Throws Error unless a PNG's chunks are whole, from the header to the last, and hold enough for the size it claims.
+/// Throws an Error unless all chunks of a PNG are complete, from the header to the end chunk, and their compressed data
+/// can hold the image size in the header.
 void check_png(const ImageBytes& file);
-/// Throws Error unless a JPEG's segments are whole, with a frame and an end, its Huffman tables sound, and its size is
-/// one that the file can hold.
+/// Throws an Error unless all segments of a JPEG are complete, with a frame and an end marker, its Huffman tables are
+/// valid, and the file can hold the image size in the frame header.
 void check_jpeg(const ImageBytes& file);
 
 } // namespace duet

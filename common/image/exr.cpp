@@ -1,5 +1,5 @@
-// EXR through OpenEXR. Files are read from memory, and only after the header alone has been read and found plausible:
-// OpenEXR takes memory for what a header claims.
+// This file reads and writes EXR files with OpenEXR. OpenEXR allocates memory for any size that a header claims. The
+// header is therefore read and checked first, and files are read from memory.
 #include "common/image/formats.h"
 #include "common/system/file.h"
 #include "common/system/parallel.h"
@@ -48,7 +48,7 @@ private:
     std::size_t at_ = 0;
 };
 
-// Calls read() and turns whatever OpenEXR throws into an Error.
+// Calls read() and converts the exceptions of OpenEXR to Errors.
 template <typename Read> auto reading(const ImageBytes& file, Read read) {
     try {
         return read();
@@ -59,11 +59,11 @@ template <typename Read> auto reading(const ImageBytes& file, Read read) {
     }
 }
 
-// How many threads OpenEXR compresses that many values with: its own, started when first a large picture comes.
+// Returns the number of threads with which OpenEXR processes an image of that many values. OpenEXR has its own thread
+// pool, which is started for the first large image. 0 means that OpenEXR uses the calling thread.
 int threads_for(double values) {
 #if defined(DUET_PLAIN_THREADS)
-    // As in common/system/parallel.cpp: the thread sanitizer doesn't see the locks of a library that isn't
-    // instrumented.
+    // ThreadSanitizer does not see the locks of a library that is not instrumented (see common/system/parallel.cpp).
     constexpr double kFewest = kInfinity;
 #else
     constexpr double kFewest = 500'000;
@@ -93,13 +93,14 @@ double bytes_a_pixel(const Imf::Header& header) {
     return bytes;
 }
 
-// What a byte of a file may stand for: deflate shrinks no more than 1032 to 1 (after PXR24 has dropped a byte of four);
-// PIZ and RLE less; DWA keeps one value of 64 and deflates it.
+// Returns an upper bound on the compression ratio. The ratio of deflate is at most 1032:1, and PXR24 first drops one
+// byte of four. PIZ and RLE compress less. DWA can reduce 64 values to one before deflate.
 double greatest_compression(Imf::Compression compression) {
     return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 132096 : 1376;
 }
 
-// Throws Error for what is not read (parts, deep pixels, subsampled channels) and for what can't be there.
+// Throws an Error for subsampled channels, for images or tiles that are too large, and for an image size that the file
+// cannot contain.
 void check_header(const ImageBytes& file, const Imf::Header& header) {
     const Window window = data_window(header);
     check_image_size(file.name, window.width, window.height);
@@ -141,7 +142,8 @@ Imf::Header read_header(const ImageBytes& file) {
 }
 
 Imf::Slice slice(Imf::PixelType type, const void* values, const Imath::Box2i& window) {
-    // Frame buffers are for reading and writing; OpenEXR writes to none that is written to a file.
+    // A Slice takes a non-const pointer for reading and for writing files. OpenEXR does not modify the values when it
+    // writes a file.
     return Imf::Slice::Make(type, const_cast<void*>(values), window);
 }
 
@@ -152,7 +154,8 @@ void read_pixels(const ImageBytes& file, const Imf::FrameBuffer& frame, const Wi
     input.readPixels(window.box.min.y, window.box.max.y);
 }
 
-// The channels of a plain picture: R, G, B or Y, and A.
+// Returns the names of the image channels that the file has: R, G and B, or Y, followed by A if present. Throws an
+// Error if neither set exists.
 std::vector<const char*> picture_channels(const ImageBytes& file, const Imf::ChannelList& channels) {
     std::vector<const char*> names;
     const bool rgb = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
@@ -245,8 +248,8 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
             header.channels().insert(channel.name, Imf::Channel(type));
             frame.insert(channel.name, slice(type, values, header.dataWindow()));
         }
-        // On a stream of our own: OpenEXR's destructor writes the table of offsets last, and is silent where that
-        // fails.
+        // Use a separate stream to detect errors: OpenEXR writes the table of offsets in a destructor, which does not
+        // report a failure.
         std::ofstream out(temporary, std::ios::binary);
         if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
         {

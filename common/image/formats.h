@@ -1,4 +1,5 @@
-// One decoder and one encoder a picture format, between bytes in memory and pixels. image_file.h is what callers use.
+// Each image format has a decoder and an encoder, which convert between bytes in memory and pixels. Callers outside
+// this folder use image_file.h.
 #pragma once
 
 #include "common/image/image_file.h"
@@ -8,23 +9,25 @@
 
 namespace duet {
 
-/// A picture file's bytes and what errors call it: its path.
+/// Holds the bytes of an image file and the name that error messages use for it, which is its path.
 struct ImageBytes {
     std::string name;
     std::string_view bytes;
 };
 
-/// Throws Error unless a picture of that size may be read or written: sides 1 to kMaxImageSide, at most
-/// kMaxImagePixels.
+/// Throws an Error with the given exit code unless both sides are in [1, kMaxImageSide] and the image has at most
+/// kMaxImagePixels pixels.
 void check_image_size(const std::string& name, long long width, long long height, int exit_code = 2);
-/// Throws Error where `needed` bytes, the least that the size claimed in a header can be stored in, are more than the
-/// file has: so no memory is taken for a picture that isn't there.
+/// Throws an Error if needed > available. `needed` is the smallest number of bytes that can store an image of the size
+/// in the header, and `available` is the number of bytes in the file. The check prevents allocations for pixels that
+/// the file does not contain.
 void check_claim(const ImageBytes& file, long long width, long long height, double needed, double available);
 
-/// The whole file, by its signature; TGA, which has none, where `ending` is ".tga". Throws Error.
+/// Decodes an image file in the format of its signature. TGA has no signature; it is chosen if `ending` is ".tga".
+/// Throws an Error for an unknown format or a malformed file.
 PixelFile decode_image(const ImageBytes& file, const std::string& ending);
 
-// Through stb.
+// The stb library implements these formats.
 PixelFile decode_png(const ImageBytes& file);
 PixelFile decode_jpeg(const ImageBytes& file);
 PixelFile decode_tga(const ImageBytes& file);
@@ -32,7 +35,7 @@ std::string encode_png(const ImageRgb& image, const WriteOptions& options);
 std::string encode_jpeg(const ImageRgb& image, const WriteOptions& options);
 std::string encode_tga(const ImageRgb& image, const WriteOptions& options);
 
-// By our own code.
+// The project implements these formats itself.
 PixelFile decode_ppm(const ImageBytes& file);
 PixelFile decode_pfm(const ImageBytes& file);
 PixelFile decode_hdr(const ImageBytes& file);
@@ -40,7 +43,7 @@ std::string encode_ppm(const ImageRgb& image, const WriteOptions& options);
 std::string encode_pfm(const ImageRgb& image, const WriteOptions& options);
 std::string encode_hdr(const ImageRgb& image, const WriteOptions& options);
 
-// Through OpenEXR.
+// The OpenEXR library implements this format.
 PixelFile decode_exr(const ImageBytes& file);
 ExrFile decode_exr_channels(const ImageBytes& file);
 

@@ -1,8 +1,9 @@
-// Radiance's HDR pictures: three 8-bit fractions with a shared exponent a pixel, in runs (Ward, «Real Pixels», Graphics
-// Gems II, 1991; the file format: radsite.lbl.gov/radiance/refer/filefmts.pdf, «Picture File Format»).
+// This file implements Radiance's HDR format. A pixel consists of three 8-bit fractions and a shared exponent; the
+// pixels are run-length encoded (Ward, "Real Pixels", Graphics Gems II, 1991; the file format is described in
+// radsite.lbl.gov/radiance/refer/filefmts.pdf, "Picture File Format").
 //
-// Our own code rather than stb's: stb_image 2.27 never returns from a truncated run, and stb_image_write cuts the
-// fractions off instead of rounding them, which darkens a picture by 0.3 % on average.
+// The project does not use stb for this format: stb_image 2.27 never returns from a truncated run, and stb_image_write
+// truncates the fractions instead of rounding them, which darkens an image by 0.3 % on average.
 #include "common/image/formats.h"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr std::size_t kShortestRunScanline = 8, kLongestRunScanline = 32767;
 
-// Fractions of 1/256 are rounded to nearest: the error is at most 1/256 of the largest channel. Negative and NaN
-// become 0, what is too large the largest.
+// Converts a color to RGBE. Fractions are rounded to the nearest multiple of 1/256, so the error is at most 1/256 of
+// the largest channel. Negative values and NaN become 0, and values that are too large become the largest value.
 Rgbe to_rgbe(Rgb colour) {
     constexpr float kLargest = 0x1.fep126f; // (255/256)·2^127
     std::array<float, 3> c{};
@@ -79,7 +80,7 @@ private:
         return text;
     }
 
-    // Lines up to an empty one. Of the variables only the format matters: exposures are for display.
+    // Reads the header lines up to an empty line. Only the variable FORMAT matters; exposures apply to display only.
     void read_header() {
         bool is_rgbe = false;
         while (true) {
@@ -110,7 +111,8 @@ private:
         return {width, height, 3, PixelFile::Encoding::kLinear, {}};
     }
 
-    // Runs hold up to 127 values in two bytes a channel; in flat scanlines a pixel may stand for 255 and more.
+    // Returns the smallest number of bytes that can store all scanlines. A run of up to 127 equal values takes two
+    // bytes per channel. In flat scanlines, one repeat pixel can represent 255 and more pixels.
     static double least_bytes(std::size_t width, std::size_t height) {
         const double run_coded = 4.0 + 8.0 * std::ceil(static_cast<double>(width) / 127.0);
         const double repeated = 4.0 + 4.0 * std::floor(static_cast<double>(width) / 65536.0);
@@ -123,7 +125,8 @@ private:
         return at(0) == 2 && at(1) == 2 && at(2) < 128;
     }
 
-    // Channel after channel, in runs of equal values (128 + count, value) and of different ones (count, values …).
+    // Reads one channel after another. Each consists of runs of equal values (128 + count, value) and of runs of
+    // different values (count, values …).
     void read_run_coded(std::vector<Rgbe>& scanline) {
         at_ += 2;
         const unsigned high = byte(), low = byte();
@@ -143,7 +146,8 @@ private:
             }
     }
 
-    // Pixel after pixel; (1, 1, 1, n) repeats the last one n times, and further ones count in higher bytes.
+    // Reads one pixel after another. A pixel (1, 1, 1, n) repeats the previous pixel n times. If repeat pixels follow
+    // each other directly, the k-th of them (from 0) counts n·256ᵏ pixels.
     void read_flat(std::vector<Rgbe>& scanline) {
         unsigned shift = 0;
         for (std::size_t x = 0; x < scanline.size();) {
@@ -166,7 +170,8 @@ private:
     std::size_t at_ = 0;
 };
 
-// One channel of a scanline, in runs: equal values from 4 on, as a shorter run saves nothing.
+// Appends one channel of a scanline in runs. Equal values form a run of their own only if there are at least 4, because
+// a shorter run saves no bytes.
 void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel, std::string& file) {
     const auto equal_from = [&](std::size_t x) {
         std::size_t end = x + 1;

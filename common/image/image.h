@@ -1,4 +1,4 @@
-// A picture in memory: rows from the top, pixels from the left.
+// This file defines images in memory. Rows are stored from the top, and pixels from the left.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -9,10 +9,11 @@
 
 namespace duet {
 
-/// The largest width or height of a picture that is rendered.
+/// A rendered image has at most this width and height, in pixels.
 inline constexpr int kMaxPictureSide = 16384;
 
-/// width × height pixels of any type; (0, 0) is the upper left one.
+/// An image has width × height pixels of any type. Pixel (0, 0) is at the upper left. The access operators do not
+/// check their arguments.
 template <typename Pixel> class Image {
 public:
     Image() = default;

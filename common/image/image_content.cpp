@@ -4,7 +4,7 @@ namespace duet {
 
 namespace {
 
-/// Which of a pixel's values a channel is; −1: alpha of a file without.
+/// Returns the index of a channel among the values of a pixel, or −1 for the alpha of a file without alpha.
 int index_of(ImageContent::Channel channel, int channels) {
     const bool has_alpha = channels == 2 || channels == 4, grey = channels < 3;
     switch (channel) {
@@ -29,7 +29,7 @@ ImageRgb image_of(PixelFile file, ImageContent content) {
     using Channel = ImageContent::Channel;
     const bool has_alpha = file.channels == 2 || file.channels == 4;
     const bool is_alpha = content.channel == Channel::kAlpha || (content.channel == Channel::kOpacity && has_alpha);
-    // Alpha is linear in every kind of file.
+    // Alpha is linear in every file format.
     if (content.values == ImageContent::Values::kData || is_alpha) file.encoding = PixelFile::Encoding::kLinear;
     if (content.channel == Channel::kAll) return to_linear(file);
     const int which = index_of(content.channel, file.channels);

@@ -1,12 +1,13 @@
-// What of a picture file makes an image.
+// This file selects which values of an image file form an image.
 #pragma once
 
 #include "common/image/image_file.h"
 
 namespace duet {
 
-/// Values are colours, decoded from sRGB where the file's kind is encoded so, or data, as they are stored. Channel: all
-/// three, or one of them or of alpha (1 where the file has none) as a grey; kOpacity is alpha, or red where there is none.
+/// Colors (kColors) are decoded from sRGB if the file format is sRGB-encoded; data (kData) are used as stored. The
+/// channel is either all three colors or one channel, which is then copied to R, G and B. Alpha is 1 if the file has
+/// none. kOpacity selects alpha, or red if the file has no alpha.
 struct ImageContent {
     enum class Values { kColors, kData };
     enum class Channel { kAll, kRed, kGreen, kBlue, kAlpha, kOpacity };
@@ -14,7 +15,7 @@ struct ImageContent {
     Channel channel = Channel::kAll;
 };
 
-/// In linear RGB.
+/// Returns the selected content of a file as linear RGB.
 ImageRgb image_of(PixelFile file, ImageContent content);
 
 } // namespace duet

@@ -37,7 +37,7 @@ struct Writer {
     std::string_view ending;
     std::string (*encode)(const ImageRgb&, const WriteOptions&);
 };
-// OpenEXR writes its files itself.
+// EXR has no encoder here, because OpenEXR writes files directly.
 constexpr std::array kWriters{
     Writer{".png", encode_png}, Writer{".jpg", encode_jpeg},    Writer{".jpeg", encode_jpeg},
     Writer{".tga", encode_tga}, Writer{".ppm", encode_ppm},     Writer{".pfm", encode_pfm},
@@ -52,8 +52,8 @@ const Writer& find_writer(const fs::path& path) {
                         ", expected .png, .jpg, .jpeg, .tga, .ppm, .pfm, .hdr or .exr"));
 }
 
-// Decodes encoded values: the 256 of 8-bit files (k/255, and k·257/65535 is the same float) by a table, others by the
-// curve.
+// Decodes sRGB-encoded values. A table serves the 256 values k/255 of 8-bit files; in 16-bit files, k·257/65535 is the
+// same float. The transfer curve is evaluated for all other values.
 class Decoder {
 public:
     Decoder() {

@@ -1,4 +1,4 @@
-// Reading and writing picture files: PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR (Radiance) and EXR.
+// These functions read and write image files: PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR (Radiance) and EXR.
 #pragma once
 
 #include "common/image/image.h"
@@ -10,10 +10,11 @@
 
 namespace duet {
 
-/// A file's values as stored: `channels` (1 to 4) floats a pixel, interleaved, rows from the top.
+/// Holds the values of an image file as stored. Each pixel has `channels` (1 to 4) interleaved floats; rows are stored
+/// from the top.
 struct PixelFile {
-    /// What the values mean. `kEncoded`: sRGB-encoded, 8 or 16 bits scaled to [0, 1] (PNG, JPEG, TGA, PPM; a fourth
-    /// or second channel is linear alpha). `kLinear`: linear radiance, any value (PFM, HDR, EXR).
+    /// `kEncoded` values are sRGB-encoded: 8 or 16 bits, scaled to [0, 1] (PNG, JPEG, TGA, PPM). Their second of two
+    /// channels or fourth of four is linear alpha. `kLinear` values are linear radiance of any size (PFM, HDR, EXR).
     enum class Encoding { kEncoded, kLinear };
 
     int width = 0, height = 0, channels = 0;
@@ -21,19 +22,21 @@ struct PixelFile {
     std::vector<float> values;
 };
 
-/// The largest width or height that is read, and the largest number of pixels (1 GiB as RGB floats): a file that claims
-/// more is refused from its header, before any memory is taken.
+/// These limits apply to the width, the height and the number of pixels (about 1 GiB as RGB floats) of image files. A
+/// file whose header claims more is rejected before any memory is allocated.
 inline constexpr int kMaxImageSide = 32768;
 inline constexpr long long kMaxImagePixels = 90'000'000;
 
-/// The whole file, by its content, not its ending (TGA, which has no signature: by its ending). An EXR's R, G, B (or Y)
-/// and A channels are read, of its data window (wherever that lies). Throws Error (path, what was found, what was
-/// expected) where the file is missing, truncated, malformed or over the limits.
+/// Reads an image file. Its signature determines the format, not the file extension; TGA has no signature and is chosen
+/// by its extension. Of an EXR file, the channels R, G, B (or Y) and A are read inside the data window, wherever that
+/// lies. Throws an Error that names the path, what was found and what was expected if the file is missing, truncated,
+/// malformed or over the limits.
 PixelFile read_pixel_file(const std::filesystem::path& path);
 
-/// The picture as linear RGB: encoded values are decoded by the sRGB curve, grey is spread, alpha is dropped.
+/// Converts the values of a file to linear RGB. Encoded values are decoded by the sRGB curve, gray is copied to all
+/// three channels, and alpha is dropped.
 ImageRgb to_linear(const PixelFile& file);
-/// to_linear(read_pixel_file(path)).
+/// Returns to_linear(read_pixel_file(path)).
 ImageRgb read_image(const std::filesystem::path& path);
 
 struct WriteOptions {
@@ -41,35 +44,41 @@ struct WriteOptions {
     int jpeg_quality = 95;  ///< 1 to 100
 };
 
-/// Writes linear RGB by the path's ending: .png, .jpg/.jpeg, .tga, .ppm (8 bits, encoded by the sRGB curve, rounded to
-/// nearest), .pfm, .hdr, .exr (linear). The file is whole or absent: it is written beside and renamed. Throws Error
-/// with exit code 2 for an unknown ending and 1 where writing fails. NaN is written as 0 to 8-bit files.
+/// Writes a linear RGB image in the format of the file extension. The formats .png, .jpg/.jpeg, .tga and .ppm store 8
+/// bits, encoded by the sRGB curve and rounded to nearest; NaN becomes 0 there. The formats .pfm, .hdr and .exr store
+/// linear values. The file is written atomically: it is complete or absent. Throws an Error with exit code 2 for an
+/// unknown extension, and with exit code 1 if writing fails.
 void write_image(const std::filesystem::path& path, const ImageRgb& image, const WriteOptions& options = {});
-/// Throws Error unless write_image knows the path's ending and its folder exists: called before a long render.
+/// Throws an Error unless write_image supports the path's extension, its folder exists and the path is not a folder.
+/// Programs call this check before a long render.
 void check_writable_image(const std::filesystem::path& path);
 
-/// One named channel of an EXR file ("R", "depth.Z", "normal.X", "hit.object" …): floats, or 32-bit unsigned integers.
+/// A named channel of an EXR file (for example "R", "depth.Z" or "hit.object") stores either floats or 32-bit unsigned
+/// integers.
 struct ExrChannel {
     std::string name;
     std::vector<float> floats;           ///< width × height values, or empty
     std::vector<std::uint32_t> integers; ///< width × height values, or empty
 };
-/// The three channels PREFIX + "R", "G", "B" of a picture.
+/// Returns the three channels of an image, named prefix + "R", prefix + "G" and prefix + "B".
 std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image);
-/// String attributes are stored in the header ("duet:scene" …).
+/// A text attribute is stored in the header of an EXR file, for example under the name "duet:scene".
 struct ExrAttribute {
     std::string name, value;
 };
-/// Writes channels of equal size, lossless (ZIP), whole or absent. Throws Error (exit code 1) where writing fails.
+/// Writes an EXR file with lossless ZIP compression. Each channel must have width × height values. The file is written
+/// atomically: it is complete or absent. Throws an Error (exit code 1) if writing fails.
 void write_exr(const std::filesystem::path& path, int width, int height, const std::vector<ExrChannel>& channels,
                const std::vector<ExrAttribute>& attributes = {});
-/// All channels of an EXR file's data window, half floats widened; of one part, flat, each channel with a value a
-/// pixel.
+/// Holds all channels of an EXR file inside its data window, and its text attributes. Half floats are converted to
+/// floats.
 struct ExrFile {
     int width = 0, height = 0;
     std::vector<ExrChannel> channels;
     std::vector<ExrAttribute> attributes;
 };
+/// Reads all channels of an EXR file. Throws an Error if the file cannot be read or is malformed, has several parts or
+/// deep pixels, or has a subsampled channel.
 ExrFile read_exr(const std::filesystem::path& path);
 
 } // namespace duet

@@ -12,8 +12,8 @@ namespace duet {
 
 namespace {
 
-// Colors that the color-blind tell apart (after Okabe and Ito 2008, "Color Universal Design", whose yellow is too light
-// for white paper), and darker ones of the same hue for text.
+// Color-blind readers can distinguish these line colors (after Okabe and Ito 2008, "Color Universal Design", without
+// their yellow, which is too light on a white page). Text has a darker color of the same hue.
 struct Ink {
     const char *line, *text;
 };
@@ -26,9 +26,10 @@ constexpr std::array<Ink, 7> kInks{{{"#0072B2", "#005A8E"},
                                     {"#56B4E9", "#1B6C9C"}}};
 constexpr double kFontSize = 13, kTitleSize = 15, kLineHeight = 17;
 
-// Letters differ in width and the fonts of viewers differ: this is wide enough for all but rows of capitals.
+// Estimates the width of a text in pixels. Letters and the fonts of viewers differ in width; the estimate is large
+// enough for all texts except long rows of capital letters.
 double text_width(const std::string& text, double size = kFontSize) {
-    const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }); // of UTF-8
+    const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }); // in UTF-8
     return 0.58 * size * static_cast<double>(letters);
 }
 
@@ -71,9 +72,9 @@ void check_plot(const std::string& name, const Plot& plot) {
         throw Error(message(name, ": ", plot.series.size(), " series, expected at most ", kInks.size()));
 }
 
-// Where things are on the page, and the axes that take values there.
+// Holds the position of the plot area and the axes, which map values to pixels.
 struct Layout {
-    double left, right, top, bottom; ///< of the field of the plot, in pixels from the upper left corner
+    double left, right, top, bottom; ///< edges of the plot area in pixels from the upper left corner
     Axis x, y;
 
     double x_of(double value) const { return left + (right - left) * x.position(value); }
@@ -178,7 +179,7 @@ struct EndLabel {
     double y;  ///< where the name is written
 };
 
-// Names stay beside the ends of their lines where they can, and never overlap.
+// Moves labels apart vertically until they do not overlap. A label stays beside the end of its line where possible.
 void spread(std::vector<EndLabel>& labels, double bottom) {
     std::sort(labels.begin(), labels.end(), [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
     for (std::size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLineHeight);
@@ -213,7 +214,7 @@ std::string names(const Layout& layout, const Plot& plot) {
 std::string plot_svg(const std::string& name, const Plot& plot) {
     check_plot(name, plot);
     const Layout layout = layout_of(name, plot);
-    // The white ground is drawn, since a page around the plot may be dark.
+    // Draw a white background, because the page around the plot may be dark.
     return message("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", plot.width, "\" height=\"", plot.height,
                    "\" viewBox=\"0 0 ", plot.width, " ", plot.height, "\" role=\"img\" data-timing=\"",
                    plot.timing ? "true" : "false",

@@ -9,7 +9,7 @@ namespace duet {
 
 namespace {
 
-// The largest of 1, 2, 5 times a power of ten that gives at least about `count` steps.
+// Returns 1, 2 or 5 times a power of ten as the distance between ticks, so that `span` has about `count` steps.
 double step_of(double span, int count) {
     const double rough = span / count, power = std::pow(10.0, std::floor(std::log10(rough)));
     const double digit = rough / power; // in [1, 10)
@@ -18,14 +18,14 @@ double step_of(double span, int count) {
 
 Axis linear_axis(AxisRequest wanted) {
     auto& [low, high, logarithmic, tight, whole, count] = wanted;
-    if (!tight && low > 0 && low < 0.4 * high) low = 0; // a length above 0 is judged by eye
+    if (!tight && low > 0 && low < 0.4 * high) low = 0; // readers compare heights above 0
     if (!tight && high < 0 && high > 0.4 * low) high = 0;
-    if (!(low < high)) { // a single value gets some room around it
+    if (!(low < high)) { // widen the range around a single value
         const double room = low == 0 ? 1 : std::abs(low) * 0.5;
         low -= room, high += room;
     }
     const double step = std::max(step_of(high - low, std::clamp(count, 2, 10)), whole ? 1.0 : 0.0);
-    // A value that is a tick up to rounding begins no further step.
+    // The tolerance 1e-9 treats a value as a tick if it equals the tick up to rounding.
     const double inward = tight ? -1e-9 : 1e-9;
     const auto first = static_cast<long long>(tight ? std::ceil(low / step + inward) : std::floor(low / step + inward));
     const auto last =
@@ -53,7 +53,7 @@ Axis logarithmic_axis(double low, double high) {
     const int first = static_cast<int>(std::floor(std::log10(low) + 1e-9));
     const int last = static_cast<int>(std::ceil(std::log10(high) - 1e-9));
     const bool few = std::log10(high / low) < 2;
-    const int every = 1 + (last - first) / 8; // more than 8 labels would crowd
+    const int every = 1 + (last - first) / 8; // more than 8 labels would overlap
     Axis axis{low, high, true, {}};
     for (int exponent = first; exponent <= last; ++exponent)
         for (int digit = 1; digit <= 9; ++digit) {
@@ -67,7 +67,7 @@ Axis logarithmic_axis(double low, double high) {
     return axis;
 }
 
-// The values of a logarithmic axis end at 1, 2 or 5 times a power of ten.
+// Rounds a bound of a logarithmic axis outward to 1, 2 or 5 times a power of ten.
 double round_outward(double value, bool up) {
     const double power = std::pow(10.0, std::floor(std::log10(value) + 1e-9));
     const double digit = value / power;

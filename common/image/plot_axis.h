@@ -1,4 +1,4 @@
-// The axis of a plot: what range it shows, and where its ticks are.
+// This file computes the range and the ticks of a plot's axis.
 #pragma once
 
 #include <string>
@@ -6,36 +6,37 @@
 
 namespace duet {
 
-/// A place on an axis. Minor ticks have a grid line but no label.
+/// A tick marks a value on an axis. Minor ticks have a grid line but an empty label.
 struct Tick {
     double value = 0;
     std::string label;
 };
 
 struct Axis {
-    double low = 0, high = 1; ///< the range that is shown; low < high
+    double low = 0, high = 1; ///< visible range; low < high
     bool logarithmic = false;
-    std::vector<Tick> ticks; ///< increasing
+    std::vector<Tick> ticks; ///< in increasing order
 
-    /// Where a value lies: 0 at the low end, 1 at the high end.
+    /// Returns the position of a value on the axis: 0 at `low` and 1 at `high`.
     double position(double value) const;
 };
 
-/// What an axis has to show: all values from `low` to `high`, finite, and above 0 where it is logarithmic.
+/// Describes the requested axis. It must show all values from `low` to `high`, which must be finite, and positive if
+/// the axis is logarithmic.
 struct AxisRequest {
     double low = 0, high = 1;
     bool logarithmic = false;
-    bool tight = false; ///< a linear axis ends at low and high, rather than at ticks
-    bool whole = false; ///< the values are whole numbers, so a linear axis has no ticks between those
-    int count = 6;      ///< about how many labels a linear axis has
+    bool tight = false; ///< a linear axis ends at low and high instead of at ticks
+    bool whole = false; ///< all values are integers, so a linear axis has ticks only at integers
+    int count = 6;      ///< approximate number of labels of a linear axis
 };
 
-/// The ticks of a linear axis are multiples of 1, 2 or 5 times a power of ten; where not tight it begins at 0 if the
-/// values come near that. A logarithmic axis has labels at powers of ten, as 10², and where it spans fewer than two of
-/// them also at 2 and 5 times those.
+/// Returns an axis for the request. The ticks of a linear axis are multiples of 1, 2 or 5 times a power of ten. Unless
+/// it is tight, a linear axis extends to 0 if the values come near 0. A logarithmic axis has labels at powers of ten,
+/// such as 10². If it spans a factor below 100, it also has labels at 2 and 5 times these powers.
 Axis make_axis(const AxisRequest& request);
 
-/// A number as briefly as `digits` significant digits allow, the same in every locale: "0.5", "1e+06".
+/// Formats a number with up to `digits` significant digits, independently of the locale, for example "0.5" or "1e+06".
 std::string brief_number(double value, int digits);
 
 } // namespace duet

@@ -1,4 +1,4 @@
-// PPM (netpbm's ppm(5): P3, P6) and PFM (Debevec's portable float map: PF, Pf).
+// This file reads and writes PPM (netpbm's ppm(5): P3, P6) and PFM (Debevec's portable float map: PF, Pf).
 #include "common/image/formats.h"
 #include "common/image/srgb.h"
 
@@ -10,7 +10,8 @@ namespace duet {
 
 namespace {
 
-// The words of a header, and the numbers of P3. A `#` starts a comment up to the end of its line.
+// Reads the words of a header and the numbers of a P3 file. A `#` starts a comment, which extends to the end of its
+// line.
 class Words {
 public:
     explicit Words(const ImageBytes& file) : file_(file) {}
@@ -27,7 +28,7 @@ public:
     long long integer(const char* expected) { return number<long long>(expected); }
     double real(const char* expected) { return number<double>(expected); }
 
-    // The header ends with a single blank; the pixels follow.
+    // Skips the single blank that ends the header and returns the offset of the first pixel.
     std::size_t end_of_header() {
         if (at_ >= file_.bytes.size() || !is_blank(file_.bytes[at_]))
             throw Error(message(file_.name, ": truncated: the file ends within its header"));
@@ -65,7 +66,7 @@ private:
     }
 
     const ImageBytes& file_;
-    std::size_t at_ = 2; // after the signature
+    std::size_t at_ = 2; // offset of the next byte to read; starts after the signature
 };
 
 unsigned byte_at(const ImageBytes& file, std::size_t i) { return static_cast<unsigned char>(file.bytes[i]); }
@@ -82,7 +83,7 @@ void read_ascii_values(const ImageBytes& file, Words& words, long long largest, 
     }
 }
 
-// One byte a value, or two, the higher first.
+// Reads values of one byte, or of two bytes with the higher byte first if the largest value is above 255.
 void read_binary_values(const ImageBytes& file, std::size_t at, long long largest, std::vector<float>& values) {
     const std::size_t size = largest > 255 ? 2 : 1;
     for (float& value : values) {
@@ -114,7 +115,7 @@ PixelFile decode_ppm(const ImageBytes& file) {
         throw Error(message(file.name, ": a largest value of ", largest, ", expected 1 to 65535"));
     const std::size_t first = words.end_of_header(), count = value_count(picture);
     const bool ascii = file.bytes[1] == '3';
-    // A number of P3 takes a digit and a blank at least, but for the last blank.
+    // Each number of a P3 file takes at least one digit and one blank, but the last number needs no blank.
     const std::size_t bytes = ascii ? 2 * count - 1 : largest > 255 ? 2 * count : count;
     check_claim(file, picture.width, picture.height, static_cast<double>(bytes),
                 static_cast<double>(file.bytes.size() - first));
@@ -129,7 +130,7 @@ PixelFile decode_ppm(const ImageBytes& file) {
 PixelFile decode_pfm(const ImageBytes& file) {
     Words words(file);
     PixelFile picture = sized(file, words, file.bytes[1] == 'F' ? 3 : 1, PixelFile::Encoding::kLinear);
-    // Its sign is the byte order (negative: little endian), its size the unit of the values.
+    // The sign of the scale gives the byte order (negative: little endian). Its magnitude is the unit of the values.
     const double scale = words.real("the scale");
     if (!std::isfinite(scale) || scale == 0)
         throw Error(message(file.name, ": a scale of ", scale, ", expected a number but 0"));
@@ -144,7 +145,7 @@ PixelFile decode_pfm(const ImageBytes& file) {
         std::uint32_t bits = 0;
         for (std::size_t k = 0; k < 4; ++k) bits = bits << 8 | byte_at(file, first + 4 * i + (little ? 3 - k : k));
         const float value = std::bit_cast<float>(bits);
-        // Rows from the bottom.
+        // PFM stores rows from the bottom.
         picture.values[count - (i / row + 1) * row + i % row] = unit == 1 ? value : unit * value;
     }
     return picture;
@@ -157,7 +158,7 @@ std::string encode_ppm(const ImageRgb& image, const WriteOptions& options) {
         file.append(bytes.begin(), bytes.end());
         return file;
     }
-    // A pixel a line: within the 70 characters of ppm(5).
+    // Write one pixel per line, which stays within the limit of 70 characters per line of ppm(5).
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         file += std::to_string(bytes[i]);
         file += i % 3 == 2 ? '\n' : ' ';

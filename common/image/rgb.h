@@ -1,4 +1,4 @@
-// Colours: linear RGB with Rec. 709 primaries.
+// This file defines colors in linear RGB with Rec. 709 primaries.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -7,7 +7,8 @@
 
 namespace duet {
 
-/// A spectrum of three channels: radiance, irradiance, reflectance … whatever the name of the variable says.
+/// An RGB value has three channels. It may be a radiance, an irradiance, a reflectance or another quantity; the name of
+/// the variable says which.
 template <typename T> struct RgbT {
     T r{}, g{}, b{};
 
@@ -37,10 +38,11 @@ template <typename T> constexpr RgbT<T> lerp(RgbT<T> a, RgbT<T> b, T t) { return
 
 template <typename T> constexpr T max_component(RgbT<T> c) { return max(max(c.r, c.g), c.b); }
 template <typename T> constexpr T average(RgbT<T> c) { return (c.r + c.g + c.b) * T(1.0 / 3.0); }
-/// Relative luminance Y of Rec. 709 primaries (ITU-R BT.709-6, §3.2).
+/// Returns the relative luminance Y for Rec. 709 primaries (ITU-R BT.709-6, §3.2).
 template <typename T> constexpr T luminance(RgbT<T> c) { return T(0.2126) * c.r + T(0.7152) * c.g + T(0.0722) * c.b; }
 template <typename T> constexpr bool is_black(RgbT<T> c) { return c.r == T(0) && c.g == T(0) && c.b == T(0); }
-/// A unit vector as a colour, (n + 1)/2. Rounding takes a component beyond 1 by an ulp: no colour is negative.
+/// Maps a unit vector to the color (n + 1)/2. Rounding can make a component of n exceed 1 in magnitude by an ulp, so
+/// negative results are clamped to 0.
 inline Rgb direction_color(Vec3 n) {
     const auto channel = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
     return {channel(n.x), channel(n.y), channel(n.z)};
@@ -49,7 +51,7 @@ template <Arithmetic T> bool is_finite(RgbT<T> c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }
 
-/// A pixel of four bytes, as displays take them; what the values mean says the variable's name.
+/// A pixel of four 8-bit channels, as displays use it. The name of the variable says how the values are encoded.
 struct Rgba8 {
     std::uint8_t r = 0, g = 0, b = 0, a = 255;
     friend bool operator==(const Rgba8&, const Rgba8&) = default;

@@ -1,4 +1,4 @@
-// Whether two values or two pictures are the same to the bit.
+// These functions test whether two values or two images are bitwise equal.
 #pragma once
 
 #include "common/image/image.h"
@@ -9,13 +9,14 @@
 
 namespace duet {
 
-/// Unlike ==, −0 is not 0, and a NaN is itself. For types without padding.
+/// Returns whether two values have the same bits. Unlike ==, this function distinguishes −0 from 0, and a NaN equals
+/// itself. The type must have no padding.
 template <typename Value> bool same_bits(const Value& a, const Value& b) {
     static_assert(std::is_trivially_copyable_v<Value>);
     return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
 }
 
-/// Pictures of one size, and each pixel the same; empty ones are.
+/// Returns whether two images have the same size and bitwise equal pixels. Two empty images are equal.
 template <typename Pixel> bool same_bits(const Image<Pixel>& a, const Image<Pixel>& b) {
     static_assert(std::is_trivially_copyable_v<Pixel>);
     return a.width() == b.width() && a.height() == b.height() &&

@@ -9,7 +9,7 @@ namespace duet {
 
 namespace {
 
-// The smallest float that is not below x (0 < x < 1).
+// Returns the smallest float that is not below x, for 0 < x < 1.
 float round_up(double x) {
     const float nearest = static_cast<float>(x);
     return static_cast<double>(nearest) < x ? std::nextafter(nearest, 2.0f) : nearest;
@@ -18,7 +18,7 @@ float round_up(double x) {
 } // namespace
 
 SrgbEncoder::SrgbEncoder() {
-    std::array<float, 256> change{}; // [k]: the smallest float of code k + 1
+    std::array<float, 256> change{}; // change[k] is the smallest float with code k + 1
     for (std::size_t k = 0; k < 255; ++k) change[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
     change[255] = std::numeric_limits<float>::infinity();
     std::uint32_t code = 0, bits = kSmallestBits;
@@ -26,7 +26,7 @@ SrgbEncoder::SrgbEncoder() {
         while (std::bit_cast<float>(bits) >= change[code]) ++code;
         interval = {code, change[code]};
         bits += 1u << kShift;
-        // What the class promises: no second change within the interval.
+        // The encoder relies on at most one code change in each interval.
         DUET_CHECK(code >= 254 || change[code + 1] >= std::bit_cast<float>(bits));
     }
 }
@@ -40,7 +40,7 @@ std::vector<std::uint8_t> srgb_encode_8bit(const ImageRgb& image, int threads) {
     const SrgbEncoder& encode = srgb_encoder();
     const auto width = static_cast<std::size_t>(image.width());
     std::vector<std::uint8_t> bytes(image.size() * 3);
-    // Bands of some 64,000 pixels: long enough to pay for the hand-over to a thread.
+    // A band has about 64,000 pixels, enough to make the cost of scheduling a task negligible.
     const std::size_t rows = width == 0 ? 1 : 1 + 65536 / width;
     const auto height = static_cast<std::size_t>(image.height());
     parallel_for((height + rows - 1) / rows, threads, [&](std::size_t band) {

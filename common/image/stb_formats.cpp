@@ -1,12 +1,13 @@
-// PNG, JPEG and TGA through stb, after the checks that it lacks (container_checks.h).
+// This file reads and writes PNG, JPEG and TGA files with stb. container_checks.h checks files first for the errors
+// that stb does not detect.
 #include "common/image/container_checks.h"
 #include "common/image/formats.h"
 #include "common/image/srgb.h"
 
 #include <cstdlib>
 
-// stb reads tables that a JPEG never defined, and leaves pixels unwritten whose data are missing: both are zero, not
-// what lay in memory before.
+// stb uses tables that a JPEG never defined, and leaves pixels unwritten if their data are missing. The allocator
+// clears memory, so that both read as zero instead of uninitialized memory.
 #define STBI_MALLOC(size) std::calloc(1, size)
 #define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
 #define STBI_FREE(pointer) std::free(pointer)
@@ -21,7 +22,7 @@
 #define STBI_WRITE_NO_STDIO
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
-// stb's header is a SYSTEM one, but functions left unused are reported where their definitions are expanded.
+// GCC warns about unused functions of stb although its include folder is a SYSTEM one.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
@@ -44,8 +45,9 @@ std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cas
 
 // Decoding -----------------------------------------------------------------------------------------------------------
 
-// Gives stb a file, and notices when it asks for more than there is. stb fills a buffer of 128 bytes at a time, which
-// the file's end may well cut short, or reads straight into its own memory, where it must get all.
+// Provides the bytes of a file to stb and detects reads beyond its end. stb reads in two ways. It fills a buffer of 128
+// bytes, where a short read at the end of the file is normal, or it reads into its own memory, where a short read means
+// that the file is truncated.
 class Source {
 public:
     explicit Source(std::string_view bytes) : bytes_(bytes) {}
@@ -122,7 +124,8 @@ template <typename Sample, typename Load> PixelFile decode_with(Load load, const
     return picture;
 }
 
-// The least bytes of a TGA's pixels: whole, or in runs of up to 128 (Truevision TGA, Version 2.0, «Data Types»).
+// Returns the smallest number of bytes that the pixels of a TGA can take. They are stored one by one or in runs of up
+// to 128 (Truevision TGA, Version 2.0, "Data Types").
 double least_tga_bytes(const ImageBytes& file, const Size& size) {
     const double pixels = static_cast<double>(size.width) * size.height;
     const bool runs = (byte_at(file.bytes, 2) & 8) != 0;
@@ -149,7 +152,7 @@ template <typename Write> std::string encode_with(Write write, const ImageRgb& i
 PixelFile decode_png(const ImageBytes& file) {
     check_png(file);
     stb_size(file, "PNG");
-    // Bits a sample: byte 8 of the header chunk's data.
+    // Byte 24 of the file is byte 8 of the header chunk's data: the bits per sample.
     return byte_at(file.bytes, 24) == 16 ? decode_with<stbi_us>(stbi_load_16_from_callbacks, file, "PNG")
                                          : decode_with<stbi_uc>(stbi_load_from_callbacks, file, "PNG");
 }
@@ -161,7 +164,8 @@ PixelFile decode_jpeg(const ImageBytes& file) {
 }
 
 PixelFile decode_tga(const ImageBytes& file) {
-    // A colour map type other than 0 and 1 is no TGA, and may be what stb takes for a JPEG, unchecked.
+    // A TGA has the color map type 0 or 1. Other files must be rejected here, because stb might read them as JPEG
+    // without the checks of check_jpeg().
     if (file.bytes.size() < 18 || byte_at(file.bytes, 1) > 1)
         throw Error(message(file.name, ": not a readable TGA picture: no TGA header"));
     const Size size = stb_size(file, "TGA");

@@ -19,20 +19,22 @@ bool black(const ConstantEnvironment& e) { return is_black(e.radiance); }
 Rgb look_up(const SkyEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up); }
 
-// Picture ------------------------------------------------------------------------------------------------------------
-// The mapping turns about +y by shifting u. Within a row of the distribution the *height* y of a direction is uniform,
-// not its latitude: so the density by solid angle is constant in each cell, also at the poles, where sin θ vanishes.
+// Image --------------------------------------------------------------------------------------------------------------
+// `rotation` turns the mapping about +y by shifting u. Within a row of the distribution the height y of a direction
+// is uniform, not its latitude. The density by solid angle is therefore constant in each cell, also at the poles,
+// where sin θ vanishes.
 
 float wrap(double u) { return std::min(static_cast<float>(u - std::floor(u)), kOneMinusEpsilon); }
 
-/// Where direction w lies in the picture.
+/// Returns the image's texture coordinates for direction w, in [0, 1)².
 Vec2 picture_uv(const ImageEnvironment& e, Vec3 w) {
     const Vec2 uv = latlong_uv(w);
     return {wrap(static_cast<double>(uv.x) + static_cast<double>(e.rotation) / (2 * kPiDouble)),
             clamp(uv.y, 0.0f, kOneMinusEpsilon)};
 }
 
-/// Row k of `rows` counted from below: y at its lower end, and its extent.
+/// A Band is the range of y that a row of the image covers. band returns that of row k of `rows`, counted from the
+/// bottom.
 struct Band {
     double low, extent;
 };
@@ -44,7 +46,8 @@ std::size_t band_index(float v, int rows) {
     return static_cast<std::size_t>(static_cast<double>(v) * static_cast<double>(rows));
 }
 
-/// Bilinear between pixel centres; around the seam, and constant beyond the centres of the top and bottom rows.
+/// Looks up the image bilinearly between pixel centers. The lookup wraps around in longitude and clamps beyond the
+/// centers of the top and bottom rows.
 Rgb look_up(const ImageEnvironment& e, Vec3 w) {
     if (e.image.empty()) return {};
     const int width = e.image.width(), rows = e.image.height();
@@ -85,8 +88,9 @@ std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
     return EnvironmentSample{wi, look_up(e, wi), pdf};
 }
 
-/// Luminance of each pixel's cell, integrated over solid angle up to a factor, rows from below. The mean of a bilinear
-/// function over a pixel weights the three pixels of each axis by 1/8, 6/8, 1/8.
+/// Returns the luminance of each pixel's cell, integrated over solid angle up to a constant factor. Rows are counted
+/// from the bottom. The mean of a bilinear function over a pixel weights the three nearest pixels of each axis by
+/// 1/8, 6/8 and 1/8.
 std::vector<double> cell_weights(const ImageRgb& image) {
     const int width = image.width(), rows = image.height();
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(rows);
@@ -107,10 +111,10 @@ std::vector<double> cell_weights(const ImageRgb& image) {
     return weights;
 }
 
-/// A picture is sampled where the part of its light above the mean is more than this.
+/// An image is only sampled where the fraction of its light above the mean exceeds this.
 constexpr double kUneven = 0.25;
 
-/// Makes the distribution of what lies above the mean, where that is enough to be worth a shadow ray.
+/// Builds the distribution of the luminance above the mean, where there is enough of it to justify a shadow ray.
 void distribute_excess(ImageEnvironment& e) {
     std::vector<double> weights = cell_weights(e.image);
     const int width = e.image.width();
@@ -173,7 +177,8 @@ bool is_black(const Environment& environment) {
 std::optional<Rgb> irradiance_closed_form(const Environment& environment, Vec3 n) {
     if (const auto* constant = std::get_if<ConstantEnvironment>(&environment)) return constant->radiance * kPi;
     if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
-        // L = c₀ + c₁·y; the hemisphere's ∫ cos = π, and ∫ w cos = n·2π/3 by symmetry.
+        // The radiance is L = c₀ + c₁·y. Over the hemisphere, ∫ cos = π, and ∫ w cos = n·2π/3 by
+        // symmetry.
         const Rgb mean = (sky->down + sky->up) * 0.5f, slope = (sky->up - sky->down) * 0.5f;
         return mean * kPi + slope * (2 * kPi / 3 * n.y);
     }

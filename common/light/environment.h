@@ -1,10 +1,10 @@
-// Light from infinitely far in all directions.
+// This file defines environment lights: radiance from infinitely far away in all directions.
 //
-// Rays that follow the materials find an even sky well enough, and only unevenness asks for samples of its own: so it
-// is the light *above the mean* that is sampled, and all light must also be looked for by BSDF samples, the two combined
-// by multiple importance sampling («MIS compensation», Karlík et al. 2019, «MIS Compensation: Optimizing Sampling
-// Techniques in Multiple Importance Sampling», §5). A constant sky or a plain gradient has no samples at all, which
-// saves a shadow ray at every vertex.
+// BSDF sampling finds a uniform sky well enough; only non-uniform light needs light samples. Light sampling therefore
+// draws from the luminance above the mean only, and BSDF samples must also look up the environment. Multiple
+// importance sampling combines the two ("MIS compensation": Karlík et al. 2019, "MIS Compensation: Optimizing
+// Sampling Techniques in Multiple Importance Sampling", §5). A constant sky or a gradient has no light samples at
+// all, which saves a shadow ray at every vertex.
 #pragma once
 
 #include "common/image/image.h"
@@ -18,52 +18,56 @@ namespace duet {
 struct ConstantEnvironment {
     Rgb radiance{0.0f};
 };
-/// Linear in the direction's height: horizon-to-zenith as in Ray Tracing in One Weekend §4.2,
+/// SkyEnvironment is linear in the direction's height y, as in Ray Tracing in One Weekend §4.2:
 /// (1 − h)·down + h·up with h = (y + 1)/2.
 struct SkyEnvironment {
     Rgb down{1.0f, 1.0f, 1.0f}, up{0.5f, 0.7f, 1.0f};
 };
-/// A lat-long picture, by the mapping of latlong_uv: u = ½ + atan2(x, −z)/2π, top row = +y; bilinear.
+/// ImageEnvironment is a latitude-longitude image with the mapping of latlong_uv: u = ½ + atan2(x, −z)/2π, and
+/// the top row is +y. Lookups are bilinear.
 struct ImageEnvironment {
     ImageRgb image;
-    float scale = 1;    ///< multiplies the picture
+    float scale = 1;    ///< factor of all pixels
     float rotation = 0; ///< radians about +y, counter-clockwise seen from above
-    // Made by make_image_environment:
-    bool dark = true;            ///< all pixels are black
-    float excess = 0;            ///< mean over directions of the luminance above its mean; 0: too little to be sampled
-    Distribution2D distribution; ///< of that part, over (u, v); empty where it is not sampled
+    // make_image_environment computes the fields below.
+    bool dark = true;            ///< whether all pixels are black
+    float excess = 0;            ///< mean over directions of the luminance above the mean; 0: too little to sample
+    Distribution2D distribution; ///< distribution of that luminance over (u, v); empty where it is not sampled
 };
 using Environment = std::variant<ConstantEnvironment, SkyEnvironment, ImageEnvironment>;
 
 struct EnvironmentSample {
-    Vec3 wi; ///< unit
+    Vec3 wi; ///< direction to the environment, unit
     Rgb radiance;
-    float pdf; ///< by solid angle, > 0
+    float pdf; ///< density by solid angle, > 0
 };
 
-/// Prepares a picture for sampling. Negative values (out-of-gamut colours) become 0. Throws Error where the picture is
-/// empty or has a value that is not finite, scale is negative, or either number is not finite.
+/// Prepares a latitude-longitude image for sampling. Negative values (out-of-gamut colors) become 0. Throws Error
+/// where the image is empty or holds a value that is not finite, where scale is negative, or where scale or rotation
+/// is not finite.
 ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotation);
 
-/// Radiance from direction w (unit).
+/// Returns the radiance that arrives from direction w (unit), in W/(m² sr).
 Rgb radiance(const Environment& environment, Vec3 w);
 inline Rgb radiance(const ConstantEnvironment& environment, Vec3) { return environment.radiance; }
 inline Rgb radiance(const SkyEnvironment& sky, Vec3 w) {
     return lerp(sky.down, sky.up, clamp(0.5f * (w.y + 1), 0.0f, 1.0f));
 }
-/// A direction in proportion to the luminance above the mean (of a picture: to the mean of each pixel's cell), or
-/// nothing, where an environment has too little of it: BSDF samples then find its light best. u in [0, 1)².
+/// Draws a direction in proportion to the luminance above the mean; for an image, in proportion to the mean of each
+/// pixel's cell. Returns nothing where the environment has too little such luminance: BSDF samples then find its
+/// light best. u is in [0, 1)².
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u);
-/// The density with which sample would return w.
+/// Returns the density, by solid angle, with which sample draws w.
 float pdf(const Environment& environment, Vec3 w);
-/// What sample's light would give a surface that faced it all, W/m²: what the choice among lights weighs it by. 0 where
-/// there is nothing to sample.
+/// Returns the irradiance, in W/m², that the sampled light would cause on a surface that faced all of it. The light
+/// chooser uses it as the environment's weight. The result is 0 where nothing is sampled.
 float sampled_irradiance(const Environment& environment);
 bool is_black(const Environment& environment);
-/// Radiance averaged over all directions, exact up to the bilinear blur of a picture's rows.
+/// Returns the radiance averaged over all directions. It is exact except for the bilinear filtering between an
+/// image's rows.
 Rgb mean_radiance(const Environment& environment);
-/// ∫ L(w) max(0, n·w) dw, in closed form for constant and sky; by second-order spherical harmonics is the rasterizer's
-/// business.
+/// Returns the irradiance ∫ L(w) max(0, n·w) dw in closed form for a constant environment and a sky, and nothing
+/// for an image. The rasterizer approximates images by second-order spherical harmonics.
 std::optional<Rgb> irradiance_closed_form(const Environment& environment, Vec3 n);
 
 } // namespace duet

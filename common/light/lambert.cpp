@@ -13,8 +13,9 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kMaxVertices = 8;
-/// Extent over distance below which a polygon is taken as a point: there Lambert's sum, whose terms of this size cancel
-/// down to its square, and the far field are both right to about ten digits.
+/// Below this ratio of extent to distance a polygon is treated as a point. The terms of Lambert's sum are of the
+/// order of this ratio and cancel down to its square. At this ratio, Lambert's sum and the far field are both
+/// accurate to about ten digits.
 constexpr double kFar = 1e-5;
 
 Vec3d precise_cross(Vec3d a, Vec3d b) {
@@ -22,8 +23,7 @@ Vec3d precise_cross(Vec3d a, Vec3d b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// A polygon seen from p: its vertices relative to p. Clipping by one plane adds at most one vertex to a convex
-/// polygon.
+/// A Polygon is convex, with vertices relative to p. Clipping by one plane adds at most one vertex.
 struct Polygon {
     std::array<Vec3d, kMaxVertices + 1> v;
     std::size_t count = 0;
@@ -34,7 +34,7 @@ struct Polygon {
     Vec3d next(std::size_t i) const { return v[i + 1 < count ? i + 1 : 0]; }
 };
 
-/// The part above the horizon n·v = 0 (Sutherland and Hodgman 1974, one plane).
+/// Clips the polygon to the half-space n·v ≥ 0 (Sutherland and Hodgman 1974, for one plane).
 Polygon above_horizon(const Polygon& polygon, Vec3d n) {
     Polygon clipped;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -42,7 +42,8 @@ Polygon above_horizon(const Polygon& polygon, Vec3d n) {
         const double za = dot(n, a), zb = dot(n, b);
         if (za >= 0) clipped.add(a);
         if ((za > 0 && zb < 0) || (za < 0 && zb > 0)) {
-            // From the end above to the end below, so that two polygons that share the edge cut it at the same point.
+            // The cut is computed from the vertex above to the vertex below, so that two polygons that share the edge
+            // cut it at the same point.
             const Vec3d top = za > 0 ? a : b, bottom = za > 0 ? b : a;
             const double t = max(za, zb) / std::abs(za - zb);
             const Vec3d cut = top + (bottom - top) * t;
@@ -52,15 +53,16 @@ Polygon above_horizon(const Polygon& polygon, Vec3d n) {
     return clipped;
 }
 
-/// The angle a subtended edge spans, times the cosine between n and the edge's normal: Lambert's term.
+/// Returns Lambert's term of an edge: the angle that the edge subtends, times the cosine between n and the normal of
+/// the plane through p and the edge.
 double edge_term(Vec3d a, Vec3d b, Vec3d n) {
     const Vec3d c = precise_cross(a, b);
     const double sine = length(c);
-    if (!(sine > 0)) return 0; // an edge of no extent, or one that passes through p
+    if (!(sine > 0)) return 0; // the edge has no extent or passes through p
     return std::atan2(sine, dot(a, b)) * dot(c, n) / sine;
 }
 
-/// Vector area of a polygon and its centroid, weighted by area (relative to p).
+/// A FarField holds a polygon's vector area and its area-weighted centroid relative to p.
 struct FarField {
     Vec3d area, centroid;
 };
@@ -88,12 +90,13 @@ double extent_over_distance(const Polygon& polygon) {
 
 double unit(double x) { return std::clamp(x, -1.0, 1.0); }
 
-/// A sphere that dips below the horizon, seen under the half angle whose sine and cosine are given, its centre at
-/// cosine `c` to the normal, |c| < sine.
+/// Returns the form factor times π of a sphere that is partly below the horizon. The sphere subtends a half angle of
+/// the given sine and cosine, and `c` is the cosine between the normal and the direction to its center, |c| < sine.
 double clipped_sphere(double sine, double cosine, double c) {
     const double s = std::sqrt((1 - c) * (1 + c));
-    if (sine <
-        1e-4) { // the sum below would cancel: a disk in the tangent plane, k its centre's height in its own radii
+    // Below this size the sum at the end would cancel. The sphere is then a disk in the tangent plane, and k is the
+    // height of its center in units of its radius.
+    if (sine < 1e-4) {
         const double k = unit(c / sine), root = std::sqrt((1 - k) * (1 + k));
         return sine * sine * sine * (k * (std::acos(-k) + k * root) + 2.0 / 3.0 * root * root * root);
     }
@@ -105,7 +108,8 @@ double clipped_sphere(double sine, double cosine, double c) {
 double polygon_factor(const Polygon& polygon, Vec3d n) {
     if (polygon.count < 3) return 0;
     const Vec3d area = far_field(polygon).area;
-    // In the polygon's own plane its solid angle is zero, or jumps from none to the hemisphere: none is right for both.
+    // For p in the polygon's plane the solid angle is zero, or jumps from zero to the hemisphere. No value is right
+    // for both sides, so the result is 0.
     if (std::abs(dot(area, polygon.v[0])) <= 1e-14 * length(area) * length(polygon.v[0])) return 0;
 
     const Polygon seen = above_horizon(polygon, n);
@@ -130,7 +134,7 @@ double sphere_factor(Vec3d to_center, double radius, Vec3d n) {
     return c > -sine ? clipped_sphere(sine, cosine, c) : 0.0;
 }
 
-// Irradiance per unit of radiance from each shape at p.
+// Each overload returns the irradiance at p per unit of the shape's radiance.
 double factor(const SurfaceLight::Triangle& t, Vec3d p, Vec3d n) {
     Polygon polygon;
     for (const Vec3 vertex : {t.a, t.b, t.c}) polygon.add(Vec3d(vertex) - p);

@@ -11,7 +11,8 @@ namespace {
 
 using Triangle = SurfaceLight::Triangle;
 
-/// Light from a single position: intensity over squared distance, in double so that neither scale overflows.
+/// Returns the sample of a light at a single position: intensity over squared distance. It is computed in double, so
+/// that neither intermediate overflows.
 std::optional<LightSample> from_position(Vec3 position, Rgb intensity, Vec3 p) {
     const Vec3d to_light = Vec3d(position) - Vec3d(p);
     const double d2 = length_squared(to_light);
@@ -22,7 +23,7 @@ std::optional<LightSample> from_position(Vec3 position, Rgb intensity, Vec3 p) {
     return LightSample{Vec3(to_light / d), static_cast<float>(d), arriving, 1, true};
 }
 
-/// Part of the axis's intensity at an angle of this cosine to it.
+/// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1].
 float spot_falloff(const SpotLight& light, float cosine) {
     if (cosine >= light.cos_inner) return 1;
     if (cosine <= light.cos_outer) return 0;
@@ -47,7 +48,7 @@ std::optional<LightSample> draw(const SunLight& light, Vec3, Vec2) {
     return LightSample{-light.direction, kInfinity, light.irradiance, 1, true};
 }
 
-/// The density as a float where it can be used: finite and positive; else 0.
+/// Returns the density as a float where it is finite and positive, and 0 elsewhere.
 float usable(double pdf) {
     const float value = static_cast<float>(std::min(pdf, 1e38));
     return pdf > 0 && pdf < 1e38 ? value : 0.0f;
@@ -65,7 +66,7 @@ double area(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.
 double area(const Quad& q) { return length(cross(Vec3d(q.u), Vec3d(q.v))); }
 double area(const Sphere& s) { return 4 * kPiDouble * sqr(static_cast<double>(s.radius)); }
 
-/// Flux per unit of radiance, intensity or irradiance, and that unit.
+/// A light's flux is factor·quantity. The quantity is its radiance, intensity or irradiance.
 struct Flux {
     double factor;
     Rgb quantity;
@@ -87,7 +88,7 @@ Flux flux(const SurfaceLight& light, double) {
 bool emits_towards(const SurfaceLight& light, Vec3 p) {
     struct {
         Vec3d p;
-        /// Positive on the front side, negative on the back, 0 in the plane.
+        /// Returns a value that is positive on the front side, negative on the back, and 0 in the plane.
         double operator()(const Triangle& t) const {
             const Vec3d a(t.a);
             return dot(cross(Vec3d(t.b) - a, Vec3d(t.c) - a), p - a);

@@ -1,4 +1,4 @@
-// The closed set of lights that stand in the scene; the environment has a file of its own.
+// This file defines the closed set of lights placed in the scene. The environment is in environment.h.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -14,47 +14,51 @@ struct PointLight {
     Vec3 position;
     Rgb intensity; ///< W/sr
 };
-/// Full intensity within `inner`, none beyond `outer`, smooth (3s² − 2s³ of the cosine) between; angles from the axis
-/// in radians.
+/// A spot light has full intensity within the inner angle and none beyond the outer angle. In between, the intensity
+/// falls smoothly (3s² − 2s³ of the cosine). Angles are measured from the axis.
 struct SpotLight {
     Vec3 position;
-    Vec3 direction; ///< unit, the way the light goes
+    Vec3 direction; ///< unit, direction of propagation
     Rgb intensity;  ///< W/sr on the axis
     float cos_inner = 1, cos_outer = 0;
 };
-/// Parallel light.
+/// A sun is a directional light at infinity.
 struct SunLight {
-    Vec3 direction; ///< unit, the way the light goes
+    Vec3 direction; ///< unit, direction of propagation
     Rgb irradiance; ///< W/m² on a surface that faces it
 };
-/// One primitive of an emissive surface, in the world; it does not move (a moving emitter is found by chance only).
+/// A SurfaceLight is one primitive of an emissive surface, in world space. It does not move: a moving emitter has no
+/// light samples and is found by BSDF sampling only.
 struct SurfaceLight {
     struct Triangle {
         Vec3 a, b, c;
     };
-    std::variant<Triangle, Quad, Sphere> shape; ///< front sides as in the scene: (b − a) × (c − a); u × v; outwards
+    std::variant<Triangle, Quad, Sphere> shape; ///< front side: (b − a) × (c − a); u × v; outwards
     bool two_sided = false;
     Rgb radiance; ///< W/(m² sr)
     std::uint32_t object = 0, primitive = 0;
 };
 using Light = std::variant<PointLight, SpotLight, SunLight, SurfaceLight>;
 
-/// Light that could arrive at p, visibility left out.
+/// A LightSample is the light that arrives at a point p from one direction, without occlusion.
 struct LightSample {
-    Vec3 wi;        ///< unit, to the light
-    float distance; ///< infinity for the sun
-    Rgb radiance; ///< arriving from wi: radiance for a surface; intensity / distance² or irradiance for a delta light
-    float pdf;    ///< by solid angle; 1 for a delta light
-    bool delta;   ///< from one direction only: found by no BSDF sample
+    Vec3 wi;        ///< unit direction to the light
+    float distance; ///< distance to the light; infinity for a sun
+    /// This is the radiance that arrives from wi. For a delta light it is intensity / distance², or irradiance.
+    Rgb radiance;
+    float pdf;    ///< density by solid angle; 1 for a delta light
+    bool delta;   ///< whether light comes from one direction only, which no BSDF sample finds
 };
-/// Empty where the light cannot reach p (behind the emitting side, outside the cone) or u falls on a degenerate spot.
+/// Draws a light sample for the point p with u in [0, 1)². The sample is empty where the light does not illuminate p
+/// (behind the emitting side, outside the cone), or where u selects a degenerate point.
 std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u);
-/// The density (by solid angle at p) with which sample_light returns the direction in which `q` lies on
-/// the light. 0 where the light does not emit towards p.
+/// Returns the density, by solid angle at p, with which sample_light draws the direction to the point q of the light.
+/// The density is 0 where the light does not emit towards p.
 float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q);
-/// Whether p lies on an emitting side; no point of a flat light's own plane does.
+/// Returns whether p lies on an emitting side. A point in a flat light's own plane does not.
 bool emits_towards(const SurfaceLight& light, Vec3 p);
-/// Emitted flux, W, averaged over channels (of a sun: on a disk of the scene's radius), for choosing among lights.
+/// Returns the emitted flux in W, averaged over channels. For a sun it is the flux through a disk of the scene's
+/// radius.
 float light_power(const Light& light, float scene_radius);
 bool is_delta(const Light& light);
 

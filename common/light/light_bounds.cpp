@@ -8,10 +8,10 @@ namespace duet {
 
 namespace {
 
-/// The angle between two unit vectors; accurate for nearly parallel ones, unlike the arc cosine.
+/// Returns the angle between two unit vectors. Unlike the arc cosine, it is accurate for nearly parallel vectors.
 float angle_between(Vec3 a, Vec3 b) { return 2 * std::atan2(length(a - b), length(a + b)); }
 
-/// v turned by an angle towards the unit vector `to`, which is not parallel to it.
+/// Returns v rotated by an angle towards the unit vector `to`, which must not be parallel to v.
 Vec3 turned_towards(Vec3 v, Vec3 to, float angle) {
     return normalize(v * std::cos(angle) + normalize(to - v * dot(v, to)) * std::sin(angle));
 }
@@ -41,7 +41,7 @@ struct {
     LightBounds operator()(const PointLight& light) const {
         return all_around(light.position, average(light.intensity));
     }
-    LightBounds operator()(const SpotLight& light) const { // its cone is not bounded: spots are few
+    LightBounds operator()(const SpotLight& light) const { // the cone is not bounded: spot lights are few
         return all_around(light.position, average(light.intensity));
     }
     LightBounds operator()(const SunLight&) const {
@@ -63,16 +63,16 @@ struct {
     }
 } const kBoundsOf;
 
-/// cos max(0, a − b) of angles in [0, π] by their cosines and sines.
+/// Returns cos max(0, a − b) for angles a and b in [0, π], given by their cosines and sines.
 float cos_of_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
     return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b;
 }
-/// sin max(0, a − b).
+/// Returns sin max(0, a − b) for angles a and b in [0, π], given by their cosines and sines.
 float sin_of_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
     return cos_a > cos_b ? 0.0f : sin_a * cos_b - cos_a * sin_b;
 }
 
-/// Estimates end here, so that they can be added up.
+/// All estimates are clamped to this value, so that sums of them do not overflow.
 constexpr float kMost = 1e30f;
 
 } // namespace
@@ -85,10 +85,11 @@ void LightBounds::extend(const LightBounds& other) {
     }
     box.extend(other.box);
     intensity += other.intensity;
-    // The smallest cone about both (Conty Estevez and Kulla 2018, algorithm 1).
+    // Find the smallest cone that contains both cones (Conty Estevez and Kulla 2018, algorithm 1).
     const float a = std::acos(clamp(cos_normals, -1.0f, 1.0f)), b = std::acos(clamp(other.cos_normals, -1.0f, 1.0f));
     const float between = angle_between(axis, other.axis);
-    constexpr float kRoom = 1e-3f; // for rounding: near 0° and 180° a cosine keeps only half of an angle's digits
+    // kRoom is a margin for rounding: near 0° and 180° a cosine has only half of an angle's digits.
+    constexpr float kRoom = 1e-3f;
     if (a >= between + b) return;
     if (b >= between + a) {
         axis = other.axis;
@@ -109,7 +110,8 @@ LightBounds light_bounds(const Light& light) { return std::visit(kBoundsOf, ligh
 float irradiance_estimate(const LightBounds& bounds, const LightReceiver& receiver) {
     const Vec3 to_center = bounds.box.center() - receiver.p;
     const float d2 = length_squared(to_center), r2 = length_squared(bounds.box.diagonal()) / 4;
-    if (!(d2 > r2)) return r2 > 0 ? min(bounds.intensity / r2, kMost) : 0; // within the ball: any angle is possible
+    // Inside the bounding sphere any angle is possible.
+    if (!(d2 > r2)) return r2 > 0 ? min(bounds.intensity / r2, kMost) : 0;
     const float inverse_d = 1 / std::sqrt(d2);
     const Vec3 w = to_center * inverse_d;
     const float sin2_ball = r2 / d2, cos_ball = std::sqrt(1 - sin2_ball), sin_ball = std::sqrt(sin2_ball);

@@ -7,8 +7,8 @@ namespace duet {
 
 namespace {
 
-/// What is estimated is irradiance without shadows. A sun that no window lets in must not starve the lamp in the room:
-/// this part of the samples is shared evenly among distant lights and the tree of all others.
+/// The estimates ignore shadows. So that a sun blocked by the walls does not starve the lights inside a room, this
+/// fraction of the samples is shared evenly among distant lights and the tree of all other lights.
 constexpr float kEven = 0.5f;
 
 } // namespace
@@ -49,7 +49,8 @@ std::optional<LightChoice> LightChooser::sample(const LightReceiver& receiver, f
     if (distant_.empty()) return tree_.sample(receiver, u);
     if (sources_ == 1) return LightChoice{distant_[0].index, 1, u};
     const Weights all = weights(receiver);
-    const auto choose = [&](float probability) { // or leave u for the next
+    // Returns whether u selects a choice of this probability, and prepares u for the next decision.
+    const auto choose = [&](float probability) {
         if (!(u < probability)) {
             u -= probability;
             return false;
@@ -67,7 +68,7 @@ std::optional<LightChoice> LightChooser::sample(const LightReceiver& receiver, f
         const float probability = all.probability(weight(distant, receiver));
         if (choose(probability)) return LightChoice{distant.index, probability, u};
     }
-    return std::nullopt; // nothing lights the receiver, or u fell into the rounding of the sum
+    return std::nullopt; // no light reaches the receiver, or u fell into the rounding error of the sum
 }
 
 float LightChooser::probability(const LightReceiver& receiver, std::size_t index) const {

@@ -11,10 +11,10 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kBins = 12;
-constexpr int kDepthOfHalving = 32; ///< from here on lists are halved, so that no way down is longer than 64
+constexpr int kDepthOfHalving = 32; ///< from this depth on lists are halved, so that no path exceeds 64 levels
 
-/// The measure of the directions into which lights of a cone of normals send light (Conty Estevez and Kulla 2018, eq.
-/// 1, for emission up to 90° from the normal).
+/// Returns the measure of the directions into which lights with normals in a cone emit (Conty Estevez and Kulla 2018,
+/// eq. 1, for emission up to 90° from the normal).
 float orientation_measure(float cos_normals) {
     const float o = std::acos(clamp(cos_normals, -1.0f, 1.0f)), w = min(o + kPi / 2, kPi);
     return 2 * kPi * (1 - std::cos(o)) +
@@ -22,12 +22,12 @@ float orientation_measure(float cos_normals) {
 }
 float cost(const LightBounds& bounds) {
     if (bounds.empty()) return 0;
-    // A flat or thin box's lights are still apart: half its area alone would call it free.
+    // The lights in a flat or thin box are still apart, but half its area alone would give them no cost.
     const Vec3 d = bounds.box.diagonal();
     return bounds.intensity * orientation_measure(bounds.cos_normals) * (bounds.box.half_area() + length_squared(d));
 }
 
-/// The part of [0, 1) that u fell into, [from, from + size), stretched to [0, 1).
+/// Rescales u from the subinterval [from, from + size) to [0, 1).
 float stretched(float u, float from, float size) {
     return clamp((u - from) / size, 0.0f, kOneMinusEpsilon);
 }
@@ -43,7 +43,7 @@ LightTree::LightTree(const std::vector<Light>& lights) : places_(lights.size()) 
     if (!lights_.empty()) build(0, static_cast<std::uint32_t>(lights_.size()), 0, 0);
 }
 
-// Makes the node of lights [first, last) and all below it; returns its index.
+// Builds the node of lights [first, last) with its whole subtree, and returns its index.
 std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uint64_t turns, int depth) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
@@ -62,7 +62,7 @@ std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uin
     return index;
 }
 
-// Sorts lights [first, last) into two, at the place of least cost; returns where the second begins.
+// Partitions lights [first, last) at the split of least cost, and returns the start of the second part.
 std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const LightBounds& bounds, int depth) {
     const auto begin = lights_.begin() + first, end = lights_.begin() + last;
     Box3 centers;
@@ -93,7 +93,7 @@ std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const Li
             if (!left.empty() && !right[i].empty() && both < best.cost) best = {both, axis, i};
         }
     }
-    if (!std::isfinite(best.cost)) { // all at one place, or deep down
+    if (!std::isfinite(best.cost)) { // all centers coincide, or the depth limit is reached
         const std::size_t axis = longest_axis(centers.diagonal());
         const auto middle = begin + (end - begin) / 2;
         std::nth_element(begin, middle, end, [&](const Leaf& a, const Leaf& b) {
@@ -111,7 +111,8 @@ float LightTree::irradiance(const LightReceiver& receiver) const {
     return empty() ? 0.0f : irradiance_estimate(nodes_[0].bounds, receiver);
 }
 
-// The probability of an inner node's first child; negative where neither can light the receiver.
+// Returns the probability of an inner node's first child, or a negative value where neither child can illuminate the
+// receiver.
 float LightTree::first_share(const Node& node, const LightReceiver& receiver) const {
     const float a = irradiance_estimate((&node)[1].bounds, receiver);
     const float b = irradiance_estimate(nodes_[node.first].bounds, receiver);
@@ -137,7 +138,7 @@ std::optional<LightChoice> LightTree::sample(const LightReceiver& receiver, floa
         sum += weights[i] = irradiance_estimate(lights_[node->first + i].bounds, receiver);
     if (!(sum > 0)) return std::nullopt;
     float left = u * sum;
-    std::uint32_t i = 0, last = node->count; // `last`: the last that is possible, should rounding lead beyond it
+    std::uint32_t i = 0, last = node->count; // `last`: fallback where rounding leads beyond the end
     for (; i < node->count; ++i) {
         if (!(weights[i] > 0)) continue;
         last = i;

@@ -1,4 +1,4 @@
-// A tree over lights, by which one of thousands is chosen for what it can contribute at a point.
+// This file defines a light tree, which chooses one of thousands of lights by its contribution at a point.
 #pragma once
 
 #include "common/light/light_bounds.h"
@@ -9,42 +9,45 @@
 namespace duet {
 
 struct LightChoice {
-    std::size_t index; ///< into the list of lights
-    float probability; ///< of this choice, > 0
-    float remapped;    ///< what is left of the number that chose: uniform in [0, 1)
+    std::size_t index; ///< index into the list of lights
+    float probability; ///< probability of this choice, > 0
+    float remapped;    ///< random number for reuse, uniform in [0, 1)
 };
 
-/// Bounds of lights in a binary tree. A light is chosen on the way down, at each fork in proportion to the irradiance
-/// that its sides could give (Conty Estevez and Kulla 2018); among the few lights of a leaf by each one's own. So few
-/// lights, which are one leaf, are weighed one by one.
+/// A LightTree is a binary tree over the bounds of lights. Sampling descends from the root and chooses a child in
+/// proportion to the irradiance that its lights could cause (Conty Estevez and Kulla 2018). In a leaf it chooses
+/// among the few lights by the estimate of each. A tree of at most kLeafLights lights is a single leaf.
 class LightTree {
 public:
-    /// Lights that a leaf may hold.
+    /// A leaf holds at most this many lights.
     static constexpr std::size_t kLeafLights = 8;
 
     LightTree() = default;
-    /// Of all lights of the list but suns and those that send nothing.
+    /// Builds the tree of all lights of the list, except suns and lights that emit nothing.
     explicit LightTree(const std::vector<Light>& lights);
 
     bool empty() const { return nodes_.empty(); }
-    /// What all could give together, W/m².
+    /// Returns an estimate of the irradiance from all lights together, W/m².
     float irradiance(const LightReceiver& receiver) const;
-    /// u in [0, 1). Empty where no light can light the receiver.
+    /// Chooses a light. u is in [0, 1). The result is empty where no light can illuminate the receiver.
     std::optional<LightChoice> sample(const LightReceiver& receiver, float u) const;
-    /// The probability with which sample chooses a light; 0 for one that is not in the tree.
+    /// Returns the probability with which sample chooses a light. It is 0 for a light that is not in the tree.
     float probability(const LightReceiver& receiver, std::size_t index) const;
 
 private:
     struct Leaf {
         LightBounds bounds;
-        std::size_t index; ///< into the list of lights
+        std::size_t index; ///< index into the list of lights
     };
     struct Node {
         LightBounds bounds;
-        std::uint32_t first = 0; ///< the second child (the first is the next node); of a leaf: its lights
-        std::uint32_t count = 0; ///< of a leaf's lights; 0: an inner node
+        /// In an inner node this is the index of the second child; the first child is the next node. In a leaf it is
+        /// the index of the first light.
+        std::uint32_t first = 0;
+        std::uint32_t count = 0; ///< number of lights in a leaf; 0: an inner node
     };
-    /// Where a light is found: turns from the root down, the first the lowest bit, and its place.
+    /// A Place is the path from the root to a light. Bit i of `turns` is set where level i takes the second child.
+    /// leaf_light is the light's index in lights_.
     struct Place {
         std::uint64_t turns = 0;
         std::uint32_t leaf_light = kNowhere;
@@ -56,8 +59,8 @@ private:
     float first_share(const Node& node, const LightReceiver& receiver) const;
 
     std::vector<Node> nodes_;
-    std::vector<Leaf> lights_;  ///< in the order of leaves
-    std::vector<Place> places_; ///< by index of the light
+    std::vector<Leaf> lights_;  ///< all lights, in the order of leaves
+    std::vector<Place> places_; ///< path to each light, indexed as the list of lights
 };
 
 } // namespace duet

@@ -29,18 +29,19 @@ std::optional<SolidAngleSample> sample_area(const Plane& plane, Vec3d w) {
     return SolidAngleSample{w / d, d, pdf};
 }
 
-/// A flat shape as N spherical triangles.
+/// Seen is a flat shape projected to N spherical triangles.
 template <std::size_t N> struct Seen {
     std::array<SphericalTriangle, N> triangles;
     std::array<double, N> solid_angles;
     double total = 0;
 };
 
-/// Below and above these rounding would show.
+/// These are the limits of the solid angle, beyond which rounding errors would become visible.
 constexpr double kMinSolidAngle = 1e-4, kMaxSolidAngle = 6.2;
 
-/// The shape of these corners (a fan about the first) in directions from p; empty where it is to be sampled by area. A
-/// function of shape and point alone, so that sampling and density always decide alike.
+/// Returns the spherical triangles of the shape (a fan about the first corner), with corners relative to the point p.
+/// The result is empty where the shape is to be sampled by area. The decision depends on shape and point alone, so
+/// that sampling and density always agree.
 template <std::size_t Corners>
 std::optional<Seen<Corners - 2>> seen_near(const Plane& plane, const std::array<Vec3d, Corners>& corners) {
     Vec3d center;
@@ -64,7 +65,8 @@ std::optional<Seen<Corners - 2>> seen_near(const Plane& plane, const std::array<
     return seen;
 }
 
-/// As seen_near, of a rectangle.
+/// Returns the spherical rectangle of a near quad with right angles. The result is empty where the quad is to be
+/// sampled by area.
 std::optional<SphericalRectangle> rectangle_near(const Plane& plane, const Quad& q, Vec3d p) {
     const Vec3d corner = plane.to_plane, center = corner + (Vec3d(q.u) + Vec3d(q.v)) * 0.5;
     if (!plane.near(center)) return std::nullopt;
@@ -75,7 +77,7 @@ std::optional<SphericalRectangle> rectangle_near(const Plane& plane, const Quad&
 }
 
 template <std::size_t N> std::optional<SolidAngleSample> sample_seen(const Plane& plane, const Seen<N>& seen, Vec2d u) {
-    double share = u.x * seen.total; // chooses the triangle; what is left of it is used again
+    double share = u.x * seen.total; // chooses the triangle, and the remainder is reused
     std::size_t i = 0;
     while (i + 1 < N && share >= seen.solid_angles[i]) share -= seen.solid_angles[i++];
     const double x = std::min(share / seen.solid_angles[i], 1.0);
@@ -85,7 +87,7 @@ template <std::size_t N> std::optional<SolidAngleSample> sample_seen(const Plane
     return SolidAngleSample{wi, distance, 1 / seen.total};
 }
 
-// Corners relative to p.
+// Each overload returns the shape's corners relative to p.
 std::array<Vec3d, 3> corners(const Triangle& t, Vec3d p) { return {Vec3d(t.a) - p, Vec3d(t.b) - p, Vec3d(t.c) - p}; }
 std::array<Vec3d, 4> corners(const Quad& q, Vec3d p) {
     const Vec3d corner = Vec3d(q.corner) - p, u(q.u), v(q.v);
@@ -98,7 +100,7 @@ template <typename Shape> double flat_pdf(const Shape& shape, Vec3d p, Vec3d q) 
     return seen ? 1 / seen->total : plane.pdf(q - p);
 }
 
-/// 1 − cos of the half angle of the cone a sphere fills, from sin² = r²/d² < 1.
+/// Returns 1 − cos of the half angle of the cone that a sphere subtends, from sin² = r²/d² < 1.
 double cone_gap(double sin2) { return sin2 / (1 + std::sqrt(1 - sin2)); }
 
 } // namespace
@@ -141,7 +143,7 @@ std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p
     const Vec3d to_center = Vec3d(sphere.center) - p;
     const double d2 = length_squared(to_center), r2 = sqr(static_cast<double>(sphere.radius));
     if (!(r2 > 0)) return std::nullopt;
-    if (d2 <= r2) { // from inside, every direction meets the sphere
+    if (d2 <= r2) { // from inside, every direction hits the sphere
         const double z = 1 - 2 * u.y, ring = 2 * std::sqrt(u.y * (1 - u.y)), phi = 2 * kPiDouble * u.x;
         const Vec3d wi(ring * std::cos(phi), ring * std::sin(phi), z);
         const double along = dot(wi, to_center), root = safe_sqrt(along * along + (r2 - d2));
@@ -151,7 +153,8 @@ std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p
     const double gap = cone_gap(r2 / d2), d = std::sqrt(d2);
     const Vec3d local = uniform_cone(u, gap);
     const Vec3d wi = frame_from_normal(to_center / d).to_world(local);
-    // The nearer root of t² − 2·t·d·cos + (d² − r²) = 0, without its difference.
+    // The distance is the smaller root of t² − 2·t·d·cos + (d² − r²) = 0, in a form without the cancelling
+    // difference.
     const double sin2 = sqr(local.x) + sqr(local.y);
     const double distance = (d2 - r2) / (d * local.z + safe_sqrt(r2 - d2 * sin2));
     return SolidAngleSample{wi, distance, uniform_cone_pdf(gap)};

@@ -1,4 +1,4 @@
-// Sampling the solid angle that a shape subtends at a point.
+// This file samples the solid angle that a shape subtends at a point.
 #pragma once
 
 #include "common/light/light.h"
@@ -8,26 +8,28 @@
 namespace duet {
 
 struct SolidAngleSample {
-    Vec3d wi;        ///< unit, from p to the shape
-    double distance; ///< to the shape along wi
-    double pdf;      ///< by solid angle
+    Vec3d wi;        ///< unit direction from p to the shape
+    double distance; ///< distance to the shape along wi
+    double pdf;      ///< density by solid angle
 };
 
-/// Right angles but for rounding. Other parallelograms are sampled as two triangles where they are near.
+/// Returns whether the quad's sides are at right angles, up to rounding. Near parallelograms of other angles are
+/// sampled as two triangles.
 bool is_rectangle(const Quad& quad);
 
-// For each shape: a direction from p to it, and the density with which sample_solid_angle returns the direction to its
-// point q. Empty, and 0, where p lies in the plane of a flat shape. u in [0, 1)².
+// sample_solid_angle draws a direction from p to the shape, with u in [0, 1)². solid_angle_pdf returns the density
+// with which sample_solid_angle draws the direction to the shape's point q. Where p lies in the plane of a flat
+// shape, the sample is empty and the density 0.
 
-/// Near: uniform by solid angle (a quad as a spherical rectangle, or, where its sides are not at right angles, as two
-/// triangles). Far: uniform by area, which is nearly the same there.
+/// Near flat shapes are sampled uniformly by solid angle: a rectangle as a spherical rectangle, another quad as two
+/// triangles. Far shapes are sampled uniformly by area, which is nearly the same there.
 std::optional<SolidAngleSample> sample_solid_angle(const SurfaceLight::Triangle& triangle, Vec3d p, Vec2d u);
 double solid_angle_pdf(const SurfaceLight::Triangle& triangle, Vec3d p, Vec3d q);
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& quad, Vec3d p, Vec2d u);
 double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q);
 
-/// Uniform over the cone that the sphere fills, seen from outside; over all directions from inside.
+/// A sphere is sampled uniformly over the cone that it subtends; from inside, uniformly over all directions.
 std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p, Vec2d u);
 double solid_angle_pdf(const Sphere& sphere, Vec3d p, Vec3d q);
 

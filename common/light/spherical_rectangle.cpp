@@ -20,8 +20,8 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d u, Vec3d v) {
     x1_ = x0_ + width;
     y1_ = y0_ + height;
 
-    // The planes through the origin and the edges at y0, x1, y1, x0: the z of their unit normals, which lie in planes of
-    // axes, so that the cosine of an inner angle is a product of two.
+    // n0 to n3 are the z of the unit normals of the planes through the origin and the edges at y0, x1, y1 and x0.
+    // Each normal has only two non-zero components, so the cosine of an inner angle is a product of two numbers.
     const auto z_of_normal = [this](double to_edge) { return to_edge / std::sqrt(to_edge * to_edge + z0_ * z0_); };
     const double n0 = z_of_normal(-y0_), n1 = z_of_normal(x1_), n2 = z_of_normal(y1_), n3 = z_of_normal(-x0_);
     const auto inner_angle = [](double a, double b) { return std::acos(std::clamp(-a * b, -1.0, 1.0)); };
@@ -32,12 +32,13 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d u, Vec3d v) {
 }
 
 Vec3d SphericalRectangle::sample(Vec2d u) const {
-    // The plane through the y axis that cuts off the part u.x of the solid angle (eq. 22 to 24).
+    // Find the plane through the y axis that cuts off the fraction u.x of the solid angle (eq. 22 to 24 of the
+    // paper).
     const double phi = u.x * solid_angle_ + beyond_left_;
     const double f = (std::cos(phi) * b0_ - b1_) / std::sin(phi);
     const double c = std::clamp(std::copysign(1 / std::sqrt(f * f + b0_ * b0_), f), -1.0, 1.0);
     const double x = std::clamp(-c * z0_ / safe_sqrt(1 - c * c), x0_, x1_);
-    // In that plane, heights above the x axis on the sphere are uniform (eq. 25 to 28).
+    // Within that plane, heights above the x axis are uniform on the sphere (eq. 25 to 28 of the paper).
     const double d2 = x * x + z0_ * z0_;
     const double h0 = y0_ / std::sqrt(d2 + y0_ * y0_), h1 = y1_ / std::sqrt(d2 + y1_ * y1_);
     const double h = lerp(h0, h1, u.y), rest = 1 - h * h;

@@ -11,7 +11,8 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kMeasured = 15;
-/// Nanometres: Johnson and Christy's photon energies from 3.25 to 1.51 eV. Other sources are interpolated to them.
+/// The wavelengths are in nanometers and follow from Johnson and Christy's photon energies between 3.25 and 1.51 eV.
+/// Data from other sources are interpolated to these wavelengths.
 constexpr std::array<double, kMeasured> kWavelengths{381.5, 397.4, 413.3, 430.5, 450.9, 471.4, 495.9, 520.9,
                                                      548.6, 582.1, 616.8, 659.5, 704.5, 756.0, 821.1};
 struct Metal {
@@ -19,9 +20,9 @@ struct Metal {
     std::array<std::array<double, 2>, kMeasured> nk;
 };
 
-// Johnson and Christy 1972, «Optical Constants of the Noble Metals», Phys. Rev. B 6; 1974, «Optical constants of
-// transition metals», Phys. Rev. B 9. Rakić 1995, Appl. Opt. 34, 4755; Rakić, Djurišić, Elazar and Majewski 1998, Appl.
-// Opt. 37, 5271. The figures are those of refractiveindex.info's database.
+// The sources are Johnson and Christy 1972, "Optical Constants of the Noble Metals", Phys. Rev. B 6; Johnson and
+// Christy 1974, "Optical constants of transition metals", Phys. Rev. B 9; Rakić 1995, Appl. Opt. 34, 4755; and Rakić,
+// Djurišić, Elazar and Majewski 1998, Appl. Opt. 37, 5271. The figures come from refractiveindex.info's database.
 constexpr Metal kMetals[] = {
     {"aluminium", // Rakić 1995
      {{{0.441, 4.605}, {0.481, 4.803}, {0.521, 5.001}, {0.572, 5.215}, {0.636, 5.465}, {0.709, 5.712},
@@ -79,12 +80,12 @@ constexpr auto kNames = [] {
     return names;
 }();
 
-/// CIE standard illuminant D65 from 380 to 780 nm (CIE 15:2004, table T.1).
+/// This is the CIE standard illuminant D65 from 380 to 780 nm in steps of 10 nm (CIE 15:2004, table T.1).
 constexpr double kD65[] = {49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81, 114.86, 115.92,
                            108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05, 100.00, 96.33,  95.79,  88.69,
                            90.01,  89.60,  87.70,  83.29,  83.70,  80.03,  80.21,  82.28,  78.28,  69.72,  71.61,
                            74.35,  61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
-constexpr double kFirst = 385, kLast = 780, kStep = 5; // nanometres, over which is summed
+constexpr double kFirst = 385, kLast = 780, kStep = 5; // range and step of the spectral sums, in nanometers
 
 double daylight(double wavelength) {
     const double at = (wavelength - 380) / 10;
@@ -92,13 +93,14 @@ double daylight(double wavelength) {
     return lerp(kD65[i], kD65[i + 1], at - static_cast<double>(i));
 }
 
-/// The CIE 1931 colour-matching functions (Wyman, Sloan and Shirley 2013, «Simple Analytic Approximations to the CIE XYZ
-/// Color Matching Functions», §2.2), as linear Rec. 709.
+/// Returns the CIE 1931 color-matching functions at a wavelength in nanometers, as linear Rec. 709 (Wyman, Sloan and
+/// Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions", §2.2).
 Rgbd color_matching(double w) {
     const auto bell = [w](double center, double below, double above) {
         return std::exp(-0.5 * sqr((w - center) / (w < center ? below : above)));
     };
-    const double x = 1.056 * bell(599.8, 37.9, 31.0) + 0.362 * bell(442.0, 16.0, 26.7) - 0.065 * bell(501.1, 20.4, 26.2);
+    const double x =
+        1.056 * bell(599.8, 37.9, 31.0) + 0.362 * bell(442.0, 16.0, 26.7) - 0.065 * bell(501.1, 20.4, 26.2);
     const double y = 0.821 * bell(568.8, 46.9, 40.5) + 0.286 * bell(530.9, 16.3, 31.1);
     const double z = 1.217 * bell(437.0, 11.8, 36.0) + 0.681 * bell(459.0, 26.0, 13.8);
     return {3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
@@ -109,10 +111,12 @@ double reflectance_at(const Metal& metal, double wavelength, double cosine) {
     std::size_t i = 0;
     while (i + 2 < kMeasured && kWavelengths[i + 1] < wavelength) ++i;
     const double f = (wavelength - kWavelengths[i]) / (kWavelengths[i + 1] - kWavelengths[i]);
-    return fresnel_conductor(cosine, lerp(metal.nk[i][0], metal.nk[i + 1][0], f), lerp(metal.nk[i][1], metal.nk[i + 1][1], f));
+    return fresnel_conductor(cosine, lerp(metal.nk[i][0], metal.nk[i + 1][0], f),
+                             lerp(metal.nk[i][1], metal.nk[i + 1][1], f));
 }
 
-/// What a metal makes of daylight, over what white does.
+/// Returns the linear Rec. 709 color that the metal reflects under daylight, divided by the color of a white
+/// reflector.
 Rgbd spectral(const Metal& metal, double cosine) {
     Rgbd reflected, white;
     for (double w = kFirst; w <= kLast; w += kStep) {
@@ -126,14 +130,15 @@ Rgbd spectral(const Metal& metal, double cosine) {
 constexpr int kAngles = 24;
 double cosine_of(int i) { return (i + 0.5) / kAngles; }
 
-/// All indices of one reflectance r at normal incidence, by n: k² = (r (n + 1)² − (n − 1)²)/(1 − r) (Gulbrandsen 2014,
-/// «Artist Friendly Metallic Fresnel», eq. 3).
+/// Returns the k for which the index n + ik has reflectance r at normal incidence: k² = (r
+/// (n + 1)² − (n − 1)²)/(1 − r) (Gulbrandsen 2014, "Artist Friendly Metallic Fresnel", eq. 3).
 double k_of(double r, double n) { return safe_sqrt((r * sqr(n + 1) - sqr(n - 1)) / (1 - r)); }
 
 struct Index {
     double n, k;
 };
-/// The one among them whose curve is nearest to the given one, in the mean over the hemisphere.
+/// Returns the index of reflectance r at normal incidence whose Fresnel curve is nearest to `curve`: the search
+/// minimizes the squared difference, weighted by the cosine over the hemisphere.
 Index nearest_index(double r, const std::array<double, kAngles>& curve) {
     const double low = (1 - r) / (1 + r), high = (1 + std::sqrt(r)) / (1 - std::sqrt(r));
     constexpr int kSteps = 500;
@@ -150,7 +155,8 @@ Index nearest_index(double r, const std::array<double, kAngles>& curve) {
 }
 
 const Metal* find(std::string_view name) {
-    const auto* found = std::find_if(std::begin(kMetals), std::end(kMetals), [&](const Metal& m) { return m.name == name; });
+    const auto* found =
+        std::find_if(std::begin(kMetals), std::end(kMetals), [&](const Metal& m) { return m.name == name; });
     return found == std::end(kMetals) ? nullptr : found;
 }
 
@@ -171,7 +177,7 @@ std::optional<Conductor> find_conductor(std::string_view name) {
     const Rgbd normal = spectral(*metal, 1);
     Conductor result;
     for (std::size_t c = 0; c < 3; ++c) {
-        // Saturated metals are a little outside Rec. 709's colours: what is beyond [0, 1] is cut off.
+        // The colors of saturated metals lie slightly outside the Rec. 709 gamut, so they are clamped.
         const double r = clamp(normal[c], 0.001, 0.9995);
         std::array<double, kAngles> curve;
         for (std::size_t i = 0; i < curve.size(); ++i) curve[i] = curves[i][c];

@@ -1,4 +1,4 @@
-// Lambert's diffuse reflection, on both sides of the surface.
+// This file defines the diffuse material and Lambert's reflection, which acts on both sides of the surface.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -8,19 +8,19 @@
 
 namespace duet {
 
-/// Reflects `albedo` of the light, equally to all directions of the side it came from.
+/// Reflects the fraction `albedo` of the light, equally in all directions of the side it came from.
 struct DiffuseBsdf {
     Rgb albedo;
 
-    /// albedo / π, where wo and wi are on one side.
+    /// Returns albedo / π where wo and wi are on the same side, and black elsewhere.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode) const { return same_hemisphere(wo, wi) ? albedo * kInvPi : Rgb(); }
-    /// Cosine-distributed on wo's side; never empty for wo.z ≠ 0.
+    /// Draws wi cosine-distributed on wo's side. The sample is empty only where wo.z is 0.
     std::optional<BsdfSample> sample(Vec3 wo, float, Vec2 u, TransportMode) const {
         if (wo.z == 0) return std::nullopt;
         Vec3 wi = cosine_hemisphere(u);
         const float density = cosine_hemisphere_pdf(wi.z);
         if (wo.z < 0) wi.z = -wi.z;
-        return BsdfSample{wi, albedo, density}; // (albedo / π)·cos / (cos / π)
+        return BsdfSample{wi, albedo, density}; // weight: (albedo / π)·cos / (cos / π)
     }
     float pdf(Vec3 wo, Vec3 wi, TransportMode) const {
         return same_hemisphere(wo, wi) ? cosine_hemisphere_pdf(abs_cos_theta(wi)) : 0.0f;
@@ -29,7 +29,7 @@ struct DiffuseBsdf {
 
 struct Diffuse {
     RgbSlot albedo{Rgb(0.8f)}; ///< each channel in [0, 1]
-    ScalarSlot roughness{0};   ///< in [0, 1]; above 0: RoughDiffuseBsdf's
+    ScalarSlot roughness{0};   ///< in [0, 1]; a value above 0 selects RoughDiffuseBsdf
 
     bool rough() const { return !roughness.constant() || roughness.value > 0; }
 

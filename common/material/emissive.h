@@ -1,4 +1,5 @@
-// A surface that emits light, over a diffuse reflection (black by default).
+// This file defines the emissive material: a surface that emits light and reflects diffusely (with a black albedo by
+// default).
 #pragma once
 
 #include "common/material/diffuse.h"
@@ -7,12 +8,13 @@ namespace duet {
 
 struct Emissive {
     Rgb radiance{1.0f};        ///< W/(m² sr), equal in all directions of the front side; zero on the back
-    bool two_sided = false;    ///< emits on the back, too
+    bool two_sided = false;    ///< whether the back emits too
     RgbSlot albedo{Rgb(0.0f)}; ///< diffuse reflectance of both sides
-    std::int32_t radiance_texture = -1; ///< index into TextureSet::textures: multiplies the radiance; −1: none
+    /// This is the index into TextureSet::textures of a texture that multiplies the radiance, or −1 for none.
+    std::int32_t radiance_texture = -1;
 
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
-    /// Radiance of the point towards w (any length).
+    /// Returns the radiance that the point emits towards w (of any length), in W/(m² sr).
     Rgb emitted(const TextureSet& textures, const SurfacePoint& point, Vec3 w) const {
         if (!two_sided && !(dot(point.ng, w) > 0)) return Rgb();
         return evaluate(textures, RgbSlot{radiance, radiance_texture}, point);

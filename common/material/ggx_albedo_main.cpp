@@ -1,5 +1,5 @@
-// Writes the tables of common/material/ggx_albedo.h as a source file, when the project is built: nothing but
-// common/material/ggx.h says what they hold.
+// This build-time program writes the tables of common/material/ggx_albedo.h as a source file. It integrates the
+// functions of common/material/ggx.h numerically.
 #include "common/material/ggx.h"
 #include "common/material/ggx_albedo_table.h"
 #include "common/sampling/hash.h"
@@ -17,7 +17,7 @@ constexpr int kSamples = 1024;
 struct Entry {
     double lost = 0, share = 0;
 };
-/// By samples of visible normals, whose weight is G₂/G₁.
+/// Integrates the single-scattering albedo over wi, by samples of visible normals. Their weight is G₂/G₁.
 Entry integrate(float alpha, float cosine) {
     const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
     double energy = 0, offset = 0, lost = 0;
@@ -34,12 +34,13 @@ Entry integrate(float alpha, float cosine) {
     return {lost / kSamples, energy > 0 ? offset / energy : 0};
 }
 
-/// 2∫ … μ dμ of the tables themselves, so that what is lost and what is added again are the same.
+/// Computes the hemispherical means 2∫ … μ dμ from the tables themselves, so that the multiple-scattering lobe
+/// returns exactly the energy that lookups report as lost.
 void add_means(GgxAlbedoTables& tables, std::size_t row, float alpha) {
     constexpr int kSteps = 2048;
     double lost = 0, share = 0;
     for (int i = 0; i < kSteps; ++i) {
-        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // closer near the horizon
+        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // denser at grazing angles
         const double step = 4.0 * static_cast<double>(x * cosine) / kSteps;
         const float gone = tables.lost_at(alpha, cosine);
         lost += step * static_cast<double>(gone);

@@ -14,19 +14,24 @@ constexpr float kCoat = LayeredBsdf::kCoatNormal;
 
 float grey_multiple(float normal, float mean_lost) { return ggx_multiple(schlick_average(Rgb(normal)), mean_lost).r; }
 
-/// E(w) of a dielectric layer: one reflection, and the part of the rest that comes back.
+/// Returns E(w), the albedo of a dielectric layer: single scattering plus the part of the lost light that multiple
+/// scattering returns.
 float layer_albedo(GgxAlbedo single, float normal, float multiple, float mean_lost) {
     return min(single.of(normal) + multiple * (1 - single.energy) * kPi * mean_lost, 1.0f);
 }
-/// 2∫ E μ dμ.
+/// Returns the cosine-weighted mean 2∫ E μ dμ of a dielectric layer's albedo E.
 float mean_layer_albedo(const GgxMeans& means, float normal, float multiple) {
     return means.of(normal) + multiple * kPi * sqr(means.lost);
 }
 
-/// What a direction meets in the layers.
+/// A Way describes how the layers scatter and transmit light from one direction.
 struct Way {
-    float lost, under;           ///< of the glossy layer: to further reflections; 1 − E, what passes the dielectric
-    float coat_lost, under_coat; ///< of the coat
+    /// In the glossy layer, `lost` is the fraction that single scattering misses, and `under` = 1 − E is the
+    /// fraction that passes the dielectric.
+    float lost, under;
+    /// In the coat, `coat_lost` is the fraction that single scattering misses, and `under_coat` is the fraction that
+    /// passes.
+    float coat_lost, under_coat;
     GgxAlbedo glossy;
 };
 Way way(const LayeredBsdf& b, const GgxMeans& means, float cosine) {
@@ -43,17 +48,17 @@ Way way(const LayeredBsdf& b, const GgxMeans& means, float cosine) {
     return w;
 }
 
-/// Of what is drawn from: a cosine for the diffuse surface and all further reflections, and one reflection by the glossy
-/// layer, and by the coat.
+/// A Choice holds the selection probabilities of the sampled lobes. `diffuse` is a cosine lobe for the diffuse
+/// surface and all multiple scattering; `glossy` and `coat` are single scattering by that layer.
 struct Choice {
-    float diffuse, glossy, coat; ///< of sum 1
+    float diffuse, glossy, coat; ///< probabilities that add up to 1
 };
 Choice choice(const LayeredBsdf& b, const GgxMeans& means, const Way& w) {
     const float further = average(b.glossy.multiple) * w.lost * kPi * means.lost;
     Choice c{};
     c.diffuse = w.under_coat * (average(b.diffuse) * w.under + further);
     c.glossy = w.under_coat * average(w.glossy.of(b.glossy.normal));
-    // Some of each that there is: what an albedo calls dark may be bright in one direction.
+    // Each existing lobe gets a minimum probability: a lobe of small albedo may be bright in one direction.
     c.glossy += 0.01f;
     c.coat = 1 - w.under_coat + 0.01f * b.coat;
     const float sum = c.diffuse + c.glossy + c.coat;
@@ -101,7 +106,8 @@ std::optional<BsdfSample> LayeredBsdf::sample(Vec3 wo, float lobe, Vec2 u, Trans
     if (lobe < c.diffuse)
         wi = cosine_hemisphere(u);
     else
-        wi = reflect(above, ggx_sample_visible_normal(above, lobe < c.diffuse + c.glossy || coat == 0 ? glossy.alpha : coat_alpha, u));
+        wi = reflect(above, ggx_sample_visible_normal(
+                                above, lobe < c.diffuse + c.glossy || coat == 0 ? glossy.alpha : coat_alpha, u));
     wi = normalize(wi);
     if (!(wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;

@@ -1,4 +1,5 @@
-// Varnish over wood, plastic, lacquered metal: a glossy layer over a diffuse or metallic one, a clear coat over both.
+// This file defines layered reflection (varnish, plastic, lacquered metal): a glossy layer over a diffuse or metallic
+// base, with a clear coat on top.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -6,34 +7,41 @@
 
 namespace duet {
 
-/// One lobe of GGX microfacets with Schlick's Fresnel term, light of further reflections included: MetalBsdf's own.
+/// A GlossyLayer is a lobe of GGX microfacets with Schlick's Fresnel term and multiple-scattering compensation, as in
+/// MetalBsdf.
 struct GlossyLayer {
     Rgb normal;     ///< reflectance at normal incidence
-    float alpha;    ///< at least LayeredBsdf::kSmoothest
-    Rgb multiple;   ///< see ggx_multiple
+    float alpha;    ///< GGX width, at least LayeredBsdf::kSmoothest
+    Rgb multiple;   ///< factor of the multiple-scattering lobe (ggx_multiple)
 };
 
-/// From below: a diffuse surface under a dielectric one, mixed with a metal of the same roughness; over these a clear
-/// coat. What a layer reflects does not reach the next: the diffuse surface receives and returns through factors
-/// 1 − E(w), E the albedo of the layer above at the angle of w, scaled so that white under clear returns all (Kelemen and
-/// Szirmay-Kalos 2001, «A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling», §4); what is
-/// under the coat is multiplied by 1 − max(E(wo), E(wi)), so that a mirror under it returns all. Reciprocal, on both
-/// sides of the surface; no more light leaves than arrives (tested).
+/// A LayeredBsdf is a stack of layers. The base is a diffuse surface under a dielectric, mixed with a metal of the
+/// same roughness. A clear coat covers both.
+///
+/// Light that a layer reflects does not reach the layer below. The diffuse surface is attenuated by 1 − E(wi) and
+/// 1 − E(wo), where E is the directional albedo of the layer above. The product is normalized so that a white
+/// surface under a clear dielectric reflects all light (Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled
+/// Specular-Matte BRDF Model with Importance Sampling", §4). The base under the coat is multiplied by
+/// 1 − max(E(wo), E(wi)), so that a mirror under the coat reflects all light.
+///
+/// The BSDF is reciprocal and acts on both sides of the surface. It never reflects more light than it receives
+/// (tested).
 struct LayeredBsdf {
-    static constexpr float kSmoothest = 1e-3f; ///< alpha: no lobe is a perfect mirror
+    static constexpr float kSmoothest = 1e-3f; ///< least alpha; no lobe is a perfect mirror
 
-    Rgb diffuse;         ///< albedo of the diffuse surface, times the part of it in the mix
-    GlossyLayer glossy;  ///< both materials of the mix
-    float dielectric;    ///< reflectance of the dielectric alone, at normal incidence
+    Rgb diffuse;         ///< albedo of the diffuse surface times its fraction of the mix
+    GlossyLayer glossy;  ///< dielectric and metal, mixed
+    float dielectric;    ///< reflectance of the dielectric alone at normal incidence
     float dielectric_multiple;
-    float coat;          ///< how much of the surface it covers, in [0, 1]
+    float coat;          ///< fraction of the surface that the coat covers, in [0, 1]
     float coat_alpha, coat_multiple;
 
-    static constexpr float kCoatNormal = 0.04f; ///< reflectance of a coat, index of refraction 1.5, at normal incidence
+    /// This is the reflectance at normal incidence of a coat with index of refraction 1.5.
+    static constexpr float kCoatNormal = 0.04f;
 
     struct Description {
-        Rgb color;            ///< of the diffuse surface, and of the metal at normal incidence
-        float metallic = 0;   ///< part of the mix
+        Rgb color;            ///< albedo of the diffuse surface, and the metal's reflectance at normal incidence
+        float metallic = 0;   ///< metal's fraction of the mix, in [0, 1]
         float dielectric = 0.04f;
         float roughness = 0;
         float coat = 0, coat_roughness = 0;
@@ -44,7 +52,8 @@ struct LayeredBsdf {
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 
-    /// What a viewer at an angle sees of each layer: parts of light that comes from everywhere.
+    /// Albedos holds the directional albedo of each layer: the fraction of uniform incident light that the layer
+    /// sends to the viewer.
     struct Albedos {
         Rgb diffuse, glossy, coat;
     };

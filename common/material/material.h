@@ -1,4 +1,5 @@
-// The closed set of materials. A material is a description with texture slots; at a point it becomes a Bsdf.
+// This file defines the closed set of materials. A material is a description with texture slots. bsdf_at evaluates it
+// at a surface point, which gives a Bsdf.
 #pragma once
 
 #include "common/material/dielectric.h"
@@ -14,7 +15,8 @@
 namespace duet {
 
 using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled, Coated>;
-// Those of a kind stand together: to ask for a kind is one comparison.
+// Alternatives of one kind are adjacent, so that a test for the kind compiles to one comparison of the variant's
+// index.
 using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf, RoughDielectricBsdf, DielectricBsdf,
                           ThinDielectricBsdf>;
 
@@ -30,27 +32,27 @@ inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, V
 inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.pdf(wo, wi, mode); }, bsdf);
 }
-/// Whether the Bsdf has only delta lobes, which light sampling cannot find.
+/// Returns whether the Bsdf has only delta lobes, which light sampling cannot find.
 bool is_specular(const Bsdf& bsdf);
-/// Whether it is matt: diffuse, smooth or rough, and nothing else.
+/// Returns whether the Bsdf is purely diffuse, smooth or rough.
 inline bool is_diffuse(const Bsdf& bsdf) {
     return std::holds_alternative<DiffuseBsdf>(bsdf) || std::holds_alternative<RoughDiffuseBsdf>(bsdf);
 }
-/// Whether light goes through it.
+/// Returns whether the Bsdf transmits light.
 inline bool is_transmissive(const Bsdf& bsdf) {
     return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<RoughDielectricBsdf>(bsdf) ||
            std::holds_alternative<ThinDielectricBsdf>(bsdf);
 }
-/// The index inside over outside of a surface that has an inside to refract into; 1: it has none.
+/// Returns the index of refraction inside over outside where the surface refracts into an interior, and 1 elsewhere.
 float refraction_index(const Bsdf& bsdf);
-/// Radiance that the material emits at a point towards w; black but for Emissive.
+/// Returns the radiance that the material emits at a point towards w, in W/(m² sr). Only Emissive is not black.
 Rgb emitted(const Material& material, const TextureSet& textures, const SurfacePoint& point, Vec3 w);
-/// The material as an emitter: null where it emits nothing, black emission included.
+/// Returns the material as an emitter, or null where it is not Emissive or its radiance is black.
 const Emissive* emitter(const Material& material);
-/// The slot of a material's colour.
+/// Returns the texture slot of the material's main color.
 const RgbSlot& texture_slot(const Material& material);
 RgbSlot& texture_slot(Material& material);
-/// Calls visit(texture) for each of the material's references to a texture: an index, or −1.
+/// Calls visit(texture) for each of the material's references to a texture, an index or −1.
 template <typename AnyMaterial, typename Visit>
     requires std::same_as<std::remove_const_t<AnyMaterial>, Material>
 void for_each_texture(AnyMaterial& material, const Visit& visit) {
@@ -61,10 +63,11 @@ void for_each_texture(AnyMaterial& material, const Visit& visit) {
     if (auto* emissive = std::get_if<Emissive>(&material)) visit(emissive->radiance_texture);
     if (auto* coated = std::get_if<Coated>(&material)) visit(coated->roughness.texture);
     if (auto* principled = std::get_if<Principled>(&material))
-        for (auto* slot : {&principled->metallic, &principled->roughness, &principled->clearcoat, &principled->clearcoat_roughness})
+        for (auto* slot :
+             {&principled->metallic, &principled->roughness, &principled->clearcoat, &principled->clearcoat_roughness})
             visit(slot->texture);
 }
-/// The colour one would paint it with: albedo, reflectance or tint at the point. For the albedo AOV.
+/// Returns the material's base color at the point for the albedo AOV: its albedo, reflectance or tint.
 Rgb base_color(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 
 } // namespace duet

@@ -20,7 +20,8 @@ MetalBsdf::MetalBsdf(const Conductor& conductor, float alpha_)
 
 Rgb MetalBsdf::fresnel(float cosine) const {
     if (n.r == 0) return fresnel_schlick(reflectance, cosine);
-    return {fresnel_conductor(cosine, n.r, k.r), fresnel_conductor(cosine, n.g, k.g), fresnel_conductor(cosine, n.b, k.b)};
+    return {fresnel_conductor(cosine, n.r, k.r), fresnel_conductor(cosine, n.g, k.g),
+            fresnel_conductor(cosine, n.b, k.b)};
 }
 
 Rgb MetalBsdf::albedo(float cosine) const {
@@ -34,7 +35,8 @@ Rgb MetalBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     wo = upwards(wo);
     wi = upwards(wi);
     const Microfacet h = microfacet(wo, wi);
-    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) + multiple * (ggx_lost(alpha, wo.z) * ggx_lost(alpha, wi.z));
+    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) +
+           multiple * (ggx_lost(alpha, wo.z) * ggx_lost(alpha, wi.z));
 }
 
 std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const {
@@ -44,8 +46,8 @@ std::optional<BsdfSample> MetalBsdf::sample(Vec3 wo, float lobe, Vec2 u, Transpo
     const Vec3 above = upwards(wo);
     const bool several = !is_black(multiple) && lobe >= 1 - ggx_lost(alpha, above.z);
     Vec3 wi = several ? cosine_hemisphere(u) : normalize(reflect(above, ggx_sample_visible_normal(above, alpha, u)));
-    // A visible normal may reflect below the surface: there the light would hit a second microfacet. The density
-    // integrates to less than 1 by as much.
+    // A visible normal may reflect wo below the surface, where the light would hit a second microfacet. Such samples
+    // are dropped, so the density integrates to slightly less than 1.
     if (!(wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
     return sample_of(*this, wo, wi, mode);
@@ -61,7 +63,8 @@ float MetalBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
 
 MetalBsdf Metal::at(const TextureSet& textures, const SurfacePoint& point) const {
     const float alpha = sqr(evaluate_unit(textures, roughness, point));
-    return conductor.exists() ? MetalBsdf(conductor, alpha) : MetalBsdf(evaluate_reflectance(textures, reflectance, point), alpha);
+    return conductor.exists() ? MetalBsdf(conductor, alpha)
+                              : MetalBsdf(evaluate_reflectance(textures, reflectance, point), alpha);
 }
 
 } // namespace duet

@@ -1,4 +1,4 @@
-// Metal: a mirror, smooth or roughened by microfacets.
+// This file defines the metal material: a smooth mirror, or a rough one with GGX microfacets.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -7,35 +7,37 @@
 
 namespace duet {
 
-/// GGX microfacets with Smith's height-correlated masking, visible normals sampled (Walter et al. 2007; Heitz 2014,
-/// 2018), and light of further reflections among them (ggx_multiple), so that a rough metal that absorbs nothing
-/// returns all. Fresnel's term is exact for a named conductor, else Schlick's from the reflectance at normal incidence.
-/// At roughness below kSmooth: a perfect mirror.
+/// A MetalBsdf reflects by GGX microfacets with Smith's height-correlated masking, sampled by visible normals (Walter
+/// et al. 2007; Heitz 2014, 2018). Multiple scattering between microfacets is compensated (ggx_multiple), so that a
+/// rough metal that absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and else
+/// Schlick's from the reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect
+/// mirror.
 struct MetalBsdf {
     static constexpr float kSmoothAlpha = 1e-4f;
 
-    Rgb reflectance; ///< at normal incidence
+    Rgb reflectance; ///< reflectance at normal incidence
     float alpha;     ///< GGX width: roughness²
-    Rgb n, k;        ///< of a named conductor, or 0
-    Rgb multiple;    ///< of further reflections: see ggx_multiple
+    Rgb n, k;        ///< complex index of a named conductor, or 0
+    Rgb multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
 
     MetalBsdf(Rgb reflectance, float alpha);
     MetalBsdf(const Conductor& conductor, float alpha);
 
     bool smooth() const { return alpha < kSmoothAlpha; }
     Rgb fresnel(float cosine) const;
-    /// What comes back of white light from everywhere; of a named conductor by Schlick's term.
+    /// Returns the directional albedo: the fraction of uniform incident light that is reflected to a viewer at that
+    /// angle. A rough named conductor uses Schlick's term here.
     Rgb albedo(float cosine) const;
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// `lobe` chooses between one reflection and several.
+    /// Draws wi. `lobe` in [0, 1) chooses between one reflection and several.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };
 
 struct Metal {
-    RgbSlot reflectance{Rgb(0.9f)}; ///< at normal incidence, each channel in [0, 1]
+    RgbSlot reflectance{Rgb(0.9f)}; ///< value at normal incidence, each channel in [0, 1]
     ScalarSlot roughness{0};        ///< perceptual, in [0, 1]; GGX alpha = roughness²
-    Conductor conductor{};          ///< where it exists: in place of the reflectance
+    Conductor conductor{};          ///< replaces the reflectance where it exists
 
     MetalBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
 };

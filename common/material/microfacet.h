@@ -1,4 +1,4 @@
-// What reflections and refractions by microfacets have in common.
+// This file holds the geometry shared by reflection and refraction at microfacets.
 #pragma once
 
 #include "common/material/fresnel.h"
@@ -6,13 +6,16 @@
 
 namespace duet {
 
-/// Both sides of an opaque surface are alike: the formulas see them from above.
+/// Mirrors w to the upper hemisphere. Both sides of an opaque surface scatter alike, so the formulas only treat
+/// z ≥ 0.
 template <typename T> Vec3T<T> upwards(Vec3T<T> w) { return {w.x, w.y, abs(w.z)}; }
 
-/// The microfacet that reflects wo into wi. Both lie strictly above the surface, so their sum has z > 0.
+/// MicrofacetT is the microfacet that reflects wo into wi. Both directions lie strictly above the surface, so their
+/// sum has z > 0.
 template <typename T> struct MicrofacetT {
     Vec3T<T> normal;
-    /// wo·h = wi·h = |wo + wi|/2: the dot products differ where rounding left wo and wi of unequal length.
+    /// The cosine wo·h = wi·h is computed as |wo + wi|/2, because the two dot products differ where rounding leaves
+    /// wo and wi with unequal lengths.
     T cosine;
 };
 using Microfacet = MicrofacetT<float>;
@@ -22,13 +25,14 @@ template <typename T> MicrofacetT<T> microfacet(Vec3T<T> wo, Vec3T<T> wi) {
     return {sum / size, T(0.5f) * size};
 }
 
-/// Where a smooth boundary sends what comes from wo, refracted, cos_t > 0 the cosine there: by Snell's law the tangential part
-/// shrinks by `relative`, the index beyond the boundary over that on wo's side.
+/// Returns the refraction of wo at a smooth boundary. cos_t > 0 is the cosine of the refracted direction. `relative`
+/// is the index beyond the boundary over the index on wo's side. By Snell's law the tangential component is divided
+/// by `relative`.
 template <typename T> Vec3T<T> refract(Vec3T<T> wo, T cos_t, T relative) {
     return normalize(Vec3T<T>(-wo.x / relative, -wo.y / relative, select(wo.z > T(0), -cos_t, cos_t)));
 }
-/// Where a microfacet h sends what comes from wo, refracted; cos_o = wo·h > 0, `relative` the index beyond over that on wo's
-/// side. Not where it reflects all.
+/// Returns the refraction of wo at a microfacet of normal h. cos_o = wo·h > 0, and `relative` is the index beyond
+/// the boundary over the index on wo's side. The result is not valid at total reflection.
 inline Vec3 refract(Vec3 wo, Vec3 h, float cos_o, float relative) {
     return normalize((h * cos_o - wo) / relative - h * safe_sqrt(cos2_refracted(cos_o, relative)));
 }

@@ -10,7 +10,8 @@ namespace duet {
 
 namespace {
 
-/// Both directions and the boundary as wo sees them: wo above, `relative` the index beyond over that on wo's side.
+/// Seen holds both directions and the relative index in the frame where wo lies above the boundary. `relative` is the
+/// index beyond the boundary over the index on wo's side.
 struct Seen {
     Vec3 wo, wi;
     float relative;
@@ -23,11 +24,11 @@ struct Seen {
     }
 };
 
-/// The microfacet that refracts wo into wi (Walter et al., eq. 16), or nothing where none that faces both ways does.
+/// A Refraction is the microfacet that refracts wo into wi (Walter et al., eq. 16).
 struct Refraction {
     Vec3 normal;
-    float cos_o, cos_i; ///< to wo, positive; to wi, negative
-    float sum;          ///< wo·h + relative·wi·h = ±|wo + relative·wi|: not 0
+    float cos_o, cos_i; ///< wo·h, positive; wi·h, negative
+    float sum;          ///< wo·h + relative·wi·h = ±|wo + relative·wi|, not 0
 };
 std::optional<Refraction> refraction(const Seen& s) {
     Vec3 h = s.wo + s.wi * s.relative;
@@ -39,20 +40,23 @@ std::optional<Refraction> refraction(const Seen& s) {
     return r;
 }
 
-/// D·G₁-like factors of refraction without Fresnel's: |cos_i| relative²/(sum)² is dω_h/dω_i (eq. 17).
+/// Returns the Jacobian dω_h/dω_i of refraction, |cos_i| relative²/(sum)² (Walter et al., eq. 17).
 float jacobian(const Refraction& r, float relative) { return sqr(relative / r.sum) * -r.cos_i; }
 
-/// What further microfacets add, as wo sees it.
+/// Further computes the multiple-scattering terms for wo.
 struct Further {
     RoughGlassEnergy energy;
-    RoughGlassEnergy::Lobe lobe; ///< of reflection
-    bool dense;                  ///< wo is on the side of the larger index
-    float lost;                  ///< from wo to the lobe: also how often it is drawn from
+    RoughGlassEnergy::Lobe lobe; ///< reflection lobe on wo's side
+    bool dense;                  ///< whether wo is on the side of the larger index
+    float lost; ///< fraction of light from wo that the lobe returns; also the probability of sampling it
 
     Further(const Seen& s, float alpha)
-        : energy(s.relative, alpha), lobe(energy.lobe(s.relative < 1)), dense(s.relative < 1), lost(energy.lost(lobe, s.wo.z)) {}
+        : energy(s.relative, alpha), lobe(energy.lobe(s.relative < 1)), dense(s.relative < 1),
+          lost(energy.lost(lobe, s.wo.z)) {}
 
-    float reflected(const Seen& s) const { return lost > 0 ? lost * energy.lost(lobe, s.wi.z) * kInvPi / lobe.mean_lost : 0; }
+    float reflected(const Seen& s) const {
+        return lost > 0 ? lost * energy.lost(lobe, s.wi.z) * kInvPi / lobe.mean_lost : 0;
+    }
     float gain(const Seen& s) const { return energy.gain(dense ? -s.wi.z : s.wo.z); }
 };
 
@@ -64,15 +68,16 @@ Rgb RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, TransportMode mode) const {
     const Further further(s, alpha);
     if (s.wi.z > 0) {
         const Microfacet h = microfacet(s.wo, s.wi);
-        return Rgb(fresnel_dielectric(h.cosine, s.relative) * ggx_d(h.normal, alpha) * ggx_visibility(s.wo, s.wi, alpha) +
+        return Rgb(fresnel_dielectric(h.cosine, s.relative) * ggx_d(h.normal, alpha) *
+                       ggx_visibility(s.wo, s.wi, alpha) +
                    further.reflected(s));
     }
     const auto r = refraction(s);
     if (!r) return Rgb();
-    // (eq. 21); the visibility is G₂/(4 cos cos).
+    // This is Walter et al., eq. 21; ggx_visibility returns G₂/(4 cos cos).
     const float through = (1 - fresnel_dielectric(r->cos_o, s.relative)) * ggx_d(r->normal, alpha) *
-                          ggx_visibility(s.wo, Vec3(s.wi.x, s.wi.y, -s.wi.z), alpha) * 4 * r->cos_o * jacobian(*r, s.relative) *
-                          further.gain(s);
+                          ggx_visibility(s.wo, Vec3(s.wi.x, s.wi.y, -s.wi.z), alpha) * 4 * r->cos_o *
+                          jacobian(*r, s.relative) * further.gain(s);
     return tint * (mode == TransportMode::kRadiance ? through / sqr(s.relative) : through);
 }
 
@@ -85,8 +90,10 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float lobe, Vec2 
     const float cos_o = dot(s.wo, h);
     if (!(several || cos_o > 0)) return std::nullopt;
     const bool through = !several && !(lobe < single * fresnel_dielectric(cos_o, s.relative));
-    Vec3 wi = through ? refract(s.wo, h, cos_o, s.relative) : several ? cosine_hemisphere(u) : normalize(reflect(s.wo, h));
-    if (!(through ? wi.z < 0 : wi.z > 0)) return std::nullopt; // it would meet a second microfacet
+    Vec3 wi = through   ? refract(s.wo, h, cos_o, s.relative)
+              : several ? cosine_hemisphere(u)
+                        : normalize(reflect(s.wo, h));
+    if (!(through ? wi.z < 0 : wi.z > 0)) return std::nullopt; // the light would hit a second microfacet
     if (wo.z < 0) wi.z = -wi.z;
     BsdfSample result = sample_of(*this, wo, wi, mode);
     if (!(result.pdf > 0 && result.pdf < kInfinity)) return std::nullopt;
@@ -105,9 +112,9 @@ float RoughDielectricBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     }
     const auto r = refraction(s);
     if (!r) return 0;
-    // D_visible(h) = G₁ D cos_o / cos θₒ, four times the reflection's density times cos_o.
-    return (1 - several) * (1 - fresnel_dielectric(r->cos_o, s.relative)) * 4 * r->cos_o * ggx_reflection_pdf(s.wo, r->normal, alpha) *
-           jacobian(*r, s.relative);
+    // The density of visible normals is G₁ D cos_o / cos θₒ, which is the reflection's density times 4 cos_o.
+    return (1 - several) * (1 - fresnel_dielectric(r->cos_o, s.relative)) * 4 * r->cos_o *
+           ggx_reflection_pdf(s.wo, r->normal, alpha) * jacobian(*r, s.relative);
 }
 
 } // namespace duet

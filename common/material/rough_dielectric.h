@@ -1,4 +1,4 @@
-// Frosted glass: a rough boundary between two dielectrics.
+// This file defines the BSDF of rough glass: a rough boundary between two dielectrics.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -6,16 +6,17 @@
 
 namespace duet {
 
-/// Reflection and refraction by GGX microfacets (Walter et al. 2007, «Microfacet Models for Refraction through Rough
-/// Surfaces»), each a smooth boundary; visible normals sampled (Heitz 2018). +z is the outside. What meets further microfacets
-/// is not lost: RoughGlassEnergy.
+/// Reflects and refracts at GGX microfacets, each a smooth boundary (Walter et al. 2007, "Microfacet Models for
+/// Refraction through Rough Surfaces"), sampled by visible normals (Heitz 2018). +z points to the outside.
+/// RoughGlassEnergy compensates the energy of multiple scattering.
 struct RoughDielectricBsdf {
     float eta;   ///< index of refraction inside over outside, not 1
-    Rgb tint;    ///< transmitted light is multiplied by it at each crossing
+    Rgb tint;    ///< factor of transmitted light at each crossing
     float alpha; ///< GGX width: roughness², at least Dielectric::kSmoothAlpha
 
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// Chooses reflection or refraction at a visible microfacet, or several reflections.
+    /// Draws wi: `lobe` in [0, 1) chooses among reflection and refraction at a visible microfacet, and multiple
+    /// scattering.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };

@@ -7,11 +7,13 @@ namespace duet {
 
 namespace {
 
-/// What one reflection returns for a facet of albedo 1: at an angle (paper's eq. 14 to 17), and its mean.
+/// Returns the directional albedo of single scattering for facets of albedo 1 (Portsmouth et al. 2024, eq. 14 to 17).
+/// mean_single_albedo below is its hemispherical mean.
 float single_albedo(float cosine, float roughness) {
     const float a = 1 / (1 + (0.5f - 2 * kInvPi / 3) * roughness);
     const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
-    // (2/3)(tan·(1 − sin³) − sin), as a product with no tangent: (1 − sin³)/cos = cos (1 + sin + sin²)/(1 + sin).
+    // The term (2/3)(tan·(1 − sin³) − sin) is rewritten as a product without the tangent:
+    // (1 − sin³)/cos = cos (1 + sin + sin²)/(1 + sin).
     const float bend = sine * (cosine * (1 + sine + sine * sine) / (1 + sine) - 1);
     const float g = sine * (std::acos(min(cosine, 1.0f)) - sine * cosine) + 2.0f / 3 * bend;
     return a * (1 + roughness * kInvPi * g);
@@ -20,13 +22,15 @@ float mean_single_albedo(float roughness) {
     return (1 + (2.0f / 3 - 28 * kInvPi / 15) * roughness) / (1 + (0.5f - 2 * kInvPi / 3) * roughness);
 }
 
-/// Of the light that facets send to each other, this part of a channel survives (paper's eq. 24).
+/// Returns the fraction, per channel, of multiply scattered light that survives absorption (Portsmouth et al. 2024,
+/// eq. 24).
 Rgb surviving(Rgb albedo, float mean) {
     const auto channel = [mean](float x) { return x * x * mean / (1 - x * (1 - mean)); };
     return {channel(albedo.r), channel(albedo.g), channel(albedo.b)};
 }
 
-/// How often the uniform distribution is drawn from: it bounds the weight of what is thrown back at grazing angles.
+/// Returns the probability of drawing from the uniform distribution, which bounds the weight of retroreflection at
+/// grazing angles.
 float uniform_part(float cosine, float roughness) { return roughness * (0.1f + 0.3f * (1 - cosine)); }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Clay, plaster, the moon: diffuse reflection by facets that shade each other.
+// This file defines rough diffuse reflection (clay, plaster, the moon), by facets that shadow each other.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -6,18 +6,21 @@
 
 namespace duet {
 
-/// Energy-preserving Oren-Nayar (Portsmouth, Kutz and Hill 2024, «EON: A practical energy-preserving rough diffuse BRDF»),
-/// on both sides of the surface: Fujii's form of Oren and Nayar's single reflection, and a reciprocal lobe for the light
-/// of further ones, so that white reflects all, whatever the roughness. At roughness 0 it is Lambert's.
+/// RoughDiffuseBsdf is energy-preserving Oren-Nayar reflection on both sides of the surface (Portsmouth, Kutz and
+/// Hill 2024, "EON: A practical energy-preserving rough diffuse BRDF"). Single scattering is Fujii's form of Oren and
+/// Nayar's model. A reciprocal lobe adds the multiply scattered light, so that a white surface of any roughness
+/// reflects all light. At roughness 0 it is Lambert's reflection.
 struct RoughDiffuseBsdf {
-    Rgb albedo;      ///< of each facet, in [0, 1]
-    float roughness; ///< in [0, 1]; Oren and Nayar's standard deviation of slopes is about roughness·π/2 radians at most
+    Rgb albedo;      ///< albedo of each facet, in [0, 1]
+    float roughness; ///< in [0, 1]; Oren and Nayar's deviation of slopes is at most about roughness·π/2 radians
 
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// Cosine-distributed or, the rougher and the more grazing the more often, uniform over wo's side.
+    /// Draws wi cosine-distributed or uniform over wo's side. The uniform part grows with roughness and towards
+    /// grazing wo.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// The part of light from everywhere that is sent to a viewer at this angle, exactly: in [0, 1].
+    /// Returns the exact directional albedo, in [0, 1]: the fraction of uniform incident light that is reflected to a
+    /// viewer at this angle.
     Rgb reflected(float cosine) const;
 };
 

@@ -1,30 +1,38 @@
-// What becomes of the light that meets further microfacets of rough glass.
+// This file provides the energy compensation for multiple scattering between the microfacets of rough glass.
 #pragma once
 
 #include "common/material/rough_glass_table.h"
 
 namespace duet {
 
-/// Of one boundary. A single microfacet reflects R(w) and lets through T(w) of white light that comes from w; the rest, 1 − R − T,
-/// meets others. On the thin side, that of the smaller index, it is shared out as what left at once: so what goes through is
-/// multiplied by gain(w) = 1/(R + T), w the direction on the thin side, whichever of the two it is; and `lost`, the reflected
-/// part of the rest, (1 − R − T) R/(R + T), returns by a lobe. What the dense side then still lacks returns inside by a lobe of
-/// its own: from there little light comes out, and reciprocity allows no more. (The lobes: Kulla and Conty 2017, «Revisiting
-/// Physically Based Shading at Imageworks»; scaling by the albedo: Turquin 2019, «Practical Multiple Scattering Compensation for
-/// Microfacet Models», §3, here by a function of one of both directions, and so reciprocal.) White glass returns all from
-/// each side (tested); glass that hardly refracts does not blur: light goes straight on through however many facets it meets.
+/// RoughGlassEnergy is the multiple-scattering compensation of one boundary. A single microfacet reflects the
+/// fraction R(w) and transmits T(w) of white light from direction w. The rest, 1 − R − T, hits further
+/// microfacets.
 ///
-/// Looked up in tables that are computed when the project is built.
+/// The thin side is that of the smaller index. There the rest is divided in the proportion R : T. Transmitted light
+/// is therefore multiplied by gain(w) = 1/(R + T), where w is the direction on the thin side, be it wo or wi. The
+/// reflected part of the rest, (1 − R − T) R/(R + T), is `lost` and returns by a lobe.
+///
+/// The energy that light from the dense side still lacks returns by a lobe inside the dense medium: little light
+/// leaves from there, and reciprocity allows no larger gain. The lobes follow Kulla and Conty 2017, "Revisiting
+/// Physically Based Shading at Imageworks". The scaling by the albedo follows Turquin 2019, "Practical Multiple
+/// Scattering Compensation for Microfacet Models", §3; here the factor depends on only one of the two directions,
+/// which makes it reciprocal.
+///
+/// White glass returns all light from each side (tested). Glass that hardly refracts does not blur: light passes
+/// straight through any number of facets. All values come from tables that are generated when the project is built.
 class RoughGlassEnergy {
 public:
-    /// eta: index beyond over that on the side of +z, in [1/4, 4], or its inverse: the same boundary. alpha in [0, 1].
+    /// eta is the index beyond the boundary over the index on the side of +z, in [1/4, 4]; its inverse describes the
+    /// same boundary. alpha is in [0, 1].
     RoughGlassEnergy(float eta, float alpha);
 
-    /// cosine: with the normal, on the thin side, in [0, 1].
+    /// Returns the factor of transmitted light. cosine is between the normal and the direction on the thin side, in
+    /// [0, 1].
     float gain(float cosine) const;
 
-    /// The light that a lobe lost(wo) lost(wi) / (π mean_lost) brings back, on one side: 0 where it is less than 0.03 % in
-    /// the mean, and to look for it would be noise.
+    /// A Lobe is the reflection lobe lost(wo) lost(wi) / (π mean_lost) on one side. There is no lobe where it
+    /// returns less than 0.03 % in the mean: sampling it would add more noise than energy.
     struct Lobe {
         const RoughGlassTables::Surface* table = nullptr; ///< null: no lobe
         float mean_lost = 0;

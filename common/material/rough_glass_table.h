@@ -1,5 +1,5 @@
-// The tables of rough_glass_energy.h: where their entries lie, and how they are looked up. Written when the project is built, by
-// rough_glass_table_main.cpp.
+// This file defines the layout and the interpolation of rough_glass_energy.h's tables. rough_glass_table_main.cpp
+// generates their contents when the project is built.
 #pragma once
 
 #include "common/material/ggx_albedo_table.h"
@@ -8,7 +8,7 @@ namespace duet {
 
 struct RoughGlassTables {
     static constexpr int kIndices = 20, kAlphas = 20, kAngles = 48;
-    using Curve = std::array<float, kAngles>; // over the angle
+    using Curve = std::array<float, kAngles>; // one value per angle
     using Surface = std::array<std::array<Curve, kAlphas>, kIndices>;
     using Means = std::array<std::array<float, kAlphas>, kIndices>;
 
@@ -17,8 +17,9 @@ struct RoughGlassTables {
 
     using Place = GgxAlbedoTables::Place;
 
-    // Rows at equal steps of the root of Fresnel's amplitude at normal incidence, of indices from one that hardly refracts to
-    // 4: like the critical angle's cosine it starts steeply.
+    // Rows are equal steps of the square root of Fresnel's amplitude at normal incidence, (index − 1)/(index + 1).
+    // They range from an index that hardly refracts to 4. The tables vary fastest near index 1, as the cosine of the
+    // critical angle does.
     static constexpr float kLeast = 0.0223f, kMost = 0.7746f;
     static float index_of(int row) {
         const float amplitude = sqr(lerp(kLeast, kMost, static_cast<float>(row) / (kIndices - 1)));
@@ -27,7 +28,8 @@ struct RoughGlassTables {
     static Place place_of_index(float index) {
         return GgxAlbedoTables::place_of((std::sqrt((index - 1) / (index + 1)) - kLeast) / (kMost - kLeast), kIndices);
     }
-    // As in GgxAlbedoTables, equal steps of the roughness, and of the cosine over alpha, but closer near the horizon.
+    // As in GgxAlbedoTables, rows are equal steps of roughness. Columns are equal steps of the square root of
+    // GgxAlbedoTables::steepness, which makes them denser at grazing angles.
     static constexpr float kSmoothest = GgxAlbedoTables::kSmoothest;
     static float alpha_of(int row) { return sqr(lerp(kSmoothest, 1.0f, static_cast<float>(row) / (kAlphas - 1))); }
     static Place place_of_alpha(float alpha) {

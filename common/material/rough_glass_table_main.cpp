@@ -1,5 +1,5 @@
-// Writes the tables of common/material/rough_glass_energy.h as a source file, when the project is built: nothing but ggx.h,
-// fresnel.h and microfacet.h say what they hold.
+// This build-time program writes the tables of common/material/rough_glass_energy.h as a source file. It integrates
+// the functions of ggx.h, fresnel.h and microfacet.h numerically.
 #include "common/material/fresnel.h"
 #include "common/material/ggx.h"
 #include "common/material/microfacet.h"
@@ -20,12 +20,15 @@ constexpr int kSamples = 1024;
 struct Boundary {
     float index, alpha;
 
-    /// Calls add(reflected, cosine of wi, part of the light) for all that a single microfacet scatters: samples of visible
-    /// normals, whose weight is G₂/G₁ (importance's, so that a sum of 1 is all the light).
+    /// Calls add(reflected, cosine of wi, fraction of the light) for each sample that a single microfacet scatters.
+    /// The samples are drawn from the visible normals, with weight G₂/G₁. The mode is importance, so that a sum
+    /// of 1 means all light.
     template <typename Add> void scatter(bool dense, float cosine, const Add& add) const {
         const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
         const float relative = dense ? 1 / index : index;
-        const auto part = [&](Vec3 wi, float share) { return static_cast<double>(share * ggx_g2_over_g1(wo, wi, alpha)) / kSamples; };
+        const auto part = [&](Vec3 wi, float share) {
+            return static_cast<double>(share * ggx_g2_over_g1(wo, wi, alpha)) / kSamples;
+        };
         for (int i = 0; i < kSamples; ++i) {
             const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
                          unit_float(reverse_bits(static_cast<std::uint32_t>(i))) + 0x1p-25f);
@@ -47,28 +50,33 @@ struct Curves {
 void compute(const Boundary& boundary, Curves curves) {
     for (std::size_t i = 0; i < Tables::kAngles; ++i) {
         double reflected = 0, all = 0;
-        boundary.scatter(false, Tables::cosine_of(static_cast<int>(i), boundary.alpha), [&](bool back, float, double part) {
-            all += part;
-            if (back) reflected += part;
-        });
+        boundary.scatter(false, Tables::cosine_of(static_cast<int>(i), boundary.alpha),
+                         [&](bool back, float, double part) {
+                             all += part;
+                             if (back) reflected += part;
+                         });
         curves.gain[i] = static_cast<float>(1 / all);
         curves.lost_thin[i] = static_cast<float>(std::max(1 - all, 0.0) * reflected / all);
     }
     for (std::size_t i = 0; i < Tables::kAngles; ++i) {
         double all = 0;
-        boundary.scatter(true, Tables::cosine_of(static_cast<int>(i), boundary.alpha), [&](bool back, float cosine, double part) {
-            all += part * (back ? 1.0 : static_cast<double>(Tables::look_up(curves.gain, Tables::place_of_cosine(cosine, boundary.alpha))));
-        });
+        boundary.scatter(true, Tables::cosine_of(static_cast<int>(i), boundary.alpha),
+                         [&](bool back, float cosine, double part) {
+                             all += part * (back ? 1.0
+                                                 : static_cast<double>(Tables::look_up(
+                                                       curves.gain, Tables::place_of_cosine(cosine, boundary.alpha))));
+                         });
         curves.lost_dense[i] = static_cast<float>(std::max(1 - all, 0.0));
     }
 }
 
-/// 2∫ … μ dμ of the table itself, so that what is lost and what is added again are the same.
+/// Computes the hemispherical mean 2∫ … μ dμ from the table itself, so that the lobe returns exactly the energy
+/// that lookups report as lost.
 float mean_of(const Tables::Curve& curve, float alpha) {
     constexpr int kSteps = 2048;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
-        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // closer near the horizon
+        const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // denser at grazing angles
         sum += 4.0 * static_cast<double>(x * cosine) / kSteps *
                static_cast<double>(Tables::look_up(curve, Tables::place_of_cosine(cosine, alpha)));
     }

@@ -12,7 +12,8 @@ const Texture& texture_at(const TextureSet& textures, std::int32_t index) {
     return textures.textures[static_cast<std::size_t>(index)];
 }
 
-/// The normal of the map, in a right-handed frame about ns or, where u and v run the other way round, its mirror image.
+/// Returns the normal map's normal in a right-handed frame about ns. The frame is mirrored where the uv
+/// parametrization is mirrored.
 Vec3 mapped_normal(const TextureSet& textures, const SurfaceMaps& maps, const SurfacePoint& point) {
     const Vec3 across = cross(point.ns, point.dpdu), tangent = cross(across, point.ns);
     if (!(length_squared(tangent) > 0)) return point.ns;
@@ -25,7 +26,8 @@ Vec3 mapped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     return size > 0 ? n / size : point.ns;
 }
 
-/// Half the distance over which heights are compared: half a texel, or half of what the sample stands for.
+/// Returns half the distance over which the bump map's heights are differenced, in uv: half a texel, or half the
+/// sample's footprint where that is larger.
 Vec2 half_step(const TextureSet& textures, const Texture& texture, const SurfacePoint& point) {
     Vec2 step{1e-4f, 1e-4f};
     if (const auto* image = std::get_if<ImageTexture>(&texture)) {
@@ -33,11 +35,12 @@ Vec2 half_step(const TextureSet& textures, const Texture& texture, const Surface
         step = {0.5f / (abs(image->scale.x) * static_cast<float>(picture.width())),
                 0.5f / (abs(image->scale.y) * static_cast<float>(picture.height()))};
     }
-    const float du = (abs(point.duv_dx.x) + abs(point.duv_dy.x)) / 2, dv = (abs(point.duv_dx.y) + abs(point.duv_dy.y)) / 2;
+    const float du = (abs(point.duv_dx.x) + abs(point.duv_dy.x)) / 2,
+                dv = (abs(point.duv_dx.y) + abs(point.duv_dy.y)) / 2;
     return {du > step.x && std::isfinite(du) ? du : step.x, dv > step.y && std::isfinite(dv) ? dv : step.y};
 }
 
-/// ns minus the gradient of the heights on the surface.
+/// Returns the bump-mapped normal: ns minus the surface gradient of the heights, normalized.
 Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const SurfacePoint& point) {
     const Vec3d n(point.ns), dpdu(point.dpdu), dpdv(point.dpdv);
     const double det = dot(n, cross(dpdu, dpdv));
@@ -46,7 +49,7 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     const auto height = [&](float du, float dv) {
         SurfacePoint beside = point;
         beside.uv = {point.uv.x + du, point.uv.y + dv};
-        beside.p_object = point.p_object; // heights of solid textures do not vary with uv: no bump
+        beside.p_object = point.p_object; // solid textures do not vary with uv, so they give no bump
         return static_cast<double>(evaluate_texture(textures, texture, beside).r * maps.bump_scale);
     };
     const Vec2 step = half_step(textures, texture, point);
@@ -56,9 +59,9 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     return Vec3(normalize(n - gradient));
 }
 
-/// Bent just so far that the mirror direction of the viewer lies above the horizon. Interpolated normals near a silhouette
-/// lean away from the viewer, who then counts as looking along their horizon (as in lifted_above_horizon): both directions
-/// below it have no normal between them that is above.
+/// Bends ns just enough that the mirrored direction to the viewer lies above the plane with normal `horizon`. Near a
+/// silhouette that plane may face away from the viewer. The direction to the viewer is then projected onto the plane
+/// (as in lifted_above_horizon), because the half vector of two directions below the plane also lies below it.
 Vec3 kept_consistent(Vec3 ns, Vec3 horizon, Vec3 to_viewer) {
     const float facing = dot(to_viewer, horizon);
     if (facing < 0) to_viewer = normalize(to_viewer - horizon * facing);

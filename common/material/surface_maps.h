@@ -1,4 +1,4 @@
-// Pictures that change the surface itself, whatever it is made of: its normals, and where it is at all.
+// This file defines the maps that modify a surface of any material: normal, bump and opacity maps.
 #pragma once
 
 #include "common/texture/texture.h"
@@ -9,20 +9,20 @@
 
 namespace duet {
 
-/// The maps of one material. Textures are indices into TextureSet::textures, −1: none.
+/// SurfaceMaps are the maps of one material. Textures are indices into TextureSet::textures, or −1 for none.
 struct SurfaceMaps {
-    std::int32_t normal = -1; ///< tangent-space normals: colours 0 to 1 mean components −1 to 1 along u, v and ns
-    float normal_scale = 1;   ///< multiplies the first two components
-    std::int32_t bump = -1;   ///< heights, of its red channel, along ns
-    float bump_scale = 1;     ///< metres of a height of 1
-    ScalarSlot opacity;       ///< 1: all there; 0: a hole; in between the part of the light that is stopped
-    float cutoff = 0;         ///< above 0: all there where opacity is at least this, else a hole
+    std::int32_t normal = -1; ///< tangent-space normals: colors 0 to 1 mean components −1 to 1 along u, v and ns
+    float normal_scale = 1;   ///< factor of the normal map's first two components
+    std::int32_t bump = -1;   ///< bump map: heights along ns, from the red channel
+    float bump_scale = 1;     ///< meters that a height of 1 stands for
+    ScalarSlot opacity;       ///< 1: opaque; 0: a hole; in between the fraction of light that the surface stops
+    float cutoff = 0;         ///< alpha-test threshold: opaque where opacity is at least this, else a hole; 0: no test
 
     bool bends_normals() const { return normal >= 0 || bump >= 0; }
     bool cuts_out() const { return !opacity.constant() || opacity.value < 1; }
 };
 
-/// Calls visit(texture) for each reference to a texture: an index, or −1.
+/// Calls visit(texture) for each reference to a texture, an index or −1.
 template <typename AnyMaps, typename Visit>
     requires std::same_as<std::remove_const_t<AnyMaps>, SurfaceMaps>
 void for_each_texture(AnyMaps& maps, const Visit& visit) {
@@ -31,16 +31,16 @@ void for_each_texture(AnyMaps& maps, const Visit& visit) {
     visit(maps.opacity.texture);
 }
 
-/// Turns the shading normal by the material's maps as it is seen along `direction`: by the normal map in the frame of ns
-/// and the surface's own u direction (as glTF 2.0, §3.9.3; the frame is each triangle's own, where MikkTSpace has means
-/// over vertices), by the bump map along the surface gradient of its heights (Mikkelsen 2010, «Bump Mapping Unparametrized
-/// Surfaces on the GPU»; Blinn 1978). Then bends it, where need be, so that the mirror direction stays above the surface
-/// (Keller et al. 2017, «The Iray Light Transport Simulation and Rendering System», §A.3). As it is where u and v have no
-/// direction.
+/// Applies the material's bump and normal map to the shading normal of a point seen along `direction`. The bump map
+/// uses the surface gradient of its heights (Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU"; Blinn
+/// 1978). The normal map applies in the frame of ns and the surface's u direction (glTF 2.0, §3.9.3; the frame is
+/// that of each triangle, while MikkTSpace averages over vertices). The result is bent where necessary, so that the
+/// mirror direction stays above the surface (Keller et al. 2017, "The Iray Light Transport Simulation and Rendering
+/// System", §A.3). A map has no effect where the uv parametrization is degenerate.
 void bend_normal(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direction, SurfacePoint& point);
 
-/// How much of the surface is there, in [0, 1]; 0 or 1 with a cutoff. Never filtered by the sample's footprint, so that
-/// both pipelines, whose rays through a pixel are the same, agree on what is a hole.
+/// Returns the opacity in [0, 1], or 0 or 1 with a cutoff. It is never filtered by the sample's footprint, so that
+/// both pipelines, which trace the same rays through a pixel, agree on where the holes are.
 float opacity(const TextureSet& textures, const SurfaceMaps& maps, const SurfacePoint& point);
 
 } // namespace duet

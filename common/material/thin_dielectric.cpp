@@ -10,7 +10,8 @@ ThinDielectricBsdf::Parts ThinDielectricBsdf::parts(float cosine) const {
     Parts result;
     for (std::size_t c = 0; c < 3; ++c) {
         const float t = tint[c] < 1 ? std::pow(tint[c], 1 / max(cos_t, 1e-4f)) : 1.0f;
-        // (1 − F t)(1 + F t), with 1 − F t as (1 − F) + F (1 − t): does not cancel at grazing angles.
+        // The denominator is (1 − F t)(1 + F t), with 1 − F t written as (1 − F) + F (1 − t), which does not
+        // cancel at grazing angles.
         const float rest = (through + f * (1 - t)) * (1 + f * t);
         result.transmitted[c] = rest > 0 ? through * through * t / rest : 0;
         result.reflected[c] = rest > 0 ? f + through * through * f * t * t / rest : f;
@@ -22,10 +23,10 @@ std::optional<BsdfSample> ThinDielectricBsdf::sample(Vec3 wo, float lobe, Vec2, 
     if (wo.z == 0) return std::nullopt;
     const Parts p = parts(abs_cos_theta(wo));
     const float r = average(p.reflected), t = average(p.transmitted);
-    if (!(r + t > 0)) return std::nullopt; // black, and of the index of its surroundings
+    if (!(r + t > 0)) return std::nullopt; // a black tint, and the index of the surroundings
     const float reflected = r / (r + t);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, p.reflected / reflected, reflected, true};
-    const float through = t / (r + t); // not 1 − reflected, which cancels at grazing angles
+    const float through = t / (r + t); // 1 − reflected would cancel at grazing angles
     return BsdfSample{{-wo.x, -wo.y, -wo.z}, p.transmitted / through, through, true, true};
 }
 

@@ -1,4 +1,5 @@
-// Window panes, soap films, plastic wrap: two parallel boundaries with nothing worth mention in between.
+// This file defines thin dielectric sheets (window panes, soap films, plastic wrap): two parallel boundaries with a
+// negligible distance between them.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -6,18 +7,19 @@
 
 namespace duet {
 
-/// A sheet of glass as one surface: light goes straight on, or is mirrored, after any number of reflections between its
-/// sides, in closed form (Stokes 1862, «On the intensity of the light reflected from or transmitted through a pile of
-/// plates»). Both sides are alike.
+/// A ThinDielectricBsdf is a sheet of glass as a single surface. Light passes straight through or is mirrored, after
+/// any number of reflections between the two boundaries, in closed form (Stokes 1862, "On the intensity of the light
+/// reflected from or transmitted through a pile of plates"). Both sides are alike.
 struct ThinDielectricBsdf {
-    float eta; ///< index of refraction of the sheet over that around it
-    Rgb tint;  ///< of what is left of light that crosses it once, straight
+    float eta; ///< index of refraction of the sheet over that of its surroundings
+    Rgb tint;  ///< transmittance of one perpendicular pass through the sheet
 
     struct Parts {
         Rgb reflected, transmitted;
     };
-    /// Of light at an angle of incidence's cosine, in (0, 1]: with F at each boundary and t for each way across, slanted
-    /// ways being longer, F + (1 − F)² F t²/(1 − F² t²) is reflected and (1 − F)² t/(1 − F² t²) goes on.
+    /// Returns the reflected and transmitted fractions at an angle of incidence whose cosine is in (0, 1]. With F at
+    /// each boundary and t for each pass through the sheet (slanted passes are longer), the sheet reflects
+    /// F + (1 − F)² F t²/(1 − F² t²) and transmits (1 − F)² t/(1 − F² t²).
     Parts parts(float cosine) const;
 
     Rgb eval(Vec3, Vec3, TransportMode) const { return Rgb(); }

@@ -1,5 +1,5 @@
-// Which numbers options take, in words that a user understands: CLI11's own checks spell out the largest double, and let NaN and
-// the wrapped value of a negative seed pass.
+// This file defines validators for numeric options, with messages that a user understands. CLI11's own checks print
+// the largest double as a bound, and accept NaN and the wrapped value of a negative seed.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,10 @@
 
 namespace duet {
 
-/// A finite number that accepts() takes; `expected` says which those are.
-template <typename Accepts> CLI::Validator number_check(const char* name, const char* expected, const Accepts& accepts) {
+/// Returns a validator for finite numbers for which accepts() is true. `expected` describes those numbers in the
+/// message.
+template <typename Accepts>
+CLI::Validator number_check(const char* name, const char* expected, const Accepts& accepts) {
     return {[=](std::string& text) -> std::string {
                 char* end = nullptr;
                 const double value = std::strtod(text.c_str(), &end);
@@ -29,16 +31,18 @@ inline CLI::Validator positive_number() {
 inline CLI::Validator nonnegative_number() {
     return number_check("NONNEGATIVE", "a finite number of at least 0", [](double x) { return x >= 0; });
 }
-/// From `low` to `high`; `expected` says so.
+/// Returns a validator for finite numbers from `low` to `high`. `expected` describes the range in the message.
 inline CLI::Validator number_within(double low, double high, const char* expected) {
     return number_check("", expected, [=](double x) { return x >= low && x <= high; });
 }
-/// Decimal digits alone: what conversion to an unsigned number would skip, wrap or cut off is refused.
+/// Returns a validator for whole numbers from 0 to 2^64 − 1. It accepts decimal digits only, and refuses text that
+/// a conversion to unsigned would skip, wrap or truncate.
 inline CLI::Validator whole_number() {
     return {[](std::string& text) -> std::string {
                 std::uint64_t value = 0;
                 const char *const begin = text.data(), *const end = begin + text.size();
-                if (const auto [rest, error] = std::from_chars(begin, end, value); error == std::errc() && rest == end) return {};
+                if (const auto [rest, error] = std::from_chars(begin, end, value); error == std::errc() && rest == end)
+                    return {};
                 return "found " + text + ", expected a whole number from 0 to 2^64 - 1";
             },
             ""};

@@ -33,7 +33,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
 
 namespace {
 
-// A signal handler can reach nothing but a static, lock-free atomic.
+// A signal handler may only access a lock-free atomic of static storage duration.
 std::atomic<bool>& interrupted() {
     static std::atomic<bool> flag{false};
     static_assert(std::atomic<bool>::is_always_lock_free);
@@ -49,7 +49,7 @@ InterruptFlag::InterruptFlag() {
     interrupted().store(false);
     struct sigaction action {};
     action.sa_handler = raise_interrupt_flag;
-    action.sa_flags = static_cast<int>(SA_RESETHAND); // the second signal acts as if there were no handler
+    action.sa_flags = static_cast<int>(SA_RESETHAND); // a second signal gets the default action
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);

@@ -1,4 +1,4 @@
-// What every program of the project does around its work: exit codes, interruption, progress.
+// This file holds what all programs of the project share: exit codes, interruption and progress.
 #pragma once
 
 #include <atomic>
@@ -8,14 +8,16 @@
 namespace duet {
 
 inline constexpr int kExitOk = 0;       ///< done
-inline constexpr int kExitFailed = 1;   ///< a comparison over its threshold, a result that could not be written
-inline constexpr int kExitUnusable = 2; ///< arguments or input that cannot be used
+inline constexpr int kExitFailed = 1;   ///< a comparison exceeds its threshold, or a result cannot be written
+inline constexpr int kExitUnusable = 2; ///< unusable arguments or input
 inline constexpr int kExitInterrupted = 130;
 
-/// Runs the program's body and turns what it throws into one line on standard error, `NAME: message`, and an exit code.
+/// Runs the program's body and returns its exit code. An exception becomes one line on standard error, `NAME:
+/// message`, and an exit code.
 int run_program(const std::string& name, const std::function<int()>& body);
 
-/// While it lives, SIGINT and SIGTERM set a flag instead of ending the program; a second signal ends it. One at a time.
+/// During the lifetime of an InterruptFlag, SIGINT and SIGTERM set a flag instead of terminating the program. A
+/// second signal terminates it. Only one InterruptFlag may exist at a time.
 class InterruptFlag {
 public:
     InterruptFlag();
@@ -27,8 +29,8 @@ public:
     bool raised() const { return flag().load(); }
 };
 
-/// A line on standard error with a bar, the time gone and the time left; silent where standard error is no terminal, or
-/// on request.
+/// A ProgressBar is a line on standard error with a bar, the elapsed time and the remaining time. It prints nothing
+/// where standard error is not a terminal, or where `quiet` is set.
 class ProgressBar {
 public:
     ProgressBar(std::string label, bool quiet);
@@ -36,7 +38,7 @@ public:
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// fraction in [0, 1]; redraws at most ten times a second.
+    /// Redraws the line, at most ten times a second. fraction is in [0, 1].
     void update(double fraction);
     /// Erases the line.
     void finish();
@@ -47,7 +49,7 @@ private:
     double start_, last_drawn_ = -1;
 };
 
-/// "850 ms", "12.3 s", "4 min 05 s", "2 h 07 min".
+/// Formats a duration, for example "850 ms", "12.3 s", "4 min 05 s" or "2 h 07 min".
 std::string readable_seconds(double seconds);
 
 } // namespace duet

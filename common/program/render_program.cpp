@@ -44,7 +44,7 @@ void add_common_options(CLI::App& app, Options& options, const std::string& spp_
     app.add_flag("--quiet", options.quiet, "No progress bar");
 }
 
-// The frame's number in place of the one %04d.
+// Replaces the first %04d of the pattern by the frame's number with at least four digits.
 std::string frame_path(const std::string& pattern, int frame) {
     const std::size_t at = pattern.find("%04d");
     std::string number = std::to_string(frame);
@@ -72,7 +72,7 @@ void check_output(const Options& options) {
     }
 }
 
-// How to ask for the first of them.
+// Returns a hint at the command that logs the first invalid sample, or nothing where there is none.
 std::string first_invalid(const RenderStatistics& s) {
     if (!s.first_invalid) return {};
     return message("; the same command with --pixel ", s.first_invalid->x, ',', s.first_invalid->y, ',',
@@ -162,7 +162,7 @@ ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv) {
     try {
         app.parse(argc, argv);
         return {true, kExitOk};
-    } catch (const CLI::Success& help) { // --help and --version arrive as exceptions
+    } catch (const CLI::Success& help) { // --help and --version throw this exception
         return {false, app.exit(help)};
     } catch (const CLI::ParseError& error) {
         throw Error(message(error.what(), " (", app.get_name(), " --help explains)"));

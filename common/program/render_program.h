@@ -1,4 +1,5 @@
-// The program `SCENE -o OUT`, the same for both pipelines: options, loading, rendering, writing, statistics.
+// This file defines the render program that both pipelines share (`SCENE -o OUT`): options, loading, rendering,
+// writing and statistics.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -17,51 +18,55 @@ class App;
 
 namespace duet {
 
-/// One prepared scene, ready for any number of views.
+/// A RenderFunction renders one prepared scene from any number of views.
 using RenderFunction = std::function<Rendering(const View&, Control&)>;
 
-/// Where the pictures go.
+/// OutputOptions say where the images are written.
 struct OutputOptions {
     std::string path;
-    int frames = 0; ///< of an orbit; 0: a single picture
+    int frames = 0; ///< number of frames of an orbit; 0: a single image
 };
 
-/// What a pipeline adds to the common program.
+/// A RenderProgram holds what a pipeline adds to the common program.
 struct RenderProgram {
     std::string name, description, example;
     std::string spp_help; ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
     std::function<void(CLI::App&)> add_options;
-    /// Where this says so, the program prints text() of the picture in place of rendering it; both may be empty.
+    /// Where prints_text returns true, the program prints text() of the view instead of rendering it. Both may be
+    /// empty.
     std::function<bool()> prints_text;
     std::function<std::string(const Scene&, const View&, const RenderSettings&, std::optional<int> spp)> text;
-    /// Throws Error for options of its own that cannot be used, before anything is loaded; may be empty.
+    /// Throws Error for unusable options of the pipeline, before anything is loaded. It may be empty.
     std::function<void(const OutputOptions&)> check;
-    /// Prepares the scene; `settings` are the common options, `spp` is empty where --spp was not given.
+    /// Prepares the scene for rendering. `settings` are the common options, and `spp` is empty where --spp was not
+    /// given.
     std::function<RenderFunction(const Scene&, const RenderSettings& settings, std::optional<int> spp)> prepare;
 };
 
-/// main's body. Exit codes as in program.h.
+/// Runs the whole program as the body of main, and returns an exit code of program.h.
 int run_render_program(const RenderProgram& program, int argc, char** argv);
 
-/// Parses a command line: 0 and proceed = true, or the exit code (0 after --help, 2 for unusable arguments).
+/// Parses a command line. The result has proceed = true and exit code 0, or proceed = false after --help and
+/// --version. Throws Error for unusable arguments, which ends the program with exit code 2.
 struct ParsedCommandLine {
     bool proceed;
     int exit_code;
 };
 ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv);
 
-/// "640x480" → width and height, each in [1, kMaxPictureSide], at most kMaxImagePixels together; throws Error.
+/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxPictureSide] and the product
+/// is at most kMaxImagePixels.
 struct PictureSize {
     int width, height;
 };
 PictureSize parse_picture_size(std::string_view text);
 
-/// "depth,normal,albedo,hit,variance,samples" → the set; throws Error for another name.
+/// Parses a list of AOVs, a subset of "depth,normal,albedo,hit,variance,samples". Throws Error for another name.
 AovSet parse_aovs(std::string_view list);
 
-/// The picture to `path`, and its auxiliary pictures: as channels of the file where it is an EXR, else each to an EXR
-/// beside it, `STEM.NAME.exr`.
+/// Writes the image to `path`, and its auxiliary images (AOVs). In an EXR file they are further channels. For other
+/// formats each AOV is written to an EXR file beside the image, `STEM.NAME.exr`.
 void write_rendering(const std::filesystem::path& path, const Rendering& rendering, bool ascii_ppm = false);
 
 } // namespace duet

@@ -68,8 +68,8 @@ void check_json_path(const std::string& path) {
 }
 
 void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
-    const std::string text =
-        json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; // names may not be UTF-8
+    // The error handler replaces invalid bytes, because names may not be UTF-8.
+    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (path == "-")
         std::cout << text;
     else

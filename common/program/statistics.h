@@ -1,4 +1,4 @@
-// The statistics of a rendering as JSON: the same keys for both programs.
+// This file writes the statistics of a rendering as JSON, with the same keys for both programs.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -10,7 +10,7 @@
 
 namespace duet {
 
-/// A rendering's circumstances that the renderer itself does not know.
+/// A RenderContext holds facts about a rendering that the renderer itself does not know.
 struct RenderContext {
     std::string program, scene;
     int width = 0, height = 0, threads = 0;
@@ -18,14 +18,17 @@ struct RenderContext {
     double load_seconds = 0, prepare_seconds = 0, render_seconds = 0, write_seconds = 0;
 };
 
-/// Keys as in the README: program, version, scene, width, height, threads, samples_per_pixel, passes, seed, seconds
-/// (load, prepare, render, write, total), stages, rays, triangles, memory_bytes, estimated_relmse (null where unknown),
-/// invalid_samples, first_invalid (x, y, sample, or null), approximations, skipped, interrupted.
+/// Returns the statistics as JSON with the keys of the README: program, version, scene, width, height, threads,
+/// samples_per_pixel, passes, seed, seconds (load, prepare, render, write, total), stages, rays, triangles,
+/// memory_bytes, bvh (quality, nodes, references, or null), estimated_relmse (null where unknown), invalid_samples,
+/// first_invalid (x, y, sample, or null), approximations, skipped, interrupted.
 nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics);
 
-/// Throws Error where write_json could not write, for want of a folder: called before a long run. "" and "-" can be.
+/// Throws Error where write_json could not write to `path`, because its folder does not exist. Programs call this
+/// before a long run. "" and "-" are always accepted.
 void check_json_path(const std::string& path);
-/// Pretty-printed to a file, whole or absent, or to standard output for "-".
+/// Writes pretty-printed JSON to standard output for "-", and else to a file. The file is written completely or not
+/// at all.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
 } // namespace duet

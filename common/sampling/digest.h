@@ -1,4 +1,4 @@
-// Hashes of bytes: names for what depends on files and texts.
+// These functions compute hashes of bytes, which serve as names for data that depend on files and texts.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,11 @@
 
 namespace duet {
 
-/// A hash of a state and bytes: their number, then eight at a time. To be chained.
+/// Returns a hash of a state, the number of bytes and the bytes, taken eight at a time. Calls can be chained: pass the
+/// result as the next state. The result depends on the byte order of the CPU.
 std::uint64_t hash_bytes(std::uint64_t state, std::string_view bytes);
 
-/// 16 digits.
+/// Formats a number as 16 lowercase hexadecimal digits.
 std::string hexadecimal(std::uint64_t value);
 
 } // namespace duet

@@ -9,8 +9,8 @@ namespace duet {
 
 namespace {
 
-/// The float next to x that lies in [i/n, (i+1)/n): rounding must not carry a sample into a neighbour of other density.
-/// Products of a float and a count below 2^29 are exact in double.
+/// Returns the float in [i/n, (i+1)/n) that is nearest to x. Rounding must not move a sample into a neighboring
+/// interval, which has another density. The products are exact, because n is below 2^29.
 float within_interval(double x, std::size_t i, std::size_t n) {
     float result = static_cast<float>(x);
     const double count = static_cast<double>(n), index = static_cast<double>(i);
@@ -36,13 +36,14 @@ Distribution1D::Distribution1D(const std::vector<double>& values) {
     }
     const double sum = cdf_[n];
     integral_ = sum / static_cast<double>(n);
-    // The last positive value's entry equals the sum, so it and all after it become exactly 1.
+    // The entry of the last positive value equals the sum, so this entry and all later ones become exactly 1.
     for (std::size_t i = 0; i <= n; ++i)
         cdf_[i] = sum > 0 ? cdf_[i] / sum : static_cast<double>(i) / static_cast<double>(n);
 }
 
 Distribution1D::Sample Distribution1D::sample(float u) const {
-    // The first entry above u ends the interval: one of probability 0 is never found, for it ends where it begins.
+    // The first entry above u is the upper end of the interval. An interval of probability 0 is never selected, because
+    // its two ends are equal.
     const double number = std::clamp(u, 0.0f, kOneMinusEpsilon);
     const auto above = std::upper_bound(cdf_.begin(), cdf_.end(), number);
     const auto i = static_cast<std::size_t>(above - cdf_.begin()) - 1;

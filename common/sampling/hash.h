@@ -1,38 +1,41 @@
-// Integer hashes: where every random number of the project comes from.
+// This file defines integer hashes. All random numbers of the project come from them.
 #pragma once
 
 #include <cstdint>
 
 namespace duet {
 
-/// A bijection of 64-bit numbers in which each input bit flips each output bit with a chance of about one half: the
-/// finalizer of MurmurHash3 with the constants of Stafford's variant 13, as in SplitMix64 (Steele, Lea and Flood 2014,
-/// «Fast Splittable Pseudorandom Number Generators», §5). 0 maps to 0.
+/// Mixes the bits of a 64-bit number. The function is a bijection in which each input bit flips each output bit with a
+/// probability of about one half. It is the finalizer of MurmurHash3 with the constants of Stafford's variant 13, as in
+/// SplitMix64 (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators", §5). 0 maps to 0.
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
     return x ^ (x >> 31);
 }
 
-/// The same of 32-bit numbers, U being std::uint32_t or a SIMD batch of them: two multiplications, by the constants of
-/// least bias that a search found (Wellons 2018, «Prospecting for Hash Functions»). 0 maps to 0.
+/// Mixes the bits of a 32-bit number. U is std::uint32_t or a SIMD batch of it. The constants of the two
+/// multiplications are those with the least bias found by a search (Wellons 2018, "Prospecting for Hash Functions"). 0
+/// maps to 0.
 template <typename U> constexpr U mix_bits_32(U x) {
     x = (x ^ (x >> 16)) * U(0x7feb352du);
     x = (x ^ (x >> 15)) * U(0x846ca68bu);
     return x ^ (x >> 16);
 }
 
-/// 2^64 over the golden ratio: SplitMix64's step from state to state.
+/// The increment of SplitMix64's state is 2^64 divided by the golden ratio.
 inline constexpr std::uint64_t kGoldenStep = 0x9e3779b97f4a7c15u;
-/// Its upper half: the step of 32-bit streams.
+/// The increment of 32-bit streams is the upper half of kGoldenStep.
 inline constexpr std::uint32_t kGoldenStep32 = 0x9e3779b9u;
 
-/// Number i of the SplitMix64 stream that begins at a well mixed `state`: one mix, for inner loops.
+/// Returns number i of the SplitMix64 stream that starts at `state`, which must already be well mixed. The cost is one
+/// call of mix_bits, which suits inner loops.
 constexpr std::uint64_t stream_number(std::uint64_t state, std::uint64_t i) {
     return mix_bits(state + (i + 1) * kGoldenStep);
 }
 
-/// A hash of a state and one more number of any form, to be chained: hash_combine(hash_combine(seed, x), y).
+/// Returns a hash of a state and one more number, which need not be mixed. Calls can be chained, for example
+/// hash_combine(hash_combine(seed, x), y).
 constexpr std::uint64_t hash_combine(std::uint64_t state, std::uint64_t value) {
     return mix_bits((state + kGoldenStep) ^ mix_bits(value + 0xd1b54a32d192ed03u));
 }
@@ -40,20 +43,21 @@ constexpr std::uint64_t hash_combine(std::uint64_t state, std::uint64_t value) {
 constexpr std::uint32_t high_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
 constexpr std::uint32_t low_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 
-/// The upper 24 bits as a float in [0, 1): every value is a multiple of 2^-24, 1 is never reached, and intervals
-/// [k/2^m, (k+1)/2^m) receive exactly the numbers whose upper m bits are k.
+/// Converts the upper 24 bits to a float in [0, 1). Each result is a multiple of 2^-24, and 1 is never reached. The
+/// interval [k/2^m, (k+1)/2^m) receives exactly the numbers whose upper m bits are k, for m <= 24.
 constexpr float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-/// The image of i under a pseudo-random permutation of 0 … n−1 chosen by `key`; i < n, n ≥ 1. A bijection of the
-/// numbers below the next power of two, repeated until the image is below n (cycle walking; Kensler 2013,
-/// «Correlated Multi-Jittered Sampling», §4, uses the same idea).
+/// Returns the image of i under a pseudorandom permutation of 0 … n−1 that `key` selects, for i < n and n >= 1. A
+/// bijection of the numbers below the next power of two is applied until the result is below n (cycle walking; Kensler
+/// 2013, "Correlated Multi-Jittered Sampling", §4, uses the same idea).
 constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
     if (n <= 1) return 0;
     int bits = 1;
     while (bits < 32 && (n - 1) >> bits != 0) ++bits;
     const std::uint32_t mask = bits == 32 ? 0xffffffffu : (std::uint32_t{1} << bits) - 1;
     const int half = (bits + 1) / 2;
-    do { // each step is invertible modulo 2^bits: an odd multiple, a sum, and a shift that only looks at higher bits
+    // Each step is invertible modulo 2^bits: an odd multiple, an xor with higher bits only, and a sum.
+    do {
         std::uint64_t round_key = key;
         for (int round = 0; round < 4; ++round) {
             round_key = mix_bits(round_key + kGoldenStep);

@@ -9,11 +9,12 @@ namespace duet {
 
 namespace {
 
-/// The integral from −r to x of the Blackman-Harris window of four terms over [−r, r], over that of all (Harris 1978,
-/// «On the Use of Windows for Harmonic Analysis», table I, −92 dB).
+/// Returns the integral from −r to x of the four-term Blackman-Harris window over [−r, r], divided by the integral
+/// of the whole window (Harris 1978, "On the Use of Windows for Harmonic Analysis", table I, −92 dB).
 double blackman_harris_below(double x, double r) {
     constexpr double a0 = 0.35875, a1 = 0.48829, a2 = 0.14128, a3 = 0.01168;
-    const double t = (x + r) / (2 * r), turn = 2 * kPiDouble; // the window is a0 − a1 cos 2πt + a2 cos 4πt − a3 cos 6πt
+    // The window is a0 − a1 cos 2πt + a2 cos 4πt − a3 cos 6πt.
+    const double t = (x + r) / (2 * r), turn = 2 * kPiDouble;
     const double waves = -a1 * std::sin(turn * t) + a2 / 2 * std::sin(2 * turn * t) - a3 / 3 * std::sin(3 * turn * t);
     return t + waves / (turn * a0);
 }
@@ -24,14 +25,14 @@ std::vector<double> blackman_harris_quantiles() {
     std::vector<double> quantiles(kSteps + 1);
     for (std::size_t i = 0; i <= kSteps; ++i) {
         const double wanted = static_cast<double>(i) / kSteps;
-        double low = -kRadius, high = kRadius; // halved to the last digit: 60 times
+        double low = -kRadius, high = kRadius; // 60 bisections give the full precision of double
         for (int step = 0; step < 60; ++step) {
             const double middle = (low + high) / 2;
             (blackman_harris_below(middle, kRadius) < wanted ? low : high) = middle;
         }
         quantiles[i] = (low + high) / 2;
     }
-    // The ends, where the window vanishes, and the middle are known.
+    // Three quantiles are known exactly: the two ends, where the window vanishes, and the center.
     quantiles.front() = -kRadius;
     quantiles.back() = kRadius;
     quantiles[kSteps / 2] = 0;

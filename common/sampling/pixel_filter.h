@@ -1,4 +1,4 @@
-// How a pixel weighs the light around its centre.
+// This file defines pixel reconstruction filters.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -9,20 +9,23 @@
 namespace duet {
 
 enum class FilterKind {
-    kBox,            ///< 1 within the pixel: neighbours share no light, which is what comparisons of pipelines want
-    kBlackmanHarris, ///< a smooth bell over three pixels by three: edges are as sharp, and do not crawl in motion
+    kBox,            ///< 1 inside the pixel, 0 outside; comparisons of the pipelines use it, as pixels share no samples
+    kBlackmanHarris, ///< smooth window over 3 × 3 pixels; edges stay as sharp and are stable in motion
 };
-/// "box", "blackman-harris"; throws Error for another name.
+/// Returns the filter named "box" or "blackman-harris". Throws an Error for another name.
 FilterKind filter_kind(std::string_view name);
+/// Returns the name that filter_kind() accepts for a filter.
 std::string_view filter_name(FilterKind kind);
 
-/// A filter that is nowhere negative, as a density of samples: all weigh the same, and pixels need nothing of each
-/// other's samples (Ernst, Stamminger and Greiner 2006, «Filter Importance Sampling»).
+/// Sample positions are distributed in proportion to the filter, which must not be negative. All samples then have the
+/// same weight, and each pixel uses only its own samples (Ernst, Stamminger and Greiner 2006, "Filter Importance
+/// Sampling").
 class PixelFilter {
 public:
     explicit PixelFilter(FilterKind kind);
 
-    /// Where a sample lies, relative to the pixel's centre, in pixels; u in [0, 1)². (½, ½) is the centre.
+    /// Maps a uniform sample u in [0, 1)² to a position relative to the pixel center, in pixels. (½, ½) maps to the
+    /// center.
     Vec2d sample(Vec2 u) const {
         const Vec2d exact(u);
         if (quantiles_.empty()) return {exact.x - 0.5, exact.y - 0.5};
@@ -32,7 +35,7 @@ public:
 private:
     double sample_axis(double u) const;
 
-    std::vector<double> quantiles_; ///< of one axis, at even steps of the probability; empty: a box
+    std::vector<double> quantiles_; ///< quantiles of one axis at equal steps of probability; empty for the box
 };
 
 } // namespace duet

@@ -20,25 +20,26 @@ constexpr std::array<std::pair<std::string_view, SamplerKind>, 5> kNames{{{"sobo
                                                                           {"independent", SamplerKind::kIndependent},
                                                                           {"center", SamplerKind::kCenter}}};
 
-/// (numerator + fraction)/denominator, kept below 1 where rounding would reach it.
+/// Returns (numerator + fraction) / denominator, clamped below 1 because rounding can reach 1.
 float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominator) {
     return std::min(static_cast<float>((numerator + fraction) / denominator), kOneMinusEpsilon);
 }
 
-// Padding (Kollig and Keller 2002): the points of each pair of dimensions are those of the plane's Sobol sequence,
-// scrambled anew and visited in an order of their own. Shuffling the index by an Owen scrambling keeps every aligned
-// block of 2^k indices together, so that the first 2^k samples of each pair are a net (Burley 2020, §5). Everything is
-// computed for one number or, U being a batch, for several dimensions at once.
+// Dimensions are padded (Kollig and Keller 2002): each pair of dimensions uses the points of the two-dimensional Sobol
+// sequence with its own scrambling and its own order. The order is an Owen scrambling of the index, which maps each
+// aligned block of 2^k indices to an aligned block. The first 2^k samples of each pair are therefore a net (Burley
+// 2020, §5). U is std::uint32_t, or a SIMD batch for several dimensions or samplers at once.
 
-/// The seed of a dimension's shuffling, well mixed, from the pixel's 64 bits.
+/// Returns the seed for the shuffling of a dimension from the 64 bits of the pixel's hash. The seed is well mixed.
 template <typename U> U dimension_seed(U pixel_low, U pixel_high, U dimension) {
     return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + pixel_low) ^ pixel_high);
 }
-/// The seed of the scrambling of its first (0) or second (1) coordinate.
+/// Returns the seed for the scrambling of the first (0) or second (1) coordinate of a pair of dimensions.
 template <typename U> U scramble_seed(U seed, U coordinate) {
     return mix_bits_32(seed + (coordinate + U(1u)) * U(kGoldenStep32));
 }
-/// The point of a pair that the sample visits, its digits reversed.
+/// Returns the index of the Sobol point that a sample uses for a pair of dimensions. Its digits are reversed (see
+/// sobol.h).
 template <typename U> U sobol_point(U reversed_index, U seed) {
     return reverse_bits(owen_scramble(reversed_index, seed));
 }
@@ -58,8 +59,10 @@ Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
     return {unit_float(digits.x), unit_float(digits.y)};
 }
 
-/// Pairs of dimensions from `first` on, a number a lane: of one sample of a pixel, or of two one after the other.
 template <std::size_t kLanes> using WholeBatch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
+/// Computes one coordinate of a Sobol pair in each lane, from dimension `first` on. Lanes 0 to 7 are four pairs of one
+/// sample; with 16 lanes, lanes 8 to 15 are the same dimensions of a second sample. `lane` is the index of the batch's
+/// first lane.
 template <std::size_t kLanes>
 WholeBatch<kLanes> sobol_lanes(std::size_t lane, WholeBatch<kLanes> reversed_index, WholeBatch<kLanes> pixel_low,
                                WholeBatch<kLanes> pixel_high, std::uint32_t first) {
@@ -103,7 +106,7 @@ std::pair<Sampler::Block, Sampler::Block> sobol_blocks(std::array<std::uint32_t,
 #endif
 }
 
-/// The lower 16 bits at even places.
+/// Moves the lower 16 bits to the even bit positions.
 constexpr std::uint32_t spread_bits(std::uint32_t x) {
     x &= 0xffffu;
     x = (x | x << 8) & 0x00ff00ffu;
@@ -119,11 +122,11 @@ float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key)
     return stratum(s, unit_float(high_bits(stream_number(key, s))), count);
 }
 
-/// Correlated multi-jittered points for any count: one in each of `count` rows, one in each of columns × rows_of_cells
-/// cells of the coarse grid (the last row of cells may be incomplete), and no two in one fine column (Kensler 2013,
-/// §5).
+/// Returns a correlated multi-jittered point for any `count` (Kensler 2013, §5). Each of the `count` rows contains one
+/// point. Each of the columns × rows_of_cells cells of the coarse grid contains one point; the last row of cells may
+/// be incomplete. No two points share a fine column.
 Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
-    const std::uint32_t round = index / count; // beyond the promised number of samples: a fresh set
+    const std::uint32_t round = index / count; // each further `count` samples use a new set of points
     key = stream_number(key, round);
     const auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
     const std::uint32_t rows_of_cells = (count + columns - 1) / columns;
@@ -155,7 +158,8 @@ std::string_view sampler_name(SamplerKind kind) {
 
 Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)
     : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
-      samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) / replicates),
+      samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) /
+                             replicates),
       replicates_(replicates) {
     DUET_CHECK(replicates == 1 || replicates == 2);
 }
@@ -165,10 +169,10 @@ void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(pixel_y)) << 32) | static_cast<std::uint32_t>(pixel_x);
     const std::uint64_t hash = hash_combine(samplers[0].seed_, pixel);
-    const std::array<std::uint64_t, 2> hashes{hash_combine(hash, 0), hash_combine(hash, 1)}; // by replicate
+    const std::array<std::uint64_t, 2> hashes{hash_combine(hash, 0), hash_combine(hash, 1)}; // one per replicate
     for (Sampler& s : samplers) {
         s.sample_ = index++;
-        s.replicate_ = s.sample_ & (s.replicates_ - 1); // 1 or 2: the remainder, without a division
+        s.replicate_ = s.sample_ & (s.replicates_ - 1); // sample_ % replicates_, since replicates_ is 1 or 2
         s.index_ = s.sample_ >> (s.replicates_ - 1);
         s.dimension_ = 0;
         s.pixel_hash_ = hashes[s.replicate_];
@@ -178,26 +182,28 @@ void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::
     }
 }
 
-// Pixels along a Z-curve take consecutive blocks of one sequence: blocks of 4, 16, 64 … pixels are nets together, too,
-// so that errors of neighbours cancel, and what noise is left has little of the low frequencies that eyes see (Ahmed
-// and Wonka 2020, «Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels»,
-// §4; the scrambling of the index, which its uppermost digits lead, shuffles the four quarters of each square). A
-// sequence has 2³² points: tiles of as many pixels as it has blocks have one of their own.
+// Pixels along a Z-curve use consecutive blocks of one sequence (Ahmed and Wonka 2020, "Screen-Space Blue-Noise
+// Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", §4). The samples of 4, 16, 64, …
+// neighboring pixels are therefore nets, too. The errors of neighbors cancel, and the remaining noise has little energy
+// at the low frequencies, which are the most visible. The scrambling of the index starts at its uppermost digits and
+// thus shuffles the four quarters of each square of pixels. A sequence has only 2³² points, so the image is divided
+// into tiles with one sequence each.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    const int digits = static_cast<int>(std::bit_width(samples_per_replicate_ - 1)); // of the index within a pixel
-    const int side = std::max((32 - digits) / 2 - 1, 0);  // of a tile: 2^side pixels
+    const int digits = static_cast<int>(std::bit_width(samples_per_replicate_ - 1)); // of a sample index
+    const int side = std::max((32 - digits) / 2 - 1, 0); // a tile has 2^side × 2^side pixels
     const std::uint32_t mask = (1u << side) - 1;
     const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;
     const std::uint64_t tile = (static_cast<std::uint64_t>(pixel_y >> side) << 32) | (pixel_x >> side);
     pixel_hash_ = hash_combine(hash_combine(seed_, tile), replicate_);
-    const std::uint32_t round = index_ >> digits; // beyond the promised number of samples: fresh sequences
+    const std::uint32_t round = index_ >> digits; // each further 2^digits samples use a new sequence
     if (round > 0) pixel_hash_ = hash_combine(pixel_hash_, round);
     index_ = (curve << digits) | (index_ & ((1u << digits) - 1));
 }
 
 float Sampler::get_1d() {
     const std::uint32_t dimension = dimension_++;
-    if (is_sobol()) return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
+    if (is_sobol())
+        return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
     if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, samples_per_replicate_, key);
     return unit_float(high_bits(stream_number(key, index_)));
@@ -206,7 +212,8 @@ float Sampler::get_1d() {
 Vec2 Sampler::get_2d() {
     const std::uint32_t dimension = dimension_;
     dimension_ += 2;
-    if (is_sobol()) return sobol_2d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
+    if (is_sobol())
+        return sobol_2d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
     const std::uint64_t key = stream_number(pixel_hash_, dimension);
     if (kind_ == SamplerKind::kStratified) return stratified_2d(index_, samples_per_replicate_, key);
     const std::uint64_t bits = stream_number(key, index_);
@@ -233,15 +240,17 @@ std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sample
         const Block first = a.get_block();
         return {first, b.get_block()};
     }
-    const auto numbers = sobol_blocks({a.reversed_index_, b.reversed_index_}, {a.pixel_hash_, b.pixel_hash_}, a.dimension_);
+    const auto numbers =
+        sobol_blocks({a.reversed_index_, b.reversed_index_}, {a.pixel_hash_, b.pixel_hash_}, a.dimension_);
     a.dimension_ += kBlock;
     b.dimension_ += kBlock;
     return numbers;
 }
 
-// at(k): the k-th sampler.
+// Implements both overloads of pairs(). at(k) returns the k-th of `size` samplers.
 template <typename At>
-void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
+void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
+                       std::span<Vec2> numbers) {
     DUET_CHECK_EQ(numbers.size(), size * dimensions.size());
     if (numbers.empty()) return;
     if (!at(0).is_sobol()) {
@@ -258,7 +267,7 @@ void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint
     for (std::size_t done = 0; done < size; done += kLanes) {
         const std::size_t some = std::min(size - done, kLanes);
         alignas(Batch) std::array<std::uint32_t, kLanes> index, low, high, x, y;
-        for (std::size_t i = 0; i < kLanes; ++i) { // lanes too many are filled with the first's
+        for (std::size_t i = 0; i < kLanes; ++i) { // excess lanes repeat the first one
             const Sampler& s = at(done + (i < some ? i : 0));
             index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
         }
@@ -274,7 +283,8 @@ void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint
     }
 }
 
-void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
+void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
+                    std::span<Vec2> numbers) {
     pairs_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, samplers.size(), dimensions, numbers);
 }
 

@@ -1,5 +1,5 @@
-// Sample points: each number is a function of (seed, pixel, sample, dimension) and of nothing else, so pictures do not
-// depend on threads, tiles or passes.
+// A sampler generates the random samples of a pixel. Each number depends only on the seed, the pixel, the sample index
+// and the dimension, so images do not depend on threads, tiles or passes.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -14,66 +14,76 @@ namespace duet {
 
 enum class SamplerKind {
     kSobol,       ///< Owen-scrambled Sobol points, padded by pairs of dimensions (Burley 2020)
-    kBlueNoise,   ///< the same, neighbouring pixels sharing a sequence; needs the number of samples
-    kStratified,  ///< jittered strata, shuffled by dimension; needs the number of samples
-    kIndependent, ///< independent uniform numbers
-    kCenter,      ///< pixel and lens centre, shutter open; all other dimensions as kSobol: for parity of the pipelines
+    kBlueNoise,   ///< like kSobol, but neighboring pixels share a sequence; needs the number of samples
+    kStratified,  ///< jittered strata, shuffled for each dimension; needs the number of samples
+    kIndependent, ///< independent uniform samples
+    kCenter,      ///< pixel and lens center, shutter opening time; else like kSobol (for parity of the pipelines)
 };
-/// "sobol", "blue-noise", "stratified", "independent", "center"; throws Error for another name.
+/// Returns the sampler named "sobol", "blue-noise", "stratified", "independent" or "center". Throws an Error for
+/// another name.
 SamplerKind sampler_kind(std::string_view name);
+/// Returns the name that sampler_kind() accepts for a sampler.
 std::string_view sampler_name(SamplerKind kind);
-/// Whether its samples depend on how many the pixel is to get.
+/// Returns whether the samples depend on the number of samples per pixel.
 bool depends_on_count(SamplerKind kind);
 
-/// The numbers in [0, 1) that a camera ray uses.
+/// Holds the random samples in [0, 1) of one camera ray.
 struct CameraNumbers {
     Vec2 pixel{0.5f, 0.5f}, lens{0.5f, 0.5f};
     float time = 0;
 };
 
-/// The numbers of one sample of one pixel, drawn in order of dimension. All samples of a pixel are points of one
-/// sequence, well spread together; or they fall into two replicates, scrambled independently of each other: sample i is
-/// point i/2 of replicate i mod 2. Their difference is what the film estimates its variance from, and costs as much as
-/// spreading all together gains: up to half of the squared error.
+/// A sampler provides the dimensions of one sample of one pixel in order. With one replicate, all samples of a pixel
+/// are points of one well-distributed sequence. With two replicates, there are two sequences, scrambled independently:
+/// sample i is point ⌊i/2⌋ of replicate i mod 2. The film estimates the variance from the difference of the
+/// replicates. The disadvantage of two replicates is their error: a single sequence can reach half the squared error.
 class Sampler {
 public:
-    /// samples_per_pixel: how many samples the pixel will get (stratified and blue-noise need it). replicates: 1 or 2.
+    /// kStratified and kBlueNoise need the number of samples per pixel. The number of replicates must be 1 or 2.
     Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates = 1);
 
-    /// To dimension 0 of sample `index` of a pixel.
+    /// Moves to dimension 0 of sample `index` of a pixel.
     void start(int pixel_x, int pixel_y, std::uint32_t index) { start({this, 1}, pixel_x, pixel_y, index); }
-    /// The same of samplers of one kind and seed, each to the next sample of the pixel: what they share is found once.
+    /// Starts several samplers of the same kind and seed on consecutive samples of a pixel, from sample `index` on.
+    /// Values that they share are computed only once.
     static void start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::uint32_t index);
-    /// To a given dimension of the current sample: gives each bounce dimensions of its own.
+    /// Moves to a given dimension of the current sample. The path tracer uses it to give each bounce its own
+    /// dimensions.
     void set_dimension(std::uint32_t dimension) { dimension_ = dimension; }
     std::uint32_t dimension() const { return dimension_; }
-    /// The current sample, as start() was told, and its replicate.
+    /// Returns the index of the current sample.
     std::uint32_t sample() const { return sample_; }
+    /// Returns the replicate (0 or 1) of the current sample.
     std::uint32_t replicate() const { return replicate_; }
 
-    /// The next one or two dimensions: numbers in [0, 1).
+    /// Returns the next dimension: a number in [0, 1).
     float get_1d();
+    /// Returns the next two dimensions: two numbers in [0, 1).
     Vec2 get_2d();
-    /// The next eight dimensions as four pairs: what get_2d would give four times, for little more than one costs.
+    /// A block holds eight dimensions.
     static constexpr std::size_t kBlock = 8;
     using Block = std::array<float, kBlock>;
+    /// Returns the next eight dimensions as four pairs. The result equals that of four calls of get_2d(), but costs
+    /// little more than one call.
     Block get_block();
-    /// get_block of two samplers of one kind that stand at the same dimension: for less than twice the work, where the
-    /// machine has room for both at once.
+    /// Returns the blocks of two samplers of the same kind, which must be at the same dimension. With AVX-512, this
+    /// takes less time than two calls of get_block().
     static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
-    /// What get_2d gives at some dimensions, of all samplers of one kind, or of some of them in the order of `which`: many
-    /// at once, those of a dimension after those of the one before. They stay where they are.
+    /// Computes the results of get_2d() for many samplers of the same kind at the given dimensions with SIMD. With n
+    /// samplers, numbers[d * n + k] is the pair of sampler k at dimensions[d]. The samplers do not advance.
     static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
                       std::span<Vec2> numbers);
+    /// Computes the same for a subset of the samplers: sampler k is samplers[which[k]], and n is which.size().
     static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which,
                       std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers);
-    /// What the camera asks for besides the place in the pixel.
+    /// Selects the camera samples that are needed in addition to the position in the pixel.
     struct CameraNeeds {
         bool lens = false, time = false;
     };
-    /// The first three pairs, for the camera; what it does not ask for is as in CameraNumbers, and so is all of kCenter.
+    /// Returns the camera samples, which are the first three pairs of dimensions. Samples that are not needed have the
+    /// defaults of CameraNumbers. kCenter returns only defaults. The sampler does not advance.
     CameraNumbers camera_numbers(CameraNeeds needs) const;
-    /// Those of many of one kind.
+    /// Computes the camera samples of many samplers of the same kind.
     static void camera_numbers(std::span<const Sampler> samplers, CameraNeeds needs, std::span<CameraNumbers> numbers);
 
 private:
@@ -82,7 +92,8 @@ private:
     }
     void share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y);
     template <typename At>
-    static void pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers);
+    static void pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
+                         std::span<Vec2> numbers);
 
     SamplerKind kind_;
     std::uint64_t seed_;

@@ -1,4 +1,4 @@
-// Of warp.h, what has no number type of its own, for batches of floats.
+// This file overloads functions of warp.h for SIMD batches of floats.
 #pragma once
 
 #include "common/sampling/warp.h"
@@ -6,7 +6,7 @@
 
 namespace duet {
 
-/// As unit_circle of each lane, to the same bits.
+/// Computes unit_circle() in each lane. The results equal those of the scalar function bit for bit.
 template <typename Arch> Vec2T<xsimd::batch<float, Arch>> unit_circle(xsimd::batch<float, Arch> u) {
     using Floats = xsimd::batch<float, Arch>;
     const Floats minus(-0.0f), quarter = xsimd::trunc(Floats(4.0f) * u + Floats(0.5f)); // 0 to 4

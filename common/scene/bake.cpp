@@ -9,8 +9,8 @@ namespace {
 
 Vec3 point(const Mat4d& m, Vec3 p) { return Vec3(transform_point(m, Vec3d(p))); }
 
-/// The factor by which the map scales all lengths, or nothing where it scales them differently. Entries are rounded to
-/// float, hence the tolerance.
+/// Returns the factor by which the map scales all lengths, or nothing where it is not a similarity. The test has a
+/// tolerance, because matrix entries are rounded to float.
 std::optional<double> similarity_scale(const Mat4d& m) {
     const auto column = [&](std::size_t c) { return Vec3d(m[0][c], m[1][c], m[2][c]); };
     const Vec3d x = column(0), y = column(1), z = column(2);
@@ -22,14 +22,15 @@ std::optional<double> similarity_scale(const Mat4d& m) {
     return scale;
 }
 
-/// No rotation or mirroring: the sphere's texture coordinates stay.
+/// Returns whether the map has no rotation or mirroring, so that a sphere's texture coordinates are unchanged.
 bool keeps_directions(const Mat4& m) {
     return m[0][0] > 0 && m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 &&
            m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
 }
 
 struct TextureUse {
-    bool any = false, solid = false; ///< looked up at all; in the object's space
+    /// `any`: the object's materials use a texture. `solid`: one of them is evaluated in object space.
+    bool any = false, solid = false;
 };
 
 TextureUse texture_use(const Scene& scene, const Object& object) {
@@ -48,7 +49,8 @@ TextureUse texture_use(const Scene& scene, const Object& object) {
     return use;
 }
 
-/// Whether corners that were equal before still are; of mirrored quads the second and the fourth are exchanged.
+/// Returns whether corners that coincided before the transform still coincide. In mirrored quads the second and the
+/// fourth corner are exchanged.
 bool corners_still_meet(const std::vector<Quad>& before, const std::vector<Quad>& after, bool mirrored) {
     std::vector<std::pair<std::array<float, 3>, std::array<float, 3>>> moved;
     for (std::size_t i = 0; i < before.size(); ++i) {

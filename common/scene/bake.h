@@ -1,4 +1,5 @@
-// Objects that stand still and are placed once are moved into world space, which saves each ray a transform.
+// This file bakes transforms: static objects whose shape is used once are moved into world space, which saves a
+// transform per ray.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -8,21 +9,22 @@
 
 namespace duet {
 
-/// Transforms the object's shape, which nothing else uses, and makes its transform the identity, where that changes
-/// nothing to be seen:
-/// - not where a texture is looked up in the object's space (noise, solid checkers);
-/// - a sphere only under a rotation, reflection and uniform scale, and a textured one under no rotation or reflection;
-/// - a mesh with normals only under the same: their lengths, and so the weights of their interpolation, would change at
-/// each vertex;
-/// - mirrored quads and triangles keep their front side by an exchange of edges or corners, so not where the texture
-/// coordinates would be
-///   exchanged, too;
-/// - quads that share corners (a box) only if their corners, as rounded, still meet.
-/// The front of a surface is the image of its front under any of these transforms, mirroring or not.
+/// Transforms the object's shape into world space and sets the object's transform to the identity. No other object
+/// may use the shape. The object is left unchanged where baking would change the image. The conditions are:
+/// - No texture is evaluated in object space (noise, solid checkers).
+/// - A sphere is only baked under rotation, reflection and uniform scale, and a textured sphere only without rotation
+///   and reflection.
+/// - A mesh with normals is only baked under rotation, reflection and uniform scale. Other maps change the lengths of
+///   the normals, and so their weights in interpolation.
+/// - Mirrored quads and triangles keep their front side by an exchange of edges or corners. They are not baked where
+///   this would also exchange their texture coordinates.
+/// - Quads that share corners (a box) are only baked if their rounded corners still coincide.
+///
+/// Under any of these transforms, mirroring or not, the front of a surface is the image of its front.
 void bake(Scene& scene, Object& object);
 
-/// A quad, a triangle or a sphere under an affine map, its front side being the image of its front. Of a sphere only
-/// where the map keeps it one.
+/// Each overload returns the shape under an affine map, such that its front is the image of its front. A sphere has
+/// no result where the map would not keep it a sphere.
 Quad transformed(const Quad& quad, const Mat4& to_world);
 std::array<Vec3, 3> transformed(const std::array<Vec3, 3>& triangle, const Mat4& to_world);
 std::optional<Sphere> transformed(const Sphere& sphere, const Mat4& to_world);

@@ -8,19 +8,20 @@ namespace duet {
 
 namespace {
 
-constexpr double kMargin = 1.12;    ///< the picture is this much larger than the mesh
-constexpr double kGroundReach = 60; ///< half the ground's side, in radii of the mesh
+constexpr double kMargin = 1.12;    ///< ratio of the image's size to the mesh's size in it
+constexpr double kGroundReach = 60; ///< half the ground's side length, in radii of the mesh
 
-/// Twice the radius in 4:3, seen from a third to the side and a quarter above; as near as the whole mesh allows.
+/// Returns a camera that looks at the mesh from the front, right and above, at the smallest distance from which the
+/// whole mesh is in the image with a margin of kMargin.
 Camera frame(const Mesh& mesh, const Box3d& box, int width, int height) {
     Camera camera;
     camera.fov_degrees = 35;
     camera.look_at = box.center();
-    const Vec3d back = normalize(Vec3d(0.55, 0.42, 1)); // from the mesh to the eye
+    const Vec3d back = normalize(Vec3d(0.55, 0.42, 1)); // direction from the mesh to the eye
     const Vec3d right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
     const double tan_y = std::tan(radians(camera.fov_degrees / 2)) / kMargin;
     const double tan_x = tan_y * width / height;
-    double distance = 0; // such that |x| ≤ (distance − z)·tan for each vertex
+    double distance = 0; // smallest distance with |x| ≤ (distance − z)·tan for each vertex
     for (const Vec3 p : mesh.positions) {
         const Vec3d d = Vec3d(p) - camera.look_at;
         distance = max(distance, dot(d, back) + max(abs(dot(d, right)) / tan_x, abs(dot(d, up)) / tan_y));
@@ -49,7 +50,7 @@ Scene scene_around_mesh(const std::filesystem::path& path) {
         throw Error(path.string() + ": the mesh is too small or too large to be framed by a camera");
     scene.camera = frame(obj.mesh, box, scene.width, scene.height);
 
-    // The gap keeps a flat underside from fighting with the ground, here and in the rasterizer's depth.
+    // A gap below the mesh avoids z-fighting between a flat underside and the ground.
     const double ground = box.low.y - 1e-3 * radius, reach = kGroundReach * radius;
     const Vec3d center = box.center();
     Object floor;
@@ -62,8 +63,8 @@ Scene scene_around_mesh(const std::filesystem::path& path) {
     scene.shapes.push_back(QuadList{{Quad{Vec3(Vec3d(center.x - reach, ground, center.z + reach)),
                                           Vec3(Vec3d(2 * reach, 0, 0)), Vec3(Vec3d(0, 0, -2 * reach))}}});
     scene.objects = {std::move(object), std::move(floor)};
-    // The sun stands to the camera's left, so that shapes show. Sun and sky together light open ground to about half of
-    // white.
+    // The sun shines from the camera's left, so that the shading reveals the shape. Sun and sky together light open
+    // ground to about half of white.
     scene.lights.push_back(SunLight{Vec3(normalize(Vec3d(1, -1.15, -0.45))), Rgb(2.7f, 2.5f, 2.2f)});
     scene.environment = SkyEnvironment{Rgb(0.5f, 0.47f, 0.43f), Rgb(0.26f, 0.31f, 0.4f)};
     return scene;

@@ -1,13 +1,13 @@
-// A scene around a mesh that comes alone: what `raster mesh.obj` shows.
+// This file builds a default scene around a single mesh, which `raster mesh.obj` renders.
 #pragma once
 
 #include "common/scene/scene.h"
 
 namespace duet {
 
-/// The mesh with its MTL materials (clay where it has none) and normals (computed where it has none: smooth_normals.h),
-/// a ground just below it, a sky and a sun; the camera looks at it from the front, right and above, and all of it is in
-/// the picture. Not finished yet. Throws Error as load_obj does.
+/// Returns a scene with the mesh, a ground just below it, a sky and a sun. Faces without an MTL material are clay,
+/// and missing normals are computed (smooth_normals.h). The camera looks at the mesh from the front, right and above,
+/// and all of the mesh is in the image. finish_scene has not been called yet. Throws Error as load_obj does.
 Scene scene_around_mesh(const std::filesystem::path& path);
 
 } // namespace duet

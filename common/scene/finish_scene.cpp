@@ -1,4 +1,4 @@
-// What follows from a scene's description, worked out once for both pipelines.
+// This file computes the data that is derived from a scene's description, once for both pipelines.
 #include "common/scene/bake.h"
 #include "common/scene/lamp_texture.h"
 #include "common/scene/scene.h"
@@ -10,11 +10,11 @@ namespace duet {
 
 namespace {
 
-/// Beyond this the squares of coordinates come near the end of float's range. A little above the 1e18 that files may
-/// say.
+/// Beyond this bound the squares of coordinates come close to float's range. It is slightly above 1e18, the limit for
+/// numbers in files.
 constexpr float kMaxCoordinate = 1.001e18f;
 
-/// Broken references are faults of the program that built the scene, not of a file.
+/// Checks the scene's references. A broken reference is an error of the program that built the scene, not of a file.
 void check_references(const Scene& scene) {
     DUET_CHECK_EQ(scene.materials.size(), scene.material_names.size());
     for (const Object& object : scene.objects) {
@@ -36,8 +36,9 @@ void bake_single_objects(Scene& scene) {
         if (!object.identity && !object.moving && uses[object.shape] == 1) bake(scene, object);
 }
 
-/// Points move on straight lines, as matrix entries are interpolated: the boxes at both ends hold all in between, but
-/// for the rounding of the interpolated matrix, which the bounds of either leave room for.
+/// Returns the object's bounds over its motion. Matrix entries are interpolated linearly, so points move on straight
+/// lines, and the boxes at both ends enclose all positions in between. The margins of the boxes cover the rounding of
+/// the interpolated matrix.
 Box3 motion_bounds(const Scene& scene, const Object& object) {
     Box3 box = bounds(scene.shapes[object.shape], object.to_world);
     if (object.moving) box.extend(bounds(scene.shapes[object.shape], object.to_world_end));
@@ -56,8 +57,8 @@ void find_bounds(Scene& scene) {
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};
 }
 
-/// The light of an emissive primitive of an object that stands still; none of one without area, and none of a sphere
-/// that its transform makes an ellipsoid: those are found by chance only.
+/// Returns the light of an emissive primitive of a static object. The result is empty for a primitive without area,
+/// and for a sphere that its transform makes an ellipsoid: only BSDF sampling finds such emitters.
 std::optional<SurfaceLight> surface_light(const Shape& shape, const Mat4& to_world, std::uint32_t primitive) {
     SurfaceLight light;
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
@@ -123,7 +124,8 @@ void note_texture(const Scene& scene, std::int32_t index, SceneNeeds& needs) {
 
 void note_material(const Scene& scene, const Material& material, SceneNeeds& needs) {
     if (const auto* metal = std::get_if<Metal>(&material)) {
-        const bool smooth = sqr(metal->roughness.value) < MetalBsdf::kSmoothAlpha, varies = !metal->roughness.constant();
+        const bool smooth = sqr(metal->roughness.value) < MetalBsdf::kSmoothAlpha,
+                   varies = !metal->roughness.constant();
         needs.specular = needs.specular || smooth || varies;
         needs.glossy = needs.glossy || !smooth;
     }
@@ -135,7 +137,8 @@ void note_material(const Scene& scene, const Material& material, SceneNeeds& nee
         needs.glossy = needs.glossy || (!glass->thin && !glass->smooth());
         needs.insides = needs.insides || glass->has_inside();
     }
-    if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material)) needs.layers = needs.glossy = true;
+    if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material))
+        needs.layers = needs.glossy = true;
     for_each_texture(material, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
 }
 

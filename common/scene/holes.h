@@ -1,14 +1,14 @@
-// Rays that go through surfaces, by their opacity.
+// This file handles rays that pass through surfaces with an alpha mask or alpha blending.
 #pragma once
 
 #include "common/scene/scene.h"
 
 namespace duet {
 
-/// Whether a ray goes straight on through what it hits: always through a hole, never through a whole surface, and in
-/// between for the part of rays that the surface lets through, by a number that is a hash of the ray and the primitive.
-/// So the mean over rays is that of blending, and the same ray always does the same, in both
-/// pipelines.
+/// Returns whether a ray passes straight through the surface that it hits. It always passes where the opacity is 0
+/// and never where it is 1. In between it passes with probability 1 − opacity, by a random number that is a hash of
+/// the ray and the primitive. The mean over rays equals alpha blending, and the same ray gives the same result in
+/// both pipelines.
 bool passes_through(const Scene& scene, const Ray& ray, const Hit& hit);
 
 } // namespace duet

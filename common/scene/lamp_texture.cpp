@@ -9,9 +9,10 @@ namespace duet {
 
 namespace {
 
-constexpr int kGrid = 8; ///< points a side
+constexpr int kGrid = 8; ///< sample points per axis
 
-/// A point of a primitive by two numbers in [0, 1], areas in proportion; its footprint a cell of the grid.
+/// Returns the surface point at (a, b) in [0, 1]² of a primitive. Equal areas of the square map to equal areas of
+/// the primitive. The footprint is one cell of the grid.
 SurfacePoint point_of(const Shape& shape, std::uint32_t primitive, float a, float b) {
     SurfacePoint point;
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
@@ -56,7 +57,7 @@ Rgb radiance_towards(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3
     const Material& material = scene.materials[material_index(scene, light.object, light.primitive)];
     const Emissive* lamp = emitter(material);
     if (lamp == nullptr || lamp->radiance_texture < 0) return light.radiance;
-    const Object& object = scene.objects[light.object]; // which stands still
+    const Object& object = scene.objects[light.object]; // static: moving objects have no surface lights
     const Shape& shape = scene.shapes[object.shape];
     const Ray ray{p, w};
     Hit hit{light.object, light.primitive, 0, 0, distance};

@@ -15,8 +15,8 @@ namespace duet {
 
 namespace {
 
-/// A scene file is text that people and scripts write, meshes and pictures beside it. Its tree takes up to fifty times
-/// its bytes of memory.
+/// This is the size limit of a scene file in bytes. Scene files are text, and meshes and images are in separate
+/// files. The parsed tree takes up to fifty times the file's size in memory.
 constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
 
 void read_image_size(const JsonValue& image, Scene& scene) {

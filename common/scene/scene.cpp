@@ -17,7 +17,8 @@ namespace {
 SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
-    // Made where it is to be: a copy right after it was put together would wait for its parts.
+    // The point is constructed in place, because a copy right after its members are written would wait for these
+    // stores.
     SurfacePoint point = [&] {
         if (!object.moving)
             return surface_point(shape, hit, ray, object.to_world, object.to_object, object.identity, detail);
@@ -77,7 +78,7 @@ Corners primitive_corners(const Shape& shape, std::uint32_t primitive) {
         return {{mesh->positions[a], mesh->positions[b], mesh->positions[c]}, 3};
     }
     const auto* list = std::get_if<QuadList>(&shape);
-    DUET_CHECK(list != nullptr); // a sphere has no corners
+    DUET_CHECK(list != nullptr); // spheres have no corners
     return {corners(list->quads[primitive]), 4};
 }
 

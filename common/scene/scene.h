@@ -1,4 +1,4 @@
-// The scene: one description for both pipelines. Immutable once loaded.
+// This file defines the scene, the one description that both pipelines use. It is immutable once loaded.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -18,32 +18,33 @@
 
 namespace duet {
 
-/// A shape placed in the world; groups and instances of a file are flattened to a list of these. Objects that stand
-/// still and are placed once are baked: their shape is in world space and their transform the identity.
+/// An Object is a shape placed in the world. Groups and instances of a file are flattened to a list of objects.
+/// Static objects whose shape is used once are baked: their shape is in world space and their transform is the
+/// identity.
 struct Object {
     std::string name;
     std::uint32_t shape = 0; ///< index into Scene::shapes
-    std::vector<std::uint32_t>
-        materials;            ///< index into Scene::materials, one a material slot of the shape; at least one
-    bool identity = true;     ///< to_world is the identity, at all times
-    bool moving = false;      ///< to_world_end differs from to_world
-    Mat4 to_world, to_object; ///< at the start of the motion (time 0)
-    Mat4 to_world_end;        ///< at its end (time 1); in between entries are interpolated
+    /// These are indices into Scene::materials, one for each material slot of the shape, and at least one.
+    std::vector<std::uint32_t> materials;
+    bool identity = true;     ///< whether to_world is the identity at all times
+    bool moving = false;      ///< whether to_world_end differs from to_world
+    Mat4 to_world, to_object; ///< transform at the start of the motion (time 0), and its inverse
+    Mat4 to_world_end;        ///< transform at the end (time 1); entries are interpolated in between
 };
 
-/// What the scene asks for: pipelines decide once, from this, what to leave out.
+/// SceneNeeds lists the features that the scene uses. Pipelines use it to leave out code paths once, at the start.
 struct SceneNeeds {
     bool textures = false, image_textures = false;
-    bool footprints = false;   ///< an image texture is filtered over what a sample stands for
+    bool footprints = false;   ///< an image texture is filtered over the sample's footprint
     bool normal_maps = false;  ///< normal or bump maps
-    bool lamp_textures = false; ///< an emissive surface emits a picture
-    bool alpha = false;        ///< cut-outs, or surfaces that stop a part of the light only
+    bool lamp_textures = false; ///< an emissive surface has a radiance texture
+    bool alpha = false;        ///< alpha masks or alpha blending
     bool motion = false, lens = false;
-    bool environment = false; ///< it is not black
+    bool environment = false; ///< the environment is not black
     bool delta_lights = false, surface_lights = false;
-    bool glossy = false;       ///< rough metal, frosted glass, and layers
-    bool layers = false;       ///< layered materials: principled and coated ones
-    bool insides = false;      ///< glass that absorbs, or has a priority
+    bool glossy = false;       ///< rough metal, frosted glass and layered materials
+    bool layers = false;       ///< principled and coated materials
+    bool insides = false;      ///< glass that absorbs or has a priority
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;
@@ -52,37 +53,40 @@ struct SceneNeeds {
 };
 
 struct Scene {
-    std::filesystem::path path; ///< the file it was loaded from
-    std::vector<std::filesystem::path>
-        files; ///< all that was read: `path`, then meshes, MTL files and pictures, in the order read
+    std::filesystem::path path; ///< file that the scene was loaded from
+    /// These are all files that were read, in order: `path`, then meshes, MTL files and images.
+    std::vector<std::filesystem::path> files;
     Camera camera;
     int width = 640, height = 480;
 
     TextureSet textures;
     std::vector<Material> materials;
     std::vector<std::string> material_names; ///< parallel to materials
-    std::vector<SurfaceMaps> maps;           ///< parallel to materials, or shorter: what is left has none
+    std::vector<SurfaceMaps> maps; ///< parallel to materials, or shorter: the remaining materials have no maps
     std::vector<Shape> shapes;
     std::vector<Object> objects;
-    std::vector<Light> lights; ///< as described, then one SurfaceLight for each emissive primitive that stands still
-    std::size_t first_surface_light =
-        0; ///< lights[first_surface_light …] are SurfaceLights, sorted by (object, primitive)
+    /// The lights of the file come first. One SurfaceLight for each emissive primitive of a static object follows.
+    std::vector<Light> lights;
+    /// All lights from this index on are SurfaceLights, sorted by (object, primitive).
+    std::size_t first_surface_light = 0;
     Environment environment;
-    Box3 bounds; ///< of all objects over all their motion
+    Box3 bounds; ///< bounds of all objects over their whole motion
     SceneNeeds needs;
 };
 
-/// Fills in what follows from the rest: surface lights, bounds, needs, closedness of meshes; bakes single, still
-/// objects. The last step of every loader, and of tests that build scenes by hand.
+/// Computes the scene's derived data: surface lights, bounds, needs, and whether meshes are closed. It also bakes
+/// static objects whose shape is used once. This is the last step of every loader, and of tests that build scenes by
+/// hand.
 void finish_scene(Scene& scene);
 
-/// An object's transform and its inverse at a time in [0, 1] of the motion.
+/// An ObjectTransform is an object's transform and its inverse at a time in [0, 1] of the motion.
 struct ObjectTransform {
     Mat4 to_world, to_object;
 };
 ObjectTransform object_transform(const Object& object, float time);
 
-/// A ray in the world, as the object sees it: the direction is not normalized, so t means the same.
+/// Transforms a ray from world space to object space. The direction is not normalized, so t has the same meaning in
+/// both spaces.
 inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_object) {
     Ray local = ray;
     local.origin = sabotaged(Guard::kPlaceDifference) ? transform_point(to_object, ray.origin)
@@ -91,28 +95,30 @@ inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_
     return local;
 }
 
-/// The surface point of a hit, with material, by the one way that both pipelines share: its normal as the material's
-/// maps have it; with the footprint of its ray at the hit, where one is given and some texture is filtered. Maps ask for all detail.
+/// Returns the surface point of a hit, including its material. Both pipelines use this function. The shading normal
+/// includes the material's normal and bump maps, for which `detail` must be kAll. The footprint is set where
+/// `footprint` is given and some texture of the scene is filtered.
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const RayFootprint* footprint = nullptr,
                            SurfaceDetail detail = SurfaceDetail::kAll);
-/// The part of the light that the surface stops at a hit, in [0, 1]; 0 in a hole. 1 without a look at the hit where its
-/// material is whole.
+/// Returns the opacity of the surface at a hit, in [0, 1]: the fraction of light that it stops. For an opaque
+/// material it returns 1 without evaluating the surface point.
 float opacity(const Scene& scene, const Ray& ray, const Hit& hit);
-/// What a material asks of its surface points: all of them, or no uv where neither a texture nor a map looks at them.
+/// Returns the detail of surface points that a material needs: all, or without uv where it has no texture and no map.
 SurfaceDetail surface_detail(const Scene& scene, std::uint32_t material);
-/// The material of a primitive.
+/// Returns the index of a primitive's material in Scene::materials.
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
-/// The index in Scene::lights of the SurfaceLight of a primitive, or −1 where it emits nothing or moves.
+/// Returns the index in Scene::lights of a primitive's SurfaceLight, or −1 where it emits nothing or moves.
 std::int64_t surface_light_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
-/// The corners of a triangle or quad in its object's space: 3 or 4 points, in order (quad: corner, +u, +u+v, +v). Of a
-/// baked object these are world space.
+/// Corners holds the corners of a triangle or quad in its object's space, 3 or 4 points in order (quad: corner, +u,
+/// +u+v, +v). For a baked object that is world space.
 struct Corners {
     std::array<Vec3, 4> p;
     int count = 0;
 };
 Corners primitive_corners(const Shape& shape, std::uint32_t primitive);
 
-/// Loads a scene file (.json) or a bare mesh (.obj: camera framed on it, sky and ground added). Throws Error.
+/// Loads a scene file (.json) or a bare mesh (.obj), for which it adds a camera, a ground, a sky and a sun. Throws
+/// Error for a file that cannot be used.
 Scene load_scene(const std::filesystem::path& path);
 
 } // namespace duet

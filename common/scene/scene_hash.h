@@ -1,4 +1,4 @@
-// Which scene this is, by the content of its files.
+// This file identifies a scene by the content of its files.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -7,8 +7,8 @@
 
 namespace duet {
 
-/// 64 bits, as 16 hexadecimal digits, of the bytes of Scene::files in order. Where a file lies and what it is called
-/// does not matter. Throws Error for a file that can no longer be read.
+/// Returns a 64-bit hash, as 16 hexadecimal digits, of the bytes of Scene::files in order. The paths and names of the
+/// files do not matter. Throws Error for a file that can no longer be read.
 std::string hash_scene_files(const Scene& scene);
 
 } // namespace duet

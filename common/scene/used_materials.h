@@ -1,4 +1,4 @@
-// Questions about the materials that a scene's objects have; a file may describe others.
+// This file queries the materials that a scene's objects use; a file may describe further materials.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -7,7 +7,7 @@
 
 namespace duet {
 
-/// Whether `predicate`, of a Material, holds for one that an object has.
+/// Returns whether predicate(material) holds for a material that some object uses.
 template <typename Predicate> bool any_used_material(const Scene& scene, const Predicate& predicate) {
     return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
         return std::any_of(object.materials.begin(), object.materials.end(),

@@ -1,4 +1,4 @@
-// Memory that begins with a line of the cache.
+// This file defines an allocator whose memory starts at a cache-line boundary.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,9 @@
 
 namespace duet {
 
-/// An allocator for std::vector: what lies there in whole lines is stored in whole lines. (An ordinary allocator's memory
-/// begins 16 bytes into a line, and every wide store falls onto two.)
+/// This allocator for std::vector aligns memory to 64 bytes, so that a 64-byte SIMD store at a multiple of 64 bytes
+/// writes one cache line. The memory of an ordinary allocator starts 16 bytes into a line, and each such store touches
+/// two.
 template <typename T> struct CacheAligned {
     using value_type = T;
     static constexpr std::align_val_t kLine{64};

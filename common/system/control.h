@@ -1,4 +1,4 @@
-// What a caller holds in its hand while a rendering runs: it can stop it and watch it.
+// This file defines how a caller stops a running render and receives its progress.
 #pragma once
 
 #include <atomic>
@@ -6,12 +6,13 @@
 
 namespace duet {
 
-/// Passed to both pipelines' render functions.
+/// The render functions of both pipelines take a Control. With the default values, a render runs to its end in silence.
 struct Control {
-    /// Set by a signal handler or another thread; the renderer finishes the tiles at hand and returns what it has.
+    /// A signal handler or another thread sets this flag to stop the render. The renderer then finishes the tiles in
+    /// progress and returns the result so far. A null pointer means that the render cannot be stopped.
     const std::atomic<bool>* stop = nullptr;
-    /// Called with the fraction done, in [0, 1], never decreasing, from any thread but one call at a time; may be
-    /// empty.
+    /// The renderer calls this function with the completed fraction in [0, 1], which never decreases. Calls come from
+    /// any thread, but one at a time. The function may be empty.
     std::function<void(double)> progress;
 
     bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }

@@ -1,5 +1,5 @@
-// How the project reports trouble: bad input is an Error (an exception the programs print), a broken invariant is a
-// failed check (a message with both values, then abort).
+// This file defines how the project reports errors. Bad input throws an Error, which the programs print. A broken
+// invariant fails a check, which prints a message (with both values of a comparison) and aborts.
 #pragma once
 
 #include <sstream>
@@ -8,8 +8,9 @@
 
 namespace duet {
 
-/// Bad input or a failed file operation. The message names the file, line or JSON path, what was found and what was
-/// expected. `exit_code` is what a program returns for it: 2 for unusable input, 1 for a failure while working.
+/// An Error reports bad input or a failed file operation. Its message names the file, the line or JSON path, what was
+/// found and what was expected. A program that catches it exits with `exit_code`: 2 for unusable input, 1 for a failure
+/// during its work.
 class Error : public std::runtime_error {
 public:
     explicit Error(const std::string& message, int exit_code = 2) : std::runtime_error(message), code_(exit_code) {}
@@ -19,18 +20,20 @@ private:
     int code_;
 };
 
-/// The parts printed one after the other: `message(path, ": row ", 3, " is empty")`.
+/// Concatenates the printed forms of its arguments. Example: `message(path, ": row ", 3, " is empty")`.
 template <typename... Parts> std::string message(const Parts&... parts) {
     std::ostringstream out;
     (out << ... << parts);
     return out.str();
 }
 
+/// Prints the file, the line and the failed condition to stderr and aborts the program.
 [[noreturn]] void check_failed(const char* file, int line, const std::string& what);
 
 } // namespace duet
 
-/// Invariants: always on, also in release builds; they stand outside inner loops.
+/// The DUET_CHECK macros test invariants and abort on failure. They are active in release builds, too, so do not use
+/// them in inner loops.
 #define DUET_CHECK(condition)                                                                                          \
     do {                                                                                                               \
         if (!(condition)) ::duet::check_failed(__FILE__, __LINE__, #condition);                                        \

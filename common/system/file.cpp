@@ -22,7 +22,8 @@ std::string read_file(const fs::path& path, std::size_t limit) {
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
     if (!fs::is_regular_file(status)) throw Error(message(path.string(), ": not a regular file"));
-    // The size of what is open, not of what lies at the path: another file may be renamed to it at any moment.
+    // Take the size from the open stream, not from the path: another program may rename a file to this path at any
+    // time.
     std::ifstream in(path, std::ios::binary | std::ios::ate);
     const std::streamoff end = in.tellg();
     if (!in || end < 0) throw Error(message(path.string(), ": cannot be read"));
@@ -36,7 +37,7 @@ std::string read_file(const fs::path& path, std::size_t limit) {
 }
 
 void write_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-    // The ending stays: some writers choose their format by it.
+    // Preserve the extension, because some writers choose the file format by it.
     fs::path temporary = path;
     temporary.replace_filename(message(".", path.stem().string(), ".", ::getpid(), path.extension().string()));
     std::error_code ignored;

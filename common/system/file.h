@@ -1,4 +1,4 @@
-// Whole files: read in one go within a limit, written whole or not at all.
+// These functions read a whole file up to a size limit, and write files atomically.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,19 @@
 
 namespace duet {
 
-/// The path's ending with its dot, A to Z as a to z, whatever the locale: ".png"; empty where there is none.
+/// Returns the path's extension with its dot, for example ".png", or an empty string if it has none. The letters A to Z
+/// are converted to lower case, independently of the locale.
 std::string lower_case_ending(const std::filesystem::path& path);
 
-/// The bytes of a regular file of at most `limit` bytes. Throws Error naming the path otherwise.
+/// Returns the contents of a regular file. Throws an Error that names the path if the file is missing, is not a regular
+/// file, is larger than `limit` bytes or cannot be read.
 std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);
 
-/// Calls write(temporary) with the path of a new file beside `path` and renames it to `path` when that returns: the
-/// output is whole or absent, whatever kills the program. Throws Error (exit code 1) where that fails; the temporary
-/// file is removed.
+/// Calls write(temporary) with the path of a new file in the directory of `path`, then renames that file to `path`. The
+/// output is thus complete or absent, even if the program is killed. Throws an Error (exit code 1) if the rename fails,
+/// and rethrows exceptions of `write`; the temporary file is removed in both cases.
 void write_whole(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
-/// The same for bytes at hand.
+/// Writes `bytes` to the file at `path` atomically, by write_whole(). Throws an Error (exit code 1) on failure.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace duet

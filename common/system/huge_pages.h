@@ -1,4 +1,4 @@
-// Memory that is read at random, in large pages: fewer translations miss.
+// This file defines an allocator that uses huge pages. They reduce TLB misses for memory that is read in random order.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,10 @@
 
 namespace duet {
 
-/// An allocator of cache-line-aligned memory; blocks of several large pages (2 MiB) are aligned to them, and the system
-/// is asked for such pages where it leaves the choice to programs (Linux: transparent huge pages, `madvise`). A vector
-/// that is resized leaves new elements of plain types without a value: large ones are written once.
+/// This allocator aligns memory to cache lines. It aligns blocks of at least two huge pages (4 MiB) to the huge page
+/// size of 2 MiB and requests huge pages for them where the system offers the choice (on Linux, transparent huge pages
+/// by `madvise`). Elements are default-initialized: resizing a vector leaves new elements of trivial types
+/// uninitialized, so that large vectors are written only once.
 template <typename T> struct HugePageAllocator {
     using value_type = T;
 
@@ -28,7 +29,7 @@ template <typename T> struct HugePageAllocator {
         void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
         if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
-        if (alignment == kPage) madvise(memory, bytes, MADV_HUGEPAGE); // advice: a refusal changes nothing
+        if (alignment == kPage) madvise(memory, bytes, MADV_HUGEPAGE); // only a hint: failure is harmless
 #endif
         return static_cast<T*>(memory);
     }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <thread>
 
-// ThreadSanitizer does not see the synchronisation inside an uninstrumented oneTBB and reports dozens of false races;
-// suppressing them would hide real ones. So the thread-sanitizer build runs the same loops on plain threads.
+// ThreadSanitizer does not see the synchronization inside an uninstrumented oneTBB and reports dozens of false races.
+// Suppressing these reports would hide real races, so the ThreadSanitizer build runs the same loops on std::thread.
 #if defined(DUET_PLAIN_THREADS)
 #include <atomic>
 #include <exception>
@@ -55,10 +55,12 @@ int available_threads() { return std::max(1, tbb::info::default_concurrency()); 
 
 namespace {
 
-/// A place for so many threads to work in, kept for the next loop: worker threads that were in it last find it at once.
-/// Into an arena made anew they come only after some milliseconds, where other programs run, too: frames end before.
+/// A task arena is cached for each number of threads and reused by later loops. Worker threads that left an arena
+/// rejoin it at once. On a computer that also runs other programs, they join a new arena only after some milliseconds,
+/// and a frame may end before that.
 struct Arena {
-    // More threads than cores may be asked for (a test of determinism does): oneTBB's own limit must allow them.
+    // A caller may request more threads than there are cores, as a test of determinism does. The limit raises oneTBB's
+    // own maximum for this case.
     std::optional<tbb::global_control> limit;
     tbb::task_arena arena;
 
@@ -70,7 +72,7 @@ struct Arena {
 
 tbb::task_arena& arena_of(int workers) {
     static std::mutex mutex;
-    static std::map<int, Arena> arenas; // as the threads themselves, which oneTBB keeps, too
+    static std::map<int, Arena> arenas; // by number of threads; they live as long as oneTBB's worker threads
     const std::lock_guard lock(mutex);
     return arenas.try_emplace(workers, workers).first->second.arena;
 }

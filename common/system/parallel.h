@@ -1,4 +1,4 @@
-// Parallel loops.
+// This file declares parallel loops.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,13 @@
 
 namespace duet {
 
-/// The number of threads that `threads` = 0 («all») stands for here: the processors this process may use.
+/// Returns the number of logical processors that this process may use, at least 1. Where a thread count is 0 ("all"),
+/// it stands for this number.
 int available_threads();
 
-/// Calls body(i) once for each i in [0, count), on `threads` threads (0: all), in no fixed order. Returns when all
-/// calls have. The first exception thrown by a body is thrown again here, after the loop has stopped. Bodies that
-/// write results write each to its own cache lines, or scaling is lost.
+/// Calls body(i) once for each i in [0, count), on `threads` threads (0: all), in no fixed order. Returns after all
+/// calls have returned. If a body throws, the loop stops early and the first exception is rethrown. Different bodies
+/// should write to different cache lines, because false sharing prevents scaling.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
 } // namespace duet

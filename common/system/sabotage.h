@@ -1,10 +1,11 @@
-// The guards of the numerics that a test build can take away, one at a time, to prove that `compare stress` would
-// notice: a test that cannot fail is worth nothing. In every other build all this is a constant.
+// This file lists the mutations for mutation testing. A test build can disable one numerical safeguard at a time, to
+// prove that `compare stress` detects the fault. In every other build, sabotaged() is the constant false.
 #pragma once
 
 namespace duet {
 
-/// What each is stands where it is asked for; which test notices, in compare/stress/sabotage.cpp.
+/// Each enumerator names a safeguard that a mutation disables. The call of sabotaged() with this enumerator shows the
+/// faulty code; compare/stress/sabotage.cpp names the test that must detect it.
 enum class Guard {
     kDifferenceOfProducts,
     kFrameSign,
@@ -32,13 +33,13 @@ enum class Guard {
     kQuadDiagonal,
     kEyeOutside,
     kPlaceDifference,
-    kNone ///< the last
+    kNone ///< no mutation; must be the last enumerator
 };
 
 #if defined(DUET_SABOTAGE)
-/// Set once, before any thread starts.
+/// The program sets the active mutation once, before it starts any thread.
 inline Guard removed_guard = Guard::kNone;
-/// Whether the code at hand is to do without this guard.
+/// Returns whether the calling code must run without the given safeguard.
 inline bool sabotaged(Guard guard) { return guard == removed_guard; }
 inline constexpr bool kSabotageBuild = true;
 #else

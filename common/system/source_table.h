@@ -1,4 +1,5 @@
-// Tables that are computed when the project is built, written as C++ source: what the programs that do so share.
+// Some tables are computed when the project is built, by programs that write them as C++ source. This file holds the
+// functions that these programs share.
 #pragma once
 
 #include <cstdio>
@@ -9,7 +10,8 @@
 
 namespace duet {
 
-/// "{1.000000000e+00f, …},": nine digits bring back every float.
+/// Writes the numbers as one braced list of float literals, such as "{1.000000000e+00f, },". Nine decimal places
+/// identify every float exactly.
 inline void write_numbers(std::ostream& out, std::span<const float> numbers) {
     out << "{";
     for (const float number : numbers) {
@@ -20,7 +22,8 @@ inline void write_numbers(std::ostream& out, std::span<const float> numbers) {
     out << "},\n";
 }
 
-/// The main function of such a program, whose only argument is the file to write; write(out) writes it. The exit code.
+/// Implements main() of a table generator, whose only argument is the path of the output file; write(out) writes the
+/// contents. Returns the exit code: 0 on success, 1 if writing fails, 2 for wrong arguments.
 template <typename Write> int write_source(int count, char** arguments, const char* program, const Write& write) {
     if (count != 2) {
         std::cerr << "usage: " << program << " OUT.cpp\n";

@@ -1,4 +1,4 @@
-// Wall-clock time.
+// This file defines a stopwatch for wall-clock time.
 #pragma once
 
 #include <chrono>
@@ -7,10 +7,10 @@ namespace duet {
 
 class Stopwatch {
 public:
-    /// Seconds since construction or the last restart.
+    /// Returns the seconds since construction or the last call of restart() or lap().
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     void restart() { start_ = Clock::now(); }
-    /// Seconds since the last lap (or construction), and starts the next.
+    /// Returns the same as seconds() and restarts the stopwatch.
     double lap() {
         const double s = seconds();
         restart();

@@ -6,7 +6,8 @@ namespace duet {
 
 namespace {
 
-// Whether the cell of a coordinate (in cells) has an odd number. Exact: beyond 2^53 all numbers are even.
+// Returns whether the cell of a coordinate, given in units of cells, has an odd index. The result is exact: beyond
+// 2^53 all doubles are even.
 bool is_odd(double x) {
     const double cell = std::floor(x);
     return cell - 2 * std::floor(cell / 2) == 1;
@@ -20,9 +21,9 @@ Rgb evaluate(const CheckerTexture& texture, const SurfacePoint& point) {
         const bool odd = is_odd(scale * point.uv.x) != is_odd(scale * point.uv.y);
         return odd ? texture.odd : texture.even;
     }
-    // Faces often lie on the cells' borders, a floor at y = 0 above all, where the rounding of p would choose the
-    // colour: the cells are moved by 1/4096 of their size, so that such a face is wholly within those on its upper
-    // side.
+    // Faces often lie on the borders of cells, for example a floor at y = 0. Rounding of p would then select the
+    // color. The cells are therefore shifted by 1/4096 of their size, so that such a face lies wholly within the
+    // cells on its upper side.
     constexpr double kShift = 1.0 / 4096;
     const Vec3d p = Vec3d(point.p_object) * scale + Vec3d(kShift, kShift, kShift);
     const bool odd = (is_odd(p.x) != is_odd(p.y)) != is_odd(p.z);

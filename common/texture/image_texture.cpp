@@ -15,17 +15,19 @@ Vec2 size_of(const ImageRgb& image) { return {static_cast<float>(image.width()),
 Rgb bilinear(const ImageRgb& image, float s, float t) {
     const Vec2 size = size_of(image);
     const TexelPair<float> x(s, size.x), y(t, size.y);
-    // Rows are stored from the top, v rises from the bottom.
-    const auto texel = [&](float i, float j) { return image(static_cast<int>(i), image.height() - 1 - static_cast<int>(j)); };
-    return bilinear(texel(x.first, y.first), texel(x.second, y.first), texel(x.first, y.second), texel(x.second, y.second),
-                    x.weight, y.weight);
+    // Rows are stored from the top, but v increases from the bottom.
+    const auto texel = [&](float i, float j) {
+        return image(static_cast<int>(i), image.height() - 1 - static_cast<int>(j));
+    };
+    return bilinear(texel(x.first, y.first), texel(x.second, y.first), texel(x.first, y.second),
+                    texel(x.second, y.second), x.weight, y.weight);
 }
 
 } // namespace
 
 Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& smaller,
              const SurfacePoint& point) {
-    // Floats, as the coordinates are: their last place is a place's error, too.
+    // Floats suffice: the coordinates are floats too, and their rounding error already is an error of position.
     const float s = fraction(point.uv.x * texture.scale.x), t = fraction(point.uv.y * texture.scale.y);
     if (texture.filter == TextureFilter::kNearest)
         return image(nearest(s, image.width()), image.height() - 1 - nearest(t, image.height()));

@@ -7,15 +7,16 @@ namespace duet {
 
 namespace {
 
-// The lattice coordinate modulo 2^32: exact in double, and no conversion overflows however far away p is (0 for NaN).
+// Returns the lattice coordinate modulo 2^32. It is exact in double, and no conversion overflows, however large p is.
+// The result is 0 for NaN.
 std::uint32_t lattice_index(double floor_of_p) {
     constexpr double kPeriod = 0x1p32;
     const double index = floor_of_p - kPeriod * std::floor(floor_of_p / kPeriod);
     return index >= 0 && index < kPeriod ? static_cast<std::uint32_t>(index) : 0u;
 }
 
-// One round of mixing a word into a hash: a bijection of the hash for each word. Multiplier and shifts are those of the
-// 64-bit finalizer of Stafford 2011, «Better Bit Mixing», variant 13.
+// Mixes a word into a hash in one round. For each word the round is a bijection of the hash. Multipliers and shifts
+// are those of Stafford 2011, "Better Bit Mixing", variant 13, a 64-bit finalizer.
 std::uint64_t mix(std::uint64_t hash, std::uint32_t word) {
     hash = (hash ^ word) * 0xbf58476d1ce4e5b9ull;
     hash ^= hash >> 27;
@@ -23,7 +24,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint32_t word) {
     return hash ^ hash >> 31;
 }
 
-// The component of d along one of the twelve directions to the middles of a cube's edges.
+// Returns the component of d along one of the twelve directions from a cube's center to the midpoints of its edges.
 double along_gradient(std::uint64_t hash, Vec3d d) {
     const auto edge = static_cast<unsigned>((hash >> 32) * 12 >> 32);
     const double a = edge < 8 ? d.x : d.y, b = edge < 4 ? d.y : d.z;
@@ -49,13 +50,15 @@ double gradient_noise(Vec3d p, std::uint32_t seed) {
     }
     const double u = fade(d.x), v = fade(d.y), w = fade(d.z);
     const auto along_z = [&](std::size_t i) { return lerp(value[i], value[i + 1], w); };
-    // The largest value: by maximising the sum of each corner's weight times its largest possible component.
+    // This is the largest value of the noise, found by maximizing the sum of each corner's weight times its largest
+    // possible component.
     constexpr double kLargest = 1.0363538112118;
     return lerp(lerp(along_z(0), along_z(2), v), lerp(along_z(4), along_z(6), v), u) / kLargest;
 }
 
 double fractal_noise(Vec3d p, int octaves) {
-    // Fractions of the golden ratio's powers: no two octaves' lattices meet within reach.
+    // The components are fractional parts of powers of the golden ratio, so that the lattices of two octaves do not
+    // coincide within any practical range.
     constexpr Vec3d kShift{0.618033988749895, 0.381966011250105, 0.236067977499790};
     double sum = 0, amplitude = 1, frequency = 1;
     for (int i = 0; i < octaves; ++i) {

@@ -8,9 +8,9 @@ namespace duet {
 Rgb evaluate(const NoiseTexture& texture, const SurfacePoint& point) {
     const Vec3d p = Vec3d(point.p_object) * static_cast<double>(texture.scale);
     const double noise = fractal_noise(p, texture.octaves);
-    // Marble: veins across z, bent by turbulence (Shirley, Black and Hollasch, Ray Tracing: The Next Week, §5.7), whose
-    // absolute value is of the sum, as there. Else the sum itself: it leaves [−1, 1] less than once in 1,000 points,
-    // and is clamped there.
+    // Marble has veins across z that are distorted by turbulence (Shirley, Black and Hollasch, Ray Tracing: The Next
+    // Week, §5.7). As there, the absolute value is taken of the sum. Without marble the sum itself is used and
+    // clamped: it leaves [−1, 1] in fewer than one of 1,000 points.
     const double wave = texture.marble ? std::sin(p.z + 10 * std::abs(noise)) : clamp(noise, -1.0, 1.0);
     return lerp(texture.low, texture.high, static_cast<float>((1 + wave) / 2));
 }

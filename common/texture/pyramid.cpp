@@ -6,7 +6,8 @@ namespace duet {
 
 namespace {
 
-/// The pixels of a row of `from` pixels that the i-th of `to` covers, and by how much of each: 2 or 3, or 1.
+/// A Cover lists the 1 to 3 pixels in a row of `from` pixels that the i-th pixel of a row of `to` covers, with the
+/// weight of each.
 struct Cover {
     int first = 0, count = 0;
     float weight[3] = {};

@@ -1,4 +1,4 @@
-// An image in ever smaller sizes, so that a look-up may average as much of it as a pixel sees.
+// This file builds mip pyramids, so that a texture lookup can average the part of an image that a pixel covers.
 #pragma once
 
 #include "common/image/image.h"
@@ -7,13 +7,15 @@
 
 namespace duet {
 
-/// The image at half its size, rounded down, but at least 1 pixel a side: each pixel is the mean over its area, exact for
-/// any size (where a side is odd a pixel takes in parts of its neighbours': Guthe and Heckbert 2005, «Non-Power-of-Two
-/// Mipmapping»). The mean of all pixels stays. In linear light, as images are.
+/// Returns the image at half its size, rounded down, but at least 1 pixel on each side. Each pixel is the exact mean
+/// over its area for any size: where a side is odd, a pixel includes fractions of its neighbors (Guthe and Heckbert
+/// 2005, "Non-Power-of-Two Mipmapping"). The mean of all pixels is preserved. Values are averaged in linear light, as
+/// images store it.
 ImageRgb halved(const ImageRgb& image);
 
-/// The image halved, halved again and so on, to a single pixel (Williams 1983, «Pyramidal Parametrics»); none of an image
-/// that is one already. Together a third of the image's size.
+/// Returns the mip levels below the image, each half the size of the one above, down to a single pixel (Williams
+/// 1983, "Pyramidal Parametrics"). The result is empty for an image of one pixel. Together the levels take a third of
+/// the image's size.
 std::vector<ImageRgb> smaller_versions(const ImageRgb& image);
 
 } // namespace duet

@@ -1,4 +1,4 @@
-// Where in an image a place in its period falls; for one place or a batch.
+// This file maps texture coordinates to texels and weights, for one coordinate or a batch of them.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -8,35 +8,39 @@
 
 namespace duet {
 
-/// The place of a coordinate within its period, in [0, 1); 0 for what has none (infinity, NaN). The difference is exact
-/// but for negative coordinates so small that it would round to 1.
+/// Returns the fractional part of a coordinate, in [0, 1), which wraps it into one period. The result is 0 for
+/// infinity and NaN. The subtraction is exact, except for negative coordinates so small that the result would round
+/// to 1.
 template <typename T> T fraction(T t) {
     using std::floor;
     const T place = t - floor(t);
     return select(place >= T(0), min(place, T(kOneMinusEpsilon)), T(0));
 }
 
-/// The two texels of `count` along a side whose centres enclose a place in [0, 1), as whole numbers, and the second one's
-/// weight: 0 exactly at the first one's centre.
+/// A TexelPair holds the two texels along an axis of `count` texels whose centers enclose a coordinate in [0, 1).
+/// Indices are stored as floating-point integers. `weight` is that of the second texel, and exactly 0 at the center
+/// of the first.
 template <typename T> struct TexelPair {
     T first, second, weight;
 
     TexelPair(T place, T count) {
         using std::floor;
-        const T x = place * count - T(0.5), below = floor(x); // in [−1, count − 1]
+        const T x = place * count - T(0.5), below = floor(x); // `below` is in [−1, count − 1]
         first = select(below < T(0), count - T(1), below);
         second = select(below + T(1) < count, below + T(1), T(0));
         weight = x - below;
     }
 };
 
-/// From a to b as t goes from 0 to 1: a itself at 0, and between two that are equal.
+/// Interpolates linearly from a to b as t goes from 0 to 1. The result is exactly a at t = 0, and exact where a
+/// equals b.
 template <typename T> T between(const T& a, const T& b, const T& t) { return fused(t, b - a, a); }
 template <typename T> RgbT<T> between(const RgbT<T>& a, const RgbT<T>& b, const T& t) {
     return {between(a.r, b.r, t), between(a.g, b.g, t), between(a.b, b.b, t)};
 }
 
-/// Texels at (first, first), (second, first), (first, second) and (second, second) along x and y, by the second ones' weights.
+/// Interpolates bilinearly. txy is the texel at (first or second, first or second) along x and y, and x and y are the
+/// weights of the second texels.
 template <typename Color, typename T>
 Color bilinear(const Color& t00, const Color& t10, const Color& t01, const Color& t11, const T& x, const T& y) {
     return between(between(t00, t10, x), between(t01, t11, x), y);

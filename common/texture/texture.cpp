@@ -17,7 +17,8 @@ void build_pyramids(TextureSet& set) {
 Rgb evaluate_texture(const TextureSet& set, const Texture& texture, const SurfacePoint& point) {
     if (const auto* image = std::get_if<ImageTexture>(&texture)) {
         static const std::vector<ImageRgb> kNone;
-        return evaluate(*image, set.images[image->image], set.smaller.empty() ? kNone : set.smaller[image->image], point);
+        return evaluate(*image, set.images[image->image], set.smaller.empty() ? kNone : set.smaller[image->image],
+                        point);
     }
     if (const auto* checker = std::get_if<CheckerTexture>(&texture)) return evaluate(*checker, point);
     return evaluate(std::get<NoiseTexture>(texture), point);

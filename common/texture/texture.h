@@ -1,4 +1,4 @@
-// The closed set of textures, and the slots by which materials refer to them.
+// This file defines the closed set of textures, and the slots by which materials refer to them.
 #pragma once
 
 #include "common/geometry/surface_point.h"
@@ -10,47 +10,51 @@
 
 namespace duet {
 
-/// How a picture is looked up. The first two take it as it is at a point; the others average what a sample stands for
-/// (SurfacePoint::duv_dx, duv_dy): as if it were round, as wide as it is long, or by its true shape.
+/// TextureFilter selects how an image is sampled. The first two filters sample at a point. The others average over
+/// the sample's footprint (SurfacePoint::duv_dx, duv_dy): trilinear as if it were a circle as wide as the footprint
+/// is long, and anisotropic by its true shape.
 enum class TextureFilter { kNearest, kBilinear, kTrilinear, kAnisotropic };
 inline bool uses_footprint(TextureFilter filter) { return filter >= TextureFilter::kTrilinear; }
 
-/// A picture over uv: (0, 0) is the lower left corner; repeats outside [0, 1].
+/// ImageTexture is an image over uv, with (0, 0) at the lower left corner. It repeats outside [0, 1].
 struct ImageTexture {
     std::uint32_t image = 0; ///< index into TextureSet::images
-    Vec2 scale{1, 1};        ///< uv are multiplied by it
+    Vec2 scale{1, 1};        ///< factor of uv
     TextureFilter filter = TextureFilter::kAnisotropic;
 };
-/// Two colours in squares of side 1/scale over uv, or in cubes of side 1/scale over object space.
+/// CheckerTexture has two colors, in squares of side 1/scale over uv or in cubes of side 1/scale over object space.
 struct CheckerTexture {
     Rgb even{0.9f}, odd{0.1f};
     float scale = 1;
     bool solid = false;
 };
-/// Gradient noise summed over octaves, in object space (Perlin 2002), between two colours.
+/// NoiseTexture is gradient noise in object space, summed over octaves (Perlin 2002), and interpolates between two
+/// colors.
 struct NoiseTexture {
     Rgb low{0.0f}, high{1.0f};
-    float scale = 1;     ///< cycles a metre of object space
-    int octaves = 4;     ///< 1 to 16, each of half the amplitude and twice the frequency
+    float scale = 1;     ///< cycles per meter of object space
+    int octaves = 4;     ///< 1 to 16, each with half the amplitude and twice the frequency of the last
     bool marble = false; ///< sin(scale·z + 10·turbulence), as in Ray Tracing: The Next Week §5
 };
 using Texture = std::variant<ImageTexture, CheckerTexture, NoiseTexture>;
 
-/// All textures of a scene, and the images they share, in linear RGB.
+/// TextureSet holds all textures of a scene and the images that they share, in linear RGB.
 struct TextureSet {
     std::vector<Texture> textures;
     std::vector<ImageRgb> images;
-    std::vector<std::vector<ImageRgb>> smaller{}; ///< of each image: smaller_versions(), where a texture filters it
+    /// These are the mip levels of each image, from smaller_versions(). They are empty where no texture filters the
+    /// image.
+    std::vector<std::vector<ImageRgb>> smaller{};
 };
-/// Makes TextureSet::smaller.
+/// Builds TextureSet::smaller.
 void build_pyramids(TextureSet& set);
 
-/// A colour, or a texture times a colour.
+/// An RgbSlot is a color, or a texture times a color.
 struct RgbSlot {
     Rgb value{1.0f};
     std::int32_t texture = -1; ///< index into TextureSet::textures, or −1: value alone
 };
-/// A number, or a texture's red channel times a number.
+/// A ScalarSlot is a number, or a texture's red channel times a number.
 struct ScalarSlot {
     float value = 1;
     std::int32_t texture = -1; ///< index into TextureSet::textures, or −1: value alone
@@ -58,7 +62,7 @@ struct ScalarSlot {
     ScalarSlot(float value_ = 1, std::int32_t texture_ = -1) : value(value_), texture(texture_) {}
     bool constant() const { return texture < 0; }
 };
-/// The colour of a texture at a point. Finite for every finite point.
+/// Returns the color of a texture at a point. It is finite for every finite point.
 Rgb evaluate_texture(const TextureSet& set, const Texture& texture, const SurfacePoint& point);
 
 inline Rgb evaluate(const TextureSet& set, const RgbSlot& slot, const SurfacePoint& point) {

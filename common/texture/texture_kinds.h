@@ -1,11 +1,12 @@
-// One function a kind of texture; texture.h is what callers use.
+// This file declares the evaluation of each kind of texture. Callers use texture.h instead.
 #pragma once
 
 #include "common/texture/texture.h"
 
 namespace duet {
 
-/// `smaller`: of the image, or empty: then it is not filtered.
+/// Returns the texture's color at a point. `smaller` holds the image's mip levels. Where it is empty, the image is
+/// sampled bilinearly, or at the nearest texel if the filter says so.
 Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& smaller,
              const SurfacePoint& point);
 Rgb evaluate(const CheckerTexture& texture, const SurfacePoint& point);

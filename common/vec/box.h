@@ -1,11 +1,12 @@
-// Axis-aligned bounding boxes.
+// This file defines axis-aligned bounding boxes.
 #pragma once
 
 #include "common/vec/vec.h"
 
 namespace duet {
 
-/// Empty as constructed: low = +infinity, high = −infinity.
+/// An axis-aligned box holds all points p with low <= p <= high on each axis. A default-constructed box is empty: its
+/// low corner is +infinity and its high corner is −infinity.
 template <Arithmetic T> struct Box3T {
     Vec3T<T> low{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(),
                  std::numeric_limits<T>::infinity()};
@@ -14,7 +15,7 @@ template <Arithmetic T> struct Box3T {
     constexpr bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
     constexpr Vec3T<T> diagonal() const { return high - low; }
     constexpr Vec3T<T> center() const { return low * T(0.5) + high * T(0.5); }
-    /// Half the surface area; 0 for an empty box.
+    /// Returns half the surface area, which is 0 for an empty box.
     constexpr T half_area() const {
         const Vec3T<T> d = diagonal();
         return empty() ? T(0) : d.x * d.y + d.y * d.z + d.z * d.x;
@@ -34,6 +35,7 @@ template <Arithmetic T> struct Box3T {
 using Box3 = Box3T<float>;
 using Box3d = Box3T<double>;
 
+/// Returns the index (0, 1 or 2) of the largest component of d. Of equal components, the lowest index wins.
 template <Arithmetic T> constexpr std::size_t longest_axis(Vec3T<T> d) {
     return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
 }

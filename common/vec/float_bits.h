@@ -1,4 +1,5 @@
-// Powers of two out of the parts of floats, for one number or a batch.
+// These functions compute whole logarithms and powers of two from the exponent bits of floats. T is float or a SIMD
+// batch of floats.
 #pragma once
 
 #include "common/vec/simd.h"
@@ -16,24 +17,25 @@ inline float float_of(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 inline Whole bits_of(const xsimd::batch<float>& x) { return xsimd::bitwise_cast<Whole>(x); }
 inline xsimd::batch<float> float_of(const Whole& bits) { return xsimd::bitwise_cast<xsimd::batch<float>>(bits); }
 
-/// Whole numbers from 0 to 2^23 added to it are its mantissa.
+/// The sum of kShift and an integer in [0, 2^23) has that integer as its mantissa bits. kBias is the bias of a float's
+/// exponent.
 inline constexpr float kShift = 0x1p23f, kBias = 127;
 
 } // namespace detail
 
-/// ⌊log₂ x⌋ of a positive, normal number; 128 of infinity.
+/// Returns ⌊log₂ x⌋ for a positive, normal x, and 128 for infinity. Other inputs give a meaningless result.
 template <typename T> T whole_log2(T x) {
     using namespace detail;
     return float_of((bits_of(x) >> 23) | bits_of(T(kShift))) - T(kShift + kBias);
 }
 
-/// 2ⁿ, n a whole number from −126 to 127.
+/// Returns 2ⁿ for an integer n in [−126, 127].
 template <typename T> T power_of_two(T n) {
     using namespace detail;
     return float_of(bits_of(n + T(kShift + kBias)) << 23);
 }
 
-/// Whether all or none of a batch's lanes are true; the same of a bool.
+/// Returns whether no lane of the mask is true. A bool counts as a mask of one lane.
 inline bool none_of_lanes(bool lane) { return !lane; }
 inline bool none_of_lanes(const xsimd::batch_bool<float>& lanes) { return !xsimd::any(lanes); }
 

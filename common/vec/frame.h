@@ -1,4 +1,4 @@
-// An orthonormal frame around a unit normal: the local space in which materials work (n = +z).
+// This file defines orthonormal frames around a unit normal. BSDFs are evaluated in such a local frame, with n = +z.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -14,8 +14,8 @@ template <typename T> struct FrameT {
 };
 using Frame = FrameT<float>;
 
-/// A right-handed frame about the unit vector n, without a branch or a singularity, also at n = −z
-/// (Duff et al. 2017, «Building an Orthonormal Basis, Revisited», listing 3).
+/// Returns a right-handed orthonormal frame around the unit vector n. The method has no branch and no singularity, not
+/// even at n = −z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited", listing 3).
 template <typename T> FrameT<T> frame_from_normal(Vec3T<T> n) {
     const T sign = select(n.z < T(0), T(sabotaged(Guard::kFrameSign) ? 1 : -1), T(1));
     const T a = T(-1) / (sign + n.z);

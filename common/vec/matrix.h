@@ -1,4 +1,4 @@
-// 4 × 4 matrices acting on column vectors, and the affine transforms built from them.
+// This file defines 4 × 4 matrices that act on column vectors, and the affine transforms built from them.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -7,7 +7,7 @@
 
 namespace duet {
 
-/// Row-major storage: m[row][column]. Points are columns: p' = M p.
+/// The matrix is stored row by row as m[row][column]. Points are column vectors: p' = M p. The default is the identity.
 template <typename T> struct Mat4T {
     std::array<std::array<T, 4>, 4> m{
         {{T(1), T(0), T(0), T(0)}, {T(0), T(1), T(0), T(0)}, {T(0), T(0), T(1), T(0)}, {T(0), T(0), T(0), T(1)}}};
@@ -48,41 +48,44 @@ template <typename T> constexpr Mat4T<T> transpose(const Mat4T<T>& a) {
     return result;
 }
 
-/// An affine map applied to a point: M (p, 1). The last row is taken to be (0, 0, 0, 1).
+/// Applies an affine map to a point and returns the first three components of M (p, 1). The last row of M is assumed to
+/// be (0, 0, 0, 1).
 template <typename T> constexpr Vec3T<T> transform_point(const Mat4T<T>& m, Vec3T<T> p) {
     const auto row = [&](std::size_t r) { return m[r][0] * p.x + m[r][1] * p.y + m[r][2] * p.z + m[r][3]; };
     return {row(0), row(1), row(2)};
 }
-/// An affine map applied to a direction: the translation has no effect.
+/// Applies an affine map to a direction: the translation has no effect.
 template <typename T> constexpr Vec3T<T> transform_vector(const Mat4T<T>& m, Vec3T<T> v) {
     const auto row = [&](std::size_t r) { return m[r][0] * v.x + m[r][1] * v.y + m[r][2] * v.z; };
     return {row(0), row(1), row(2)};
 }
-/// An affine map undone at a point, given the map's inverse: M⁻¹ p, by way of p − M 0. Near the place that the map
-/// carries things to that difference loses nothing; the inverse's own translation, made of numbers as large as the
-/// distance from the world's origin, would be centimetres off at 100 km in float.
+/// Applies the inverse of the affine map m to a point and returns M⁻¹ p. The function computes the difference p −
+/// M 0 first, which loses no precision near the mapped origin M 0. The translation column of the inverse is not used:
+/// its terms are as large as the distance from the world's origin, and in float its error reaches centimeters at 100
+/// km.
 template <typename T>
 constexpr Vec3T<T> transform_point_back(const Mat4T<T>& m, const Mat4T<T>& inverse, Vec3T<T> p) {
     return transform_vector(inverse, p - Vec3T<T>(m[0][3], m[1][3], m[2][3]));
 }
-/// A normal under an affine map, given the map's inverse: (M⁻¹)ᵀ n. Not normalized.
+/// Applies an affine map, given by its inverse, to a normal and returns (M⁻¹)ᵀ n. The result is not normalized.
 template <typename T> constexpr Vec3T<T> transform_normal(const Mat4T<T>& inverse, Vec3T<T> n) {
     const auto column = [&](std::size_t c) { return inverse[0][c] * n.x + inverse[1][c] * n.y + inverse[2][c] * n.z; };
     return {column(0), column(1), column(2)};
 }
 
-/// Determinant of the upper-left 3 × 3 block: negative for a map that mirrors.
+/// Returns the determinant of the upper-left 3 × 3 block. It is negative for a map that contains a reflection.
 template <typename T> constexpr T determinant3(const Mat4T<T>& m) {
     return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/// Inverse of an affine map by cofactors. A singular map gives infinities or NaN: the scene loader refuses it first.
+/// Returns the inverse of an affine map, computed by cofactors. A singular map gives infinities or NaN; the scene
+/// loader rejects such maps.
 template <typename T> constexpr Mat4T<T> inverse_affine(const Mat4T<T>& a) {
     const T inv_det = T(1) / determinant3(a);
     Mat4T<T> r;
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) { // cofactor (j, i): rows and columns taken cyclically carry the sign
+        for (std::size_t j = 0; j < 3; ++j) { // cofactor (j, i); cyclic indices already include its sign
             const std::size_t r1 = (j + 1) % 3, r2 = (j + 2) % 3, c1 = (i + 1) % 3, c2 = (i + 2) % 3;
             r[i][j] = (a[r1][c1] * a[r2][c2] - a[r1][c2] * a[r2][c1]) * inv_det;
         }
@@ -104,7 +107,8 @@ template <typename T> constexpr Mat4T<T> scaling(Vec3T<T> s) {
     r[2][2] = s.z;
     return r;
 }
-/// Rotation by an angle in radians about a unit axis, counter-clockwise seen from its tip (Rodrigues' formula).
+/// Returns the rotation by an angle in radians about a unit axis (Rodrigues' formula). A positive angle turns
+/// counter-clockwise for a viewer toward whom the axis points.
 template <Arithmetic T> Mat4T<T> rotation(Vec3T<T> axis, T angle) {
     const T c = std::cos(angle), s = std::sin(angle), k = T(1) - c;
     Mat4T<T> r;
@@ -114,7 +118,8 @@ template <Arithmetic T> Mat4T<T> rotation(Vec3T<T> axis, T angle) {
     return r;
 }
 
-/// Entry-wise interpolation: how a moving object's transform changes over the shutter interval.
+/// Interpolates two matrices entry by entry, with t = 0 at a and t = 1 at b. Moving objects interpolate their
+/// transforms this way over the shutter interval.
 template <typename T> constexpr Mat4T<T> lerp(const Mat4T<T>& a, const Mat4T<T>& b, T t) {
     Mat4T<T> r;
     for (std::size_t i = 0; i < 4; ++i)

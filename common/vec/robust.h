@@ -1,4 +1,5 @@
-// Robust floating-point arithmetic: products without cancellation, error bounds, neighbours.
+// These functions support robust floating-point arithmetic: products without cancellation, rounding-error bounds, and
+// adjacent floats.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -11,8 +12,9 @@
 
 namespace duet {
 
-/// a·b − c·d with an error below 1.5 ulp of the result, however close the products are (Kahan's algorithm; proof:
-/// Jeannerod, Louvet and Muller 2013). Not antisymmetric in the exchange of the two products.
+/// Returns a·b − c·d with an error below 1.5 ulp of the result, however close the products are (Kahan's algorithm;
+/// proof: Jeannerod, Louvet and Muller 2013). Exchanging the two products does not always give exactly the negated
+/// result.
 inline float difference_of_products(float a, float b, float c, float d) {
     if (sabotaged(Guard::kDifferenceOfProducts)) return a * b - c * d;
     const float cd = c * d;
@@ -27,24 +29,28 @@ inline double difference_of_products(double a, double b, double c, double d) {
     return difference + error;
 }
 
-/// Half the distance from 1 to the next float: the bound on the relative error of one rounded operation.
+/// The unit roundoff u is half the distance from 1 to the next larger number of type T. It bounds the relative error of
+/// one rounded operation.
 template <typename T> inline constexpr T kRoundoff = std::numeric_limits<T>::epsilon() / 2;
 
-/// γₙ = n·u / (1 − n·u): bounds the relative error of n rounded operations in sequence (Higham 2002, §3.1).
+/// Returns γₙ = n·u / (1 − n·u), where u is the unit roundoff. γₙ bounds the relative error of n rounded
+/// operations in sequence (Higham 2002, §3.1).
 template <typename T = float> constexpr T gamma_bound(int n) {
     return (static_cast<T>(n) * kRoundoff<T>) / (T(1) - static_cast<T>(n) * kRoundoff<T>);
 }
 
-/// The next float above x; infinity stays. NaN stays NaN. (std::nextafter's result, without its call.)
+/// Returns the next float above x. Infinity and NaN are returned unchanged. The result is that of std::nextafter, but
+/// the function can be inlined.
 inline float next_up(float x) {
     if (!(x < std::numeric_limits<float>::infinity())) return x;
-    const auto bits = std::bit_cast<std::uint32_t>(x == 0 ? 0.0f : x); // of −0, too, the least positive number is next
+    const auto bits = std::bit_cast<std::uint32_t>(x == 0 ? 0.0f : x); // −0 becomes +0
     return std::bit_cast<float>(x >= 0 ? bits + 1 : bits - 1);
 }
-/// The next float below x; −infinity stays. NaN stays NaN.
+/// Returns the next float below x. −infinity and NaN are returned unchanged.
 inline float next_down(float x) { return -next_up(-x); }
 
-/// The next float of each component on the side that `by` points to: what covers the rounding of a sum with `by`.
+/// Moves each component of `sum` by one float in the direction of the same component of `by`; where that is 0, the
+/// component stays. The step makes up for the rounding of the addition p + by that produced `sum`.
 inline Vec3 rounded_away(Vec3 sum, Vec3 by) {
     const auto one = [](float x, float d) { return d > 0 ? next_up(x) : d < 0 ? next_down(x) : x; };
     return {one(sum.x, by.x), one(sum.y, by.y), one(sum.z, by.z)};

@@ -1,5 +1,6 @@
-// Scalar helpers. `select`, `min`, `max` and `sqrt` are found by name lookup from the templates of the project, so the
-// same source evaluates a float, a double or a SIMD batch (whose overloads come with its own type).
+// This file defines scalar helpers. Templates call `select`, `min`, `max` and `sqrt` unqualified: name lookup finds the
+// functions below for float and double, and xsimd's overloads for SIMD batches. The same source thus works for all
+// three.
 #pragma once
 
 #include <cmath>
@@ -12,13 +13,13 @@ inline constexpr double kPiDouble = 3.14159265358979323846;
 inline constexpr float kPi = static_cast<float>(kPiDouble);
 inline constexpr float kInvPi = static_cast<float>(1.0 / kPiDouble);
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// The largest float below 1: what a sample in [0, 1) may reach.
+/// The largest float below 1 is the upper bound of samples in [0, 1).
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 
 template <typename T>
 concept Arithmetic = std::is_arithmetic_v<T>;
 
-/// a where the condition holds, else b. For batches both sides are evaluated.
+/// Returns a where the condition holds, else b. Both arguments are always evaluated.
 template <Arithmetic T> constexpr T select(bool condition, T a, T b) { return condition ? a : b; }
 template <Arithmetic T> constexpr T min(T a, T b) { return b < a ? b : a; }
 template <Arithmetic T> constexpr T max(T a, T b) { return a < b ? b : a; }
@@ -27,9 +28,9 @@ template <Arithmetic T> inline T abs(T x) { return std::abs(x); }
 
 template <typename T> constexpr T sqr(T x) { return x * x; }
 template <typename T> constexpr T clamp(T x, T low, T high) { return min(max(x, low), high); }
-/// Linear interpolation, exact at both ends.
+/// Interpolates linearly from a at t = 0 to b at t = 1. The result is exact at both ends.
 template <typename T> constexpr T lerp(T a, T b, T t) { return (T(1) - t) * a + t * b; }
-/// The square root of max(x, 0): for values that rounding may have pushed below zero.
+/// Returns the square root of max(x, 0). Use it for values that rounding may have made slightly negative.
 template <typename T> T safe_sqrt(T x) { return sqrt(max(x, T(0))); }
 
 constexpr double radians(double degrees) { return degrees * (kPiDouble / 180.0); }

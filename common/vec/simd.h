@@ -1,5 +1,5 @@
-// SIMD batches of floats, by xsimd: its types under our names, and what it lacks. Their min, max, select, sqrt and abs
-// are found by name lookup from the project's templates, as scalar.h's are for numbers.
+// This file names xsimd's SIMD batch types and adds operations that xsimd lacks. The project's templates find xsimd's
+// min, max, select, sqrt and abs by argument-dependent lookup, and those of scalar.h for single numbers.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// GCC 12 takes the deliberately undefined operands of its own AVX-512 functions for a mistake.
+// GCC 12 warns about the deliberately undefined operands in its own AVX-512 intrinsics.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -21,28 +21,28 @@
 
 namespace duet {
 
-/// A batch of N floats: 4 on any x86-64, 8 with AVX.
+/// A batch holds N floats. N may be 4 on any x86-64 CPU, 8 with AVX, and 16 with AVX-512.
 template <std::size_t N> using FloatBatch = xsimd::make_sized_batch_t<float, N>;
 
-/// The number of lanes in which floats are best worked on here: wider ones gain little on a hierarchy's boxes.
+/// The default number of float lanes is at most 8, because wider batches gain little in tests against BVH boxes.
 #if XSIMD_WITH_AVX
 inline constexpr std::size_t kSimdLanes = 8;
 #else
 inline constexpr std::size_t kSimdLanes = 4;
 #endif
 
-/// The widest batches of floats, for work that fills them.
+/// The largest number of float lanes of the target CPU pays off only for work that fills all lanes.
 #if XSIMD_WITH_AVX512F
 inline constexpr std::size_t kMaxSimdLanes = 16;
 #else
 inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
 #endif
 
-/// A batch of as many doubles as the machine works on at once.
+/// A batch of doubles fills the widest SIMD register of the target CPU.
 using DoubleBatch = xsimd::batch<double>;
 inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double);
 
-/// So many floats, as doubles.
+/// Loads kDoubleLanes floats and converts them to doubles. The address needs no alignment.
 inline DoubleBatch load_doubles(const float* from) {
 #if XSIMD_WITH_AVX512F
     return _mm512_cvtps_pd(_mm256_loadu_ps(from));
@@ -52,7 +52,7 @@ inline DoubleBatch load_doubles(const float* from) {
     return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
 #endif
 }
-/// Stores them rounded to floats.
+/// Rounds the doubles to floats and stores kDoubleLanes of them. The address needs no alignment.
 inline void store_floats(DoubleBatch batch, float* to) {
 #if XSIMD_WITH_AVX512F
     _mm256_storeu_ps(to, _mm512_cvtpd_ps(batch));
@@ -63,7 +63,8 @@ inline void store_floats(DoubleBatch batch, float* to) {
 #endif
 }
 
-/// a·b + c, rounded once where the machine can (xsimd 8 has no such instruction of 16 lanes, nor of 4).
+/// Returns a·b + c, rounded once where the target CPU has fused multiply-add. The intrinsics are needed because
+/// version 8 of xsimd does not use this instruction for 16 or 4 lanes.
 template <typename Arch>
 xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
@@ -75,9 +76,10 @@ xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float,
     return xsimd::fma(a, b, c);
 }
 
-/// c − a·b, likewise.
+/// Returns c − a·b, rounded once where the target CPU has fused multiply-add.
 template <typename Arch>
-xsimd::batch<float, Arch> fused_minus(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
+xsimd::batch<float, Arch> fused_minus(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
+                                      xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fnmadd_ps(a, b, c);
 #endif
@@ -91,7 +93,7 @@ inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
     return xsimd::fma(a, b, c);
 #endif
 }
-/// The same of one number.
+/// Returns a·b + c for single floats, rounded once where the target CPU has fused multiply-add.
 inline float fused(float a, float b, float c) {
 #if defined(__FMA__)
     return std::fma(a, b, c);
@@ -100,7 +102,7 @@ inline float fused(float a, float b, float c) {
 #endif
 }
 
-/// A bit for each lane that holds true, lane 0 the lowest.
+/// Returns a bit mask of the lanes that are true. Bit i belongs to lane i.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) != 32 && sizeof(lanes) != 16) return static_cast<unsigned>(lanes.data);
@@ -121,7 +123,7 @@ inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
 #endif
 }
 
-/// The one number in the lower half of the lanes, the other in the upper half.
+/// Returns a batch with `low` in the lower half of the lanes and `high` in the upper half.
 template <std::size_t N> FloatBatch<N> halves(float low, float high) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16) return _mm512_mask_broadcastss_ps(_mm512_set1_ps(low), 0xFF00, _mm_set_ss(high));
@@ -130,8 +132,9 @@ template <std::size_t N> FloatBatch<N> halves(float low, float high) {
     for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
     return FloatBatch<N>::load_aligned(lanes.data());
 }
-/// The same of whole numbers.
-template <std::size_t N> xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
+/// Returns a batch of integers with `low` in the lower half of the lanes and `high` in the upper half.
+template <std::size_t N>
+xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
         return _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(low)), 0xFF00, static_cast<int>(high));
@@ -140,7 +143,7 @@ template <std::size_t N> xsimd::make_sized_batch_t<std::uint32_t, N> whole_halve
     for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
     return xsimd::make_sized_batch_t<std::uint32_t, N>::load_aligned(lanes.data());
 }
-/// As many floats as fill the lanes once, or half as many twice.
+/// Loads M floats into N lanes. Where M = N / 2, both halves of the batch receive the same floats.
 template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<float, M>& lanes) {
     static_assert(M == N || 2 * M == N);
     if constexpr (M == N) return FloatBatch<N>::load_aligned(lanes.data());
@@ -149,7 +152,7 @@ template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<
 #endif
 }
 
-/// A batch of floats to pick from.
+/// Stores a batch of floats in memory, so that single lanes can be read.
 template <typename Batch> struct Lanes {
     alignas(sizeof(Batch)) std::array<float, sizeof(Batch) / sizeof(float)> values;
 
@@ -157,7 +160,8 @@ template <typename Batch> struct Lanes {
     float operator[](std::size_t lane) const { return values[lane]; }
 };
 
-/// Stores the lanes of the batch whose bits are set, and leaves the others alone.
+/// Stores each lane of the batch whose bit is set in `lanes`: lane i goes to to[i]. The other floats at `to` stay
+/// unchanged.
 template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsigned lanes, float* to) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(batch) == 64) return _mm512_mask_store_ps(to, static_cast<__mmask16>(lanes), batch);
@@ -166,7 +170,7 @@ template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsig
     for (; lanes != 0; lanes &= lanes - 1)
         to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
 }
-/// The same of one value.
+/// Stores `value` in to[i] for each bit i that is set in `lanes`. The other elements stay unchanged.
 template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, std::array<std::uint32_t, N>& to) {
 #if XSIMD_WITH_AVX512F
     if constexpr (N == 16)
@@ -178,10 +182,10 @@ template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, s
 
 namespace detail {
 
-/// Of each run of four lanes: a0 b0 a1 b1, and a2 b2 a3 b3.
+/// In each group of four lanes, zip_low returns a0 b0 a1 b1, and zip_high returns a2 b2 a3 b3.
 inline FloatBatch<4> zip_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unpacklo_ps(a, b); }
 inline FloatBatch<4> zip_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unpackhi_ps(a, b); }
-/// a0 a1 b0 b1, and a2 a3 b2 b3.
+/// In each group of four lanes, pair_low returns a0 a1 b0 b1, and pair_high returns a2 a3 b2 b3.
 inline FloatBatch<4> pair_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movelh_ps(a, b); }
 inline FloatBatch<4> pair_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movehl_ps(b, a); }
 #if XSIMD_WITH_AVX
@@ -197,7 +201,7 @@ inline FloatBatch<16> pair_low(FloatBatch<16> a, FloatBatch<16> b) { return _mm5
 inline FloatBatch<16> pair_high(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_shuffle_ps(a, b, 0xEE); }
 #endif
 
-/// Four numbers at each of N / 4 places, one after the other.
+/// Loads four floats from each of the N / 4 addresses at(0), at(1), …: group i of four lanes receives those at at(i).
 template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
     const auto four = [&](std::size_t i) { return _mm_loadu_ps(at(i)); };
 #if XSIMD_WITH_AVX512F
@@ -211,7 +215,7 @@ template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
 #endif
     if constexpr (N == 4) return four(0);
 }
-/// The i-th run of four lanes.
+/// Returns the i-th group of four lanes.
 template <int i> FloatBatch<4> four(FloatBatch<4> lanes) { return lanes; }
 #if XSIMD_WITH_AVX
 template <int i> FloatBatch<4> four(FloatBatch<8> lanes) { return _mm256_extractf128_ps(lanes, i); }
@@ -219,7 +223,7 @@ template <int i> FloatBatch<4> four(FloatBatch<8> lanes) { return _mm256_extract
 #if XSIMD_WITH_AVX512F
 template <int i> FloatBatch<4> four(FloatBatch<16> lanes) { return _mm512_extractf32x4_ps(lanes, i); }
 #endif
-/// The runs of four lanes, each to its place.
+/// Stores each group of four lanes: group i goes to the address at(i).
 template <typename Batch, typename At> void scatter_fours(Batch fours, const At& at) {
     four<0>(fours).store_unaligned(at(0));
     if constexpr (sizeof(Batch) >= 32) four<1>(fours).store_unaligned(at(1));
@@ -229,7 +233,8 @@ template <typename Batch, typename At> void scatter_fours(Batch fours, const At&
     }
 }
 
-/// Rows become columns in each run of four lanes: of four batches, the k-th gets what was the k-th of four in all.
+/// Transposes the 4 × 4 block that each group of four lanes forms across the four batches: lane j of result k is lane
+/// k of input j.
 template <typename Batch> std::array<Batch, 4> transpose_fours(const std::array<Batch, 4>& r) {
     const Batch a = zip_low(r[0], r[1]), b = zip_low(r[2], r[3]), c = zip_high(r[0], r[1]), d = zip_high(r[2], r[3]);
     return {pair_low(a, b), pair_high(a, b), pair_low(c, d), pair_high(c, d)};
@@ -237,20 +242,21 @@ template <typename Batch> std::array<Batch, 4> transpose_fours(const std::array<
 
 } // namespace detail
 
-/// Structure of arrays out of an array of structures: lane i of the k-th batch is the k-th of four numbers at row(i).
+/// Loads an array of structures as a structure of arrays: lane i of batch k is the float at row(i)[k], for k in [0, 4).
 template <std::size_t N, typename Row> std::array<FloatBatch<N>, 4> load_columns(const Row& row) {
     std::array<FloatBatch<N>, 4> rows;
     for (std::size_t k = 0; k < 4; ++k)
         rows[k] = detail::gather_fours<N>([&](std::size_t i) { return row(4 * i + k); });
     return detail::transpose_fours(rows);
 }
-/// And back.
+/// Stores a structure of arrays as an array of structures: lane i of batch k goes to row(i)[k], for k in [0, 4).
 template <std::size_t N, typename Row> void store_columns(const std::array<FloatBatch<N>, 4>& columns, const Row& row) {
     const std::array<FloatBatch<N>, 4> rows = detail::transpose_fours(columns);
     for (std::size_t k = 0; k < 4; ++k) detail::scatter_fours(rows[k], [&](std::size_t i) { return row(4 * i + k); });
 }
 
-/// The least of each batch's lanes, side by side: cheaper than one by one. Of NaN any may come out.
+/// Returns the smallest lane of each of the four batches: lane k of the result belongs to batch k. This costs less than
+/// four calls of lowest(). The result is unspecified for a batch that contains NaN.
 template <typename Batch> FloatBatch<4> lowest_of_each(const std::array<Batch, 4>& batches) {
     const auto [a, b, c, d] = detail::transpose_fours(batches);
     const Batch fours = xsimd::min(xsimd::min(a, b), xsimd::min(c, d));
@@ -261,7 +267,7 @@ template <typename Batch> FloatBatch<4> lowest_of_each(const std::array<Batch, 4
     return result;
 }
 
-/// The least of the lanes; of NaN any may come out.
+/// Returns the smallest lane. The result is unspecified if a lane is NaN.
 template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) == 64) return _mm512_reduce_min_ps(lanes);
@@ -275,7 +281,7 @@ template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
         return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
     }
 }
-/// The greatest of the lanes.
+/// Returns the largest lane. The result is unspecified if a lane is NaN.
 template <typename Arch> float highest(xsimd::batch<float, Arch> lanes) { return -lowest(-lanes); }
 
 } // namespace duet

@@ -1,4 +1,4 @@
-// Vectors of two, three and four components over any number type: float, double, or a SIMD batch.
+// This file defines vectors of two, three and four components. The component type is float, double or a SIMD batch.
 #pragma once
 
 #include "common/vec/scalar.h"
@@ -21,7 +21,7 @@ template <typename T> struct Vec2T {
     }
 };
 
-/// A point, vector or normal; the name of a variable says which.
+/// One type represents points, vectors and normals. The name of a variable says which of them it is.
 template <typename T> struct Vec3T {
     T x{}, y{}, z{};
 
@@ -85,7 +85,7 @@ template <typename T> constexpr Vec4T<T> operator*(Vec4T<T> a, T s) { return {a.
 template <typename T> constexpr Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
-/// The same vector in all lanes of a batch.
+/// Broadcasts a vector of scalars to all lanes of a batch.
 template <typename T, Arithmetic S> constexpr Vec3T<T> spread(Vec3T<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
 template <typename T> constexpr Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
@@ -95,7 +95,7 @@ template <typename T, typename Mask> Vec3T<T> select(Mask condition, Vec3T<T> a,
     return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
 }
 template <typename T> constexpr T max_component(Vec3T<T> a) { return max(max(a.x, a.y), a.z); }
-/// Linear interpolation, exact at both ends.
+/// Interpolates linearly from a at t = 0 to b at t = 1. The result is exact at both ends.
 template <typename T> constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) { return a * (T(1) - t) + b * t; }
 
 // Products and lengths -----------------------------------------------------------------------------------------------
@@ -106,13 +106,15 @@ template <typename T> constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <typename T> constexpr T length_squared(Vec3T<T> a) { return dot(a, a); }
-/// Euclidean length; overflows where the squared length does (beyond 1.8e19 in float).
+/// Returns the Euclidean length. In float it overflows to infinity for lengths beyond 1.8e19, where the squared length
+/// does.
 template <typename T> T length(Vec3T<T> a) { return sqrt(length_squared(a)); }
-/// a / |a|. A zero vector gives NaN: callers test first where one can occur.
+/// Returns a / |a|. A zero vector gives NaN, so callers must test for it where it can occur.
 template <typename T> Vec3T<T> normalize(Vec3T<T> a) { return a / length(a); }
-/// a / |a| for any length whose components are finite: scaled first, so squares neither overflow nor vanish.
+/// Returns a / |a| for any nonzero vector with finite components. The vector is scaled first, so that the squares
+/// neither overflow nor underflow.
 template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a / max_component(abs(a))); }
-/// The mirror image of w about n (unit length), both pointing away from the surface.
+/// Returns w mirrored about the unit normal n. Both w and the result point away from the surface.
 template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
 
 template <Arithmetic T> bool is_finite(Vec3T<T> a) {

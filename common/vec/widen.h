@@ -1,4 +1,5 @@
-// Batches of floats and of doubles, made of each other; where half as many floats as fill a batch are one, too.
+// These functions convert between SIMD batches of floats and of doubles with the same number of lanes. They require
+// AVX, because half as many floats as fill a register must be a batch, too.
 #pragma once
 
 #include "common/vec/simd.h"
@@ -7,7 +8,7 @@ namespace duet {
 
 #if XSIMD_WITH_AVX
 
-/// As many floats as there are lanes of doubles.
+/// A narrow batch has as many float lanes as a DoubleBatch has lanes.
 using NarrowBatch = FloatBatch<kDoubleLanes>;
 
 inline DoubleBatch to_doubles(NarrowBatch floats) {
@@ -19,7 +20,7 @@ inline DoubleBatch to_doubles(NarrowBatch floats) {
     return load_doubles(lanes.data());
 #endif
 }
-/// Rounded.
+/// Rounds each lane to float.
 inline NarrowBatch to_floats(DoubleBatch doubles) {
 #if XSIMD_WITH_AVX512F
     return _mm512_cvtpd_ps(doubles);

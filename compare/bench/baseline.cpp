@@ -19,11 +19,11 @@ Estimate estimate(const json& value) {
     return {number("value"), number("relative_error"), number("dof")};
 }
 
-/// The odds of a ratio at least this far above 1, if it were 1.
+/// Returns the probability of a ratio at least this far above 1 if its true value is 1.
 double p_value_above_one(const Estimate& ratio) {
     const double distance = std::log(ratio.value);
     if (!(distance > 0)) return 1;
-    if (ratio.relative_error == 0) return 0; // equal in every trial of both runs, and not the same
+    if (ratio.relative_error == 0) return 0; // equal in all trials of each run, but different between runs
     return student_t_tail(distance / ratio.relative_error, ratio.dof) / 2;
 }
 
@@ -69,7 +69,7 @@ void judge(BaselineComparison& comparison) {
     }
 }
 
-/// The body, which reads JSON that comes from anywhere.
+/// Runs the body, which reads JSON of unknown content, and converts JSON exceptions to Error.
 void reading(const std::function<void()>& body) {
     try {
         body();

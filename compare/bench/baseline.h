@@ -1,4 +1,4 @@
-// Two runs of the bench: what got slower or less accurate?
+// Comparison of two runs of the bench: which rows became slower or less accurate.
 #pragma once
 
 #include "compare/bench/estimate.h"
@@ -11,40 +11,40 @@
 
 namespace duet::compare {
 
-/// One row now against the same row then.
+/// One row of this run compared with the same row of the baseline.
 struct BaselineRow {
     std::string scene, technique, sampler;
     int spp = 0;
-    Estimate mse_ratio, seconds_ratio;    ///< now / then: above 1 is worse
+    Estimate mse_ratio, seconds_ratio;    ///< this run / baseline: above 1 is worse
     double share_now = 1, share_then = 1; ///< processor_share of both runs
     bool less_accurate = false, slower = false, more_accurate = false, faster = false;
 };
 
 struct BaselineComparison {
     std::vector<BaselineRow> rows;
-    std::vector<std::string> unmatched; ///< rows of this run that the baseline does not have
+    std::vector<std::string> unmatched; ///< rows of this run that are not in the baseline
     double drift = 0;
 
-    /// The odds of any false finding among all, if errors and times were equal but for a drift within bounds.
+    /// Probability of any false finding among all rows if errors are equal and times differ by at most the drift.
     static constexpr double kSignificance = 0.01;
     bool flagged() const;
 };
 
-/// The circumstances that rows must share to be compared, besides scene, files, size, technique, sampler and samples.
+/// Settings that must be equal for rows to be comparable, besides scene, files, size, technique, sampler and
+/// sample count.
 struct BenchCircumstances {
     int depth = 0, threads = 0;
-    int reference_spp = 0; ///< an error holds the reference's own
+    int reference_spp = 0; ///< matters because a measured error includes the reference's own
 };
 
-/// Throws Error where `earlier` is no report of the bench or was made under other circumstances: known before a long
-/// run.
+/// Throws Error if `earlier` is not a report of the bench or was made with other settings. Call it before a long run.
 void check_baseline(const nlohmann::json& earlier, const BenchCircumstances& now);
 
-/// Compares by Student's t on logarithms (equality_p_value), the significance shared among all tests. A time is a
-/// finding only where it is significantly beyond a factor of 1 + drift either way, machines do not keep
-/// their pace, and beyond what a busy machine explains: «slower» of the time that the threads really got (time ×
-/// processor_share), «faster» likewise of the earlier run's.
-/// Throws Error where `earlier` is no report of the bench or has no row in common.
+/// Compares by Student's t-test on logarithms (equality_p_value), with the significance divided among all
+/// tests. A time difference is a finding only if it significantly exceeds a factor of 1 + drift, because a
+/// CPU's speed changes between runs. It must also exceed what a busy CPU explains: "slower" is tested on this
+/// run's time × processor_share (the CPU time that the threads received), "faster" likewise on the earlier
+/// run's. Throws Error if `earlier` is not a report of the bench or has no row in common.
 BaselineComparison compare_with_baseline(const std::vector<SceneResult>& results, const nlohmann::json& earlier,
                                          double drift);
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Found out before long renders, not after.
+/// Checks options before the long renders.
 void check(const BenchOptions& options) {
     check_choice(options.choice);
     if (!options.peer.empty() && options.peer != "cycles")
@@ -38,7 +38,7 @@ json read_baseline(const fs::path& path) {
     return report;
 }
 
-/// The size asked for, or one of the scene's shape that takes a trial seconds, not minutes.
+/// Returns the requested size, or one of the scene's aspect ratio for which a trial takes seconds instead of minutes.
 View view_of(const Scene& scene, PictureSize size) {
     if (size.width > 0) return {scene.camera, size.width, size.height};
     const double scale = std::min(1.0, 256 / std::sqrt(static_cast<double>(scene.width) * scene.height));
@@ -50,7 +50,7 @@ int threads_of(const BenchOptions& options) {
     return options.choice.threads > 0 ? options.choice.threads : available_threads();
 }
 
-/// One scene's measurement, in its three steps.
+/// Measures one scene in three steps: references, checks, trials.
 class SceneBench {
 public:
     SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
@@ -65,7 +65,7 @@ public:
                 std::make_shared<CyclesPeer>(scene_, view_, ExportSettings{options.choice.depth, threads_of(options)});
     }
 
-    /// Empty where a signal came.
+    /// Returns nothing after an interrupt signal.
     std::optional<SceneResult> run() {
         find_references();
         if (!interrupt_.raised()) measure_all();
@@ -126,7 +126,7 @@ private:
     const Scene scene_;
     const View view_;
     const Image<std::uint8_t> counted_;
-    std::shared_ptr<CyclesPeer> peer_; ///< null: none is asked for
+    std::shared_ptr<CyclesPeer> peer_; ///< null: none requested
     SceneResult result_;
 };
 
@@ -167,7 +167,7 @@ int bench(const BenchOptions& given) {
         results.push_back(std::move(*result));
     }
 
-    write_report(options, bench_json(options, results, std::nullopt)); // kept whatever the baseline turns out to be
+    write_report(options, bench_json(options, results, std::nullopt)); // written even if the baseline comparison fails
     std::optional<BaselineComparison> baseline;
     if (earlier) baseline = compare_with_baseline(results, *earlier, options.drift);
     if (baseline && tables) print_baseline(std::cout, *baseline);

@@ -1,4 +1,4 @@
-// `compare bench`: run time against error.
+// `compare bench`: measures run time against error.
 #pragma once
 
 #include "common/program/render_program.h"
@@ -14,25 +14,26 @@ namespace duet::compare {
 
 struct BenchOptions {
     std::vector<std::filesystem::path> scenes;
-    std::filesystem::path folder;     ///< for index.html, report.json and bench.csv; empty: none
-    std::filesystem::path baseline;   ///< an earlier report.json to compare with; empty: none
-    std::filesystem::path references; ///< the cache; empty: default_reference_folder()
-    PictureSize size{0, 0};           ///< 0 × 0: the scene's shape with about 65,536 pixels
+    std::filesystem::path folder;     ///< output folder for index.html, report.json and bench.csv; empty: none
+    std::filesystem::path baseline;   ///< report.json of an earlier run to compare with; empty: none
+    std::filesystem::path references; ///< cache folder; empty: default_reference_folder()
+    PictureSize size{0, 0};           ///< 0 × 0: the scene's aspect ratio with about 65,536 pixels
     ContenderChoice choice;
-    std::string peer;            ///< "cycles", or empty: none
-    std::vector<double> moments; ///< seconds at which errors are compared; empty: none
+    std::string peer;            ///< "cycles"; empty: none
+    std::vector<double> moments; ///< times in seconds at which errors are compared; empty: none
     MeasureSettings measure;
-    int reference_spp = 0; ///< 0: 16 × the largest of choice.spps
-    int check_spp = 0;     ///< of the independent estimators' references, which check it; 0: as many
+    int reference_spp = 0; ///< 0: 16 × the maximum of choice.spps
+    int check_spp = 0;     ///< spp of the references by independent estimators; 0: reference_spp
     std::vector<ExcludedRectangle> excluded;
-    double drift = 0.15; ///< what a machine's speed may change by between runs: slower by no more is no finding
-    std::string stats;   ///< a file for report.json's figures too, "-": standard output, empty: none
+    double drift = 0.15; ///< relative change of a CPU's speed between runs; smaller differences are not findings
+    std::string stats;   ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;  ///< no progress bar, no tables
 };
 
-/// Measures the scenes one after the other, prints tables, writes the report. Returns 0; 1 where two independent
-/// references of a scene disagree or the baseline finds a row slower or less accurate; 130 where a signal came (no
-/// report is written; finished references stay). Throws Error for scenes, options and files that cannot be used.
+/// Measures the scenes one after the other, prints tables and writes the report. Returns 0; 1 if two
+/// independent references of a scene disagree or if the baseline comparison finds a row slower or less
+/// accurate; 130 after an interrupt signal (no report is written, but finished references stay in the cache).
+/// Throws Error for scenes, options and files that cannot be used.
 int bench(const BenchOptions& options);
 
 } // namespace duet::compare

@@ -1,4 +1,4 @@
-// The arguments of `compare bench`.
+// Command-line arguments of `compare bench`.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// JSON has neither infinity nor NaN: they become null.
+// JSON has neither infinity nor NaN. Both become null.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json estimate_json(const Estimate& e) {

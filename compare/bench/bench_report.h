@@ -1,4 +1,4 @@
-// The bench's figures as JSON, as CSV, as text and as a page.
+// The bench's results as JSON, as CSV, as text and as a page.
 #pragma once
 
 #include "compare/bench/baseline.h"
@@ -13,21 +13,22 @@
 
 namespace duet::compare {
 
-/// report.json. `scenes`: for each scene its reference, its bias check, and `rows`, a row being a technique, a sampler
-/// and a number of samples; an estimate is {value, low, high, relative_error, dof}, low and high its 95 % band; null
-/// stands for what is infinite or unknown. `baseline` where one was given.
+/// Returns report.json. For each scene, `scenes` has its reference, its bias check and `rows`; a row is a
+/// technique, a sampler and a sample count. An estimate is {value, low, high, relative_error, dof}, where low
+/// and high are its 95 % confidence band. Infinite or unknown values are null. `baseline` is present if one was
+/// given.
 nlohmann::json bench_json(const BenchOptions& options, const std::vector<SceneResult>& results,
                           const std::optional<BaselineComparison>& baseline);
 
-/// bench.csv: a header, then a line a row of all scenes. Made from bench_json's.
+/// Returns bench.csv, made from bench_json's report: a header, then one line per row of all scenes.
 std::string bench_csv(const nlohmann::json& report);
 
-/// A table for each scene, with its bias check.
+/// Prints a scene's table and its bias check.
 void print_scene(std::ostream& out, const SceneResult& result, bool with_rest);
-/// What the baseline found, in a line a finding.
+/// Prints the findings of the baseline comparison, one per line.
 void print_baseline(std::ostream& out, const BaselineComparison& comparison);
 
-/// index.html.
+/// Returns index.html.
 std::string bench_page(const nlohmann::json& report);
 
 } // namespace duet::compare

@@ -18,13 +18,13 @@ template <typename... Values> std::string formatted(const char* format, Values..
     return text;
 }
 
-/// "0.0123 ± 4 %": the half width of the 95 % band, upwards.
+/// Returns "0.0123 ± 4 %", with the upper half-width of the 95 % confidence band.
 std::string with_band(const Estimate& e) {
     const double percent = 100 * (e.high() / e.value - 1);
     return formatted("%9.3g", e.value) + (std::isfinite(percent) ? formatted(" ±%3.0f %%", percent) : "   ?   ");
 }
 
-/// Quoted where it has to be (RFC 4180).
+/// Returns a CSV field, quoted if necessary (RFC 4180).
 std::string csv_field(const json& value) {
     if (value.is_null()) return "";
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();

@@ -10,10 +10,11 @@ namespace duet::compare {
 
 namespace {
 
-/// One channel's mean over a rectangle, with its variance.
+/// The mean of one channel over a rectangle, with its variance.
 struct BlockMean {
     double mean = 0, variance = 0;
-    double squares = 0; ///< of the pixels' shares of the variance: variance² / squares are its degrees of freedom
+    double squares = 0; ///< sum of squared pixel contributions to `variance`; variance² / squares are the degrees of
+                        ///< freedom
 };
 
 BlockMean block_mean(const Reference& r, int x0, int y0, int x1, int y1, std::size_t channel) {
@@ -35,11 +36,11 @@ struct Difference {
 
 Difference difference(const BlockMean& a, const BlockMean& b) {
     const double variance = a.variance + b.variance, delta = a.mean - b.mean;
-    // Sums of floats: what is left of equal means. It also stands for the error where no pixel varies at all.
+    // The rounding error of sums of floats makes even equal means differ. It is the whole error if no pixel varies.
     const double rounding = 1e-6 * std::max(std::abs(a.mean), std::abs(b.mean));
     Difference d;
     d.error = std::sqrt(variance + sqr(rounding));
-    if (d.error == 0) return d; // black in both
+    if (d.error == 0) return d; // black in both images
     const double squares = a.squares + b.squares;
     d.z = delta / d.error;
     d.dof = squares > 0 ? std::max(1.0, sqr(variance) / squares) : 1e6;
@@ -77,7 +78,7 @@ BiasCheck check_bias(const Reference& a, const Reference& b) {
     compare_block(0, 0, width, height, 0);
     check.p_value = std::min(1.0, smallest * static_cast<double>(check.tests));
 
-    // Found with 99 % power: beyond the threshold even where chance takes 2.33 standard errors away.
+    // A bias found with 99 % power exceeds the threshold even if noise reduces it by 2.33 standard errors.
     double worst_channel = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         const BlockMean mean_b = block_mean(b, 0, 0, width, height, c);

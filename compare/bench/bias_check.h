@@ -1,4 +1,4 @@
-// Do two independent estimators agree about a scene? A bias of our own shows where they do not.
+// Test of whether two independent estimators agree on a scene. A disagreement reveals a bias of one of them.
 #pragma once
 
 #include "compare/bench/reference.h"
@@ -7,27 +7,27 @@
 
 namespace duet::compare {
 
-/// The most significant of all differences of block means, and what follows from it.
+/// The most significant difference of block means, and the conclusion from it.
 struct BiasCheck {
-    std::size_t tests = 0; ///< means compared: three channels of each block, and of the whole picture
-    double worst_z = 0;    ///< their difference in standard errors, signed (first − second) …
-    double worst_dof = 0;  ///< … the degrees of freedom of that error …
-    double p_value = 1;    ///< … and the odds of any such difference by chance, for all tests together
-    int block_x = 0, block_y = 0, block_size = 0, channel = 0; ///< where; block_size 0: the whole picture
-    Rgbd relative_bias;    ///< difference of the whole pictures' means over the second's mean, by channel
-    double detectable = 0; ///< the smallest such relative bias that would be found with 99 % power
+    std::size_t tests = 0; ///< number of means compared: three channels of each block and of the whole image
+    double worst_z = 0;    ///< most significant difference in standard errors, signed (first − second)
+    double worst_dof = 0;  ///< degrees of freedom of the standard error in worst_z
+    double p_value = 1;    ///< probability of any such difference by chance, over all tests
+    int block_x = 0, block_y = 0, block_size = 0, channel = 0; ///< location; block_size 0: the whole image
+    Rgbd relative_bias;    ///< difference of the whole images' means over the second mean, per channel
+    double detectable = 0; ///< smallest relative bias of the whole image that is found with 99 % power
 
-    /// False alarms happen once in a thousand runs.
+    /// Significance level: one false alarm in a thousand runs.
     static constexpr double kSignificance = 1e-3;
     bool consistent() const { return p_value >= kSignificance; }
 };
 
-/// Compares the means of blocks of about 8 × 8 to a picture and of the whole by Welch's t-test. Each mean's variance is
-/// the sum of its pixels' (pixels are independent); its degrees of freedom follow from them by Welch and Satterthwaite,
-/// each pixel counting for one: where a few fireflies make up the variance there are few, and the test is duly careful.
-/// Pictures of one size; throws Error otherwise.
-/// (z_test of compare/metrics/z_test.h takes blocks of 1024 pixels, whose sums are nearly normal; smaller ones, which show
-/// one wrong lamp in a picture of 64 × 64, are paid for here in degrees of freedom.)
+/// Compares the means of about 8 × 8 blocks and of the whole image by Welch's t-test. The variance of a mean is
+/// the sum of its pixels' variances, because pixels are independent. Its degrees of freedom follow by Welch and
+/// Satterthwaite, with one degree per pixel. If a few fireflies dominate the variance, there are few degrees of
+/// freedom, and the test is accordingly cautious. Throws Error if the images differ in size. (z_test of
+/// compare/metrics/z_test.h uses blocks of 1024 pixels, whose sums are nearly normal. The smaller blocks here
+/// can reveal one wrong light in an image of 64 × 64 pixels, at the cost of degrees of freedom.)
 BiasCheck check_bias(const Reference& a, const Reference& b);
 
 } // namespace duet::compare

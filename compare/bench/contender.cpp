@@ -23,12 +23,12 @@ double cpu_seconds_so_far() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// The path tracer with more samples where the error is.
+/// The path tracer with adaptive sampling.
 constexpr std::string_view kAdaptive = "adaptive";
-/// It, all paths as long as they may be.
+/// The path tracer without Russian roulette.
 constexpr std::string_view kNoRoulette = "no-roulette";
 
-/// What keeps a technique from the reference's picture.
+/// Returns what keeps a technique from converging to the reference, as a sentence.
 std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
     using raytrace::Integrator;
     const bool delta_lights = scene.needs.delta_lights;
@@ -116,7 +116,7 @@ void check_choice(const ContenderChoice& choice) {
 
 std::vector<Contender> our_contenders(const Scene& scene, const View& view, const ContenderChoice& choice) {
     check_choice(choice);
-    std::optional<raytrace::Prepared> traced; // one hierarchy for all
+    std::optional<raytrace::Prepared> traced; // one BVH for all contenders
     std::vector<Contender> contenders;
     for (const std::string& technique : choice.techniques) {
         if (technique == "raster") {
@@ -129,7 +129,7 @@ std::vector<Contender> our_contenders(const Scene& scene, const View& view, cons
             traced = raytrace::prepare(scene, settings);
         }
         for (const std::string& sampler : choice.samplers) {
-            if (technique == kAdaptive && depends_on_count(sampler_kind(sampler))) continue; // pixels' counts differ
+            if (technique == kAdaptive && depends_on_count(sampler_kind(sampler))) continue; // counts vary by pixel
             contenders.push_back(raytrace_contender(*traced, scene, view, choice, technique, sampler));
         }
     }

@@ -13,7 +13,7 @@ struct Point {
     Estimate seconds, error;
 };
 
-/// Between two measurements, `t` of the way in the logarithm of time.
+/// Interpolates between two measurements. `t` in [0, 1] is the position in the logarithm of time.
 Estimate between(const Point& a, const Point& b, double t) {
     const double slope = (b.log_error - a.log_error) / (b.log_seconds - a.log_seconds);
     const auto uncertainty = [&](const Point& p) {

@@ -1,4 +1,4 @@
-// Errors at equal time: the question that efficiency only answers for independent samples.
+// Errors at equal time. Efficiency predicts them only for independent samples.
 #pragma once
 
 #include "compare/bench/measure.h"
@@ -9,14 +9,16 @@
 
 namespace duet::compare {
 
-/// The mean squared error of one contender at a moment, by linear interpolation of logarithms between its measurements;
-/// empty before the first and after the last: nothing is extrapolated. `rest`: without the excluded rectangles. The
-/// uncertainty is the larger of the two neighbours', of error and of time (which the slope between them makes one of
-/// error). Rows that are not counted are left out. Without `sampler`: of all its samplers (a peer's settings).
+/// Returns the mean squared error of one contender at time `seconds`, interpolated linearly in the logarithms
+/// of time and error between its measurements. Returns nothing outside the measured times. If `rest` is set,
+/// the error omits the excluded rectangles. The uncertainty is the larger one of the two neighboring
+/// measurements; it combines the uncertainty of the error with that of the time, converted by the slope between
+/// them. Rows that are not counted are ignored. Without `sampler`, all samplers of the technique are used (for
+/// a peer these are its settings).
 std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std::string& technique,
                                  const std::optional<std::string>& sampler, double seconds, bool rest);
 
-/// One contender at one moment.
+/// One contender at one time.
 struct EqualTimeRow {
     double seconds = 0;
     std::string name;
@@ -24,7 +26,7 @@ struct EqualTimeRow {
     std::optional<Estimate> to_peer, rest_to_peer; ///< its error over the peer's: below 1 is better
 };
 
-/// Every contender at each of the moments, in order; compared with `peer` unless that is empty.
+/// Returns every contender at each of the times, in order, compared with `peer` unless that is empty.
 std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows, const std::vector<double>& moments,
                                          const std::string& peer);
 

@@ -10,8 +10,8 @@ namespace duet::compare {
 
 namespace {
 
-/// The continued fraction of the incomplete beta function, by Lentz's method (Press et al. 2007, «Numerical Recipes»,
-/// §6.4). Converges quickly for x < (a + 1)/(a + b + 2).
+/// Returns the continued fraction of the incomplete beta function by Lentz's method (Press et al. 2007,
+/// "Numerical Recipes", §6.4). It converges quickly for x < (a + 1)/(a + b + 2).
 double beta_fraction(double a, double b, double x) {
     constexpr double kTiny = 1e-300;
     const auto away_from_zero = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
@@ -32,7 +32,7 @@ double beta_fraction(double a, double b, double x) {
     return result;
 }
 
-/// The regularized incomplete beta function I_x(a, b); y = 1 − x, given for its digits.
+/// Returns the regularized incomplete beta function I_x(a, b). y = 1 − x is a parameter to preserve its digits.
 double incomplete_beta(double a, double b, double x, double y) {
     if (x <= 0) return 0;
     if (y <= 0) return 1;
@@ -42,7 +42,7 @@ double incomplete_beta(double a, double b, double x, double y) {
 }
 
 struct Moments {
-    double mean = 0, deviation = 0; ///< of the sample; deviation with n − 1
+    double mean = 0, deviation = 0; ///< of the sample; deviation with divisor n − 1
 };
 Moments moments(const std::vector<double>& values) {
     const double n = static_cast<double>(values.size());
@@ -56,7 +56,7 @@ Moments moments(const std::vector<double>& values) {
 
 double dof_of(std::size_t count) { return count > 1 ? static_cast<double>(count - 1) : 1.0; }
 
-/// Relative error and degrees of freedom of a product or quotient of independent estimates.
+/// Returns a product or quotient of independent estimates, whose value is given, with its error and degrees of freedom.
 Estimate combined(double value, const Estimate& a, const Estimate& b) {
     const double va = sqr(a.relative_error), vb = sqr(b.relative_error), sum = va + vb;
     if (!std::isfinite(sum)) return {value, std::numeric_limits<double>::infinity(), 1};

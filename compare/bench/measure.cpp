@@ -11,11 +11,11 @@ namespace duet::compare {
 
 namespace {
 
-/// A measurement that is being made.
+/// A measurement in progress.
 struct Running {
     const Contender* contender = nullptr;
     Measurement measurement;
-    ImageRgb last; ///< the picture of the seed before: half the squared difference of two estimates their variance
+    ImageRgb last; ///< the previous seed's image; half the squared difference of two estimates estimates the variance
     double squared_differences = 0;
 };
 
@@ -37,7 +37,7 @@ double mean_squared_difference(const ImageRgb& a, const ImageRgb& b) {
     return picture_error(a, b, Image<std::uint8_t>(a.width(), a.height(), 1)).mse;
 }
 
-/// One render, and its figures. False where it was stopped.
+/// Renders once and records the errors. Returns false if stopped.
 bool run_trial(Running& running, std::uint64_t seed, const Reference& reference, const Image<std::uint8_t>& counted,
                Control& control) {
     Trial trial = running.contender->render(running.measurement.spp, seed, control);
@@ -80,7 +80,7 @@ Measurement finish(Running& running, double reference_error) {
 
 double Measurement::bias_share() const {
     const double explained = variance + reference_share * mse.value;
-    return explained < mse.low() ? 1 - explained / mse.value : 0; // NaN is below nothing: one trial tells no bias
+    return explained < mse.low() ? 1 - explained / mse.value : 0; // a NaN variance (one trial) yields 0
 }
 
 void count_best_only(std::vector<Measurement>& rows, const std::string& technique) {
@@ -93,7 +93,7 @@ void count_best_only(std::vector<Measurement>& rows, const std::string& techniqu
 
 void widen_efficiency(std::vector<Measurement>& rows, double drift, double share) {
     const double lost = share > 0 && share < 1 ? -std::log(share) : 0;
-    constexpr double kManyDegrees = 1e6; // assumed, not estimated
+    constexpr double kManyDegrees = 1e6; // the drift is assumed, not estimated
     const Estimate pace{1, std::hypot(std::log1p(drift), lost) / 2, kManyDegrees};
     for (Measurement& m : rows)
         for (Estimate* const efficiency :
@@ -118,7 +118,7 @@ PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, c
     PictureError total;
     double pixels = 0;
     for (int y = 0; y < picture.height(); ++y) {
-        PictureError row; // summed by row first: the error of a long sum grows with its length
+        PictureError row; // summed per row first, because the rounding error of a sum grows with its length
         for (int x = 0; x < picture.width(); ++x) {
             if (counted(x, y) == 0) continue;
             ++pixels;
@@ -139,7 +139,7 @@ std::vector<Measurement> measure(const std::vector<Contender>& contenders, const
                                  const Image<std::uint8_t>& counted, const MeasureSettings& settings,
                                  Control& control) {
     Control quiet{control.stop, {}};
-    for (const Contender& c : contenders) c.render(1, settings.seed, quiet); // caches warm, pages mapped, clocks up
+    for (const Contender& c : contenders) c.render(1, settings.seed, quiet); // warms up caches and CPU clocks
 
     std::vector<Running> running = all_of(contenders);
     const auto count = static_cast<std::uint32_t>(running.size());

@@ -1,4 +1,4 @@
-// Many short renders, in turn, so that error, time and the spread of both are known.
+// Repeated measurements of short renders, interleaved, with the spread of error and time.
 #pragma once
 
 #include "common/system/control.h"
@@ -14,64 +14,65 @@
 
 namespace duet::compare {
 
-/// Mean squared error of a picture: over all channels and the pixels that count.
+/// Mean squared error of an image over all channels and counted pixels.
 struct PictureError {
     double mse = 0;
-    double relmse = 0; ///< mean of (x − r)² / (r² + 0.01), as error_metrics has it
+    double relmse = 0; ///< mean of (x − r)² / (r² + 0.01), as in error_metrics
 };
 
-/// Both accounts of a picture: whole, and without the excluded rectangles (equal where there are none).
+/// Errors of a trial for the whole image and without the excluded rectangles. They are equal if there are none.
 struct TrialFigures {
     std::uint64_t seed = 0;
     double seconds = 0, cpu_seconds = 0;
     PictureError whole, rest;
 };
 
-/// One contender at one number of samples.
+/// One contender at one sample count.
 struct Measurement {
     std::string technique, sampler, note;
     int spp = 0;
     std::vector<TrialFigures> trials;
-    double variance = 0; ///< mean over pixels and channels, from the differences of successive seeds; NaN: one trial
-    /// Of the whole picture: mean squared error, its relative version, and time; and what follows.
+    double variance = 0; ///< mean over pixels and channels, from differences of successive seeds; NaN: one trial
+    /// Metrics of the whole image, the median time, and the efficiencies derived from them.
     Estimate mse, relmse, seconds, efficiency, relmse_efficiency;
     Estimate rest_mse, rest_relmse, rest_efficiency, rest_relmse_efficiency;
-    double reference_share = 0; ///< the reference's own estimated error as a part of `mse`
+    double reference_share = 0; ///< estimated error of the reference as a fraction of `mse`
 
-    bool counted = true; ///< false: of a peer's settings, not the most efficient at this number of samples
+    bool counted = true; ///< false: another of the peer's settings is more efficient at this sample count
 
-    /// The part of the error that more samples would not take away: 1 − variance / mse − reference_share; 0 where that
-    /// is within the band of the mean squared error, and no finding.
+    /// Returns the fraction of the error that more samples would not remove: 1 − variance / mse −
+    /// reference_share. Returns 0 if that lies within the confidence band of the mean squared error.
     double bias_share() const;
 };
 
 struct MeasureSettings {
-    int repeats = 5;         ///< seeds, at least 2
-    double time_limit = 600; ///< seconds: afterwards no further round begins, but two are always made
-    std::uint64_t seed = 0;  ///< trial i of each measurement has seed + 1 + i
+    int repeats = 5;         ///< number of seeds, at least 2
+    double time_limit = 600; ///< seconds after which no further round starts; two are always made
+    std::uint64_t seed = 0;  ///< trial i of each measurement uses seed + 1 + i
 };
 
-/// A peer is counted by its best settings: of the rows of one technique that share a number of samples only the most
-/// efficient stays counted.
+/// Keeps only a peer's best settings counted: among rows of one technique with the same sample count, the most
+/// efficient.
 void count_best_only(std::vector<Measurement>& rows, const std::string& technique);
 
-/// Widens the bands of efficiency by what one run cannot know of time: the part `drift` by which a machine's pace
-/// changes from run to run, and the processor time that others had (processor_share): on a free machine a render takes
-/// between its time × share and its time. Both are taken as two standard errors. Mean squared errors and times keep
-/// their bands, which rows of one run, made in turn, are compared by.
+/// Widens the confidence bands of the efficiencies by what one run cannot know about time. `drift` is the
+/// relative change of the CPU's speed between runs. `share` is the processor_share: on an idle CPU, a render
+/// takes between its time × share and its time. Both are treated as two standard errors. Mean squared errors
+/// and times keep their bands, because they serve to compare rows of one run, which are measured in turns.
 void widen_efficiency(std::vector<Measurement>& rows, double drift, double share);
 
-/// Processor time over wall-clock time × threads, in all trials of our own renderers that took 10 ms and more: well
-/// below 1 where other programs had the machine, and times mean little. 1 where there is no such trial.
+/// Returns CPU time over wall-clock time × threads, over all trials of Duet's own renderers of at least 10 ms.
+/// If it is well below 1, other processes used the CPU, and times are unreliable. Returns 1 if there is no such
+/// trial.
 double processor_share(const std::vector<Measurement>& rows, int threads);
 
-/// Errors of `picture` against `reference` over pixels where `counted` is not 0; both of the same size. Pixels that are
-/// not finite make the error NaN.
+/// Returns the errors of `picture` against `reference` over the pixels where `counted` is not 0. Both must have
+/// the same size. Pixels that are not finite make the error NaN.
 PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, const Image<std::uint8_t>& counted);
 
-/// Measures every contender at each of its numbers of samples, one seed a round: a round runs all of them once, in an
-/// order of its own, so that a machine that grows slower does so for all alike. Each contender first runs once
-/// unmeasured. `control` reports the fraction done. Empty where it was stopped.
+/// Measures every contender at each of its sample counts, with one seed per round. A round runs all of them
+/// once in its own order, so that changes of the CPU's speed affect all alike. Each contender first runs once
+/// without being measured. `control` reports the fraction done. Returns nothing if it was stopped.
 std::vector<Measurement> measure(const std::vector<Contender>& contenders, const Reference& reference,
                                  const Image<std::uint8_t>& counted, const MeasureSettings& settings, Control& control);
 

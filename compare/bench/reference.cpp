@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kKeyAttribute = "duet:reference";
 
-/// The picture of three channels of a file; empty where one is missing.
+/// Returns the image made of three channels of a file; empty if one is missing.
 ImageRgb picture(const ExrFile& file, const std::string& prefix) {
     ImageRgb image(file.width, file.height);
     constexpr const char* kChannels[] = {"R", "G", "B"};
@@ -70,7 +70,7 @@ std::optional<Reference> ReferenceCache::find(const std::string& scene_name, con
         if (file.width != key.width || file.height != key.height) return std::nullopt;
         return reference;
     } catch (const Error&) {
-        return std::nullopt; // damaged: it is rendered again
+        return std::nullopt; // damaged, so it is rendered again
     }
 }
 

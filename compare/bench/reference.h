@@ -1,4 +1,4 @@
-// Reference pictures: rendered once with many samples and a seed of their own, then kept outside the repository.
+// Reference images: rendered once with many samples and a separate seed, then cached outside of the repository.
 #pragma once
 
 #include "common/image/image.h"
@@ -9,31 +9,32 @@
 
 namespace duet::compare {
 
-/// A picture that stands for the truth, and how sure it is of it.
+/// A reference image and its estimated uncertainty.
 struct Reference {
     ImageRgb mean;
-    ImageRgb variance; ///< of `mean`, estimated in each pixel by itself with one degree of freedom or more
+    ImageRgb variance; ///< of `mean`, estimated per pixel with at least one degree of freedom
 
-    /// Its own error, estimated: the mean of its variance. A perfect picture would be charged with it.
+    /// Returns the reference's own estimated error, the mean of its variance. A perfect image would be measured
+    /// with this error.
     double mse() const;
 };
 
-/// Everything that decides what a reference shows and how well. Equal keys, equal pictures.
+/// Everything that determines a reference's content and accuracy. Equal keys imply equal images.
 struct ReferenceKey {
     std::string scene_hash; ///< hash_scene_files
     std::string estimator;  ///< "path", "naive", "cycles"
-    int version = 0;        ///< of that estimator: raytrace::kEstimatorVersion
+    int version = 0;        ///< version of the estimator, such as raytrace::kEstimatorVersion
     int width = 0, height = 0;
-    int depth = 0; ///< scattering events at most
+    int depth = 0; ///< maximum number of scattering events
     int spp = 0;
-    std::string program = {}; ///< another's name and version, which decide, too: "Blender 3.4.1"; empty: ours
+    std::string program = {}; ///< name and version of an external renderer, such as "Blender 3.4.1"; empty: Duet
 
-    /// All of it in one line, which the file keeps.
+    /// Returns the key as one line of text, which is stored in the file.
     std::string text() const;
 };
 
-/// $XDG_CACHE_HOME/duet/references, ~/.cache/duet/references, or below the system's temporary folder where neither
-/// variable is set.
+/// Returns $XDG_CACHE_HOME/duet/references or ~/.cache/duet/references; if neither variable is set, a folder
+/// below the system's temporary folder.
 std::filesystem::path default_reference_folder();
 
 /// A folder of references, one EXR file each (R, G, B and variance.R, .G, .B), named SCENE-ESTIMATOR-HASH.exr.
@@ -42,9 +43,10 @@ public:
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     std::filesystem::path path(const std::string& scene_name, const ReferenceKey& key) const;
-    /// Empty where there is none: no file, one that cannot be read, or one of another key.
+    /// Returns nothing if there is no file, if it cannot be read, or if it has another key.
     std::optional<Reference> find(const std::string& scene_name, const ReferenceKey& key) const;
-    /// Makes the folder; the file is whole or absent. Throws Error (exit code 1) where that fails.
+    /// Creates the folder if needed. The file is written completely or not at all. Throws Error (exit code 1)
+    /// on failure.
     void store(const std::string& scene_name, const ReferenceKey& key, const Reference& reference) const;
 
 private:

@@ -12,14 +12,14 @@ namespace duet::compare {
 
 namespace {
 
-/// Far from the seeds of trials, which count up from small numbers, and another for each estimator.
+/// Returns a seed per estimator, far from the trials' seeds, which count up from small numbers.
 std::uint64_t reference_seed(const std::string& estimator) {
     std::uint64_t seed = 0x7265666572656e63u; // "referenc"
     for (const char c : estimator) seed = hash_combine(seed, static_cast<unsigned char>(c));
     return seed;
 }
 
-/// Sums of pictures and of their squares, in double.
+/// Accumulates images and their squares in double precision.
 class MeanOfPictures {
 public:
     MeanOfPictures(int width, int height) : sums_(width, height), squares_(width, height) {}
@@ -33,7 +33,7 @@ public:
             squares_[i] += value * value;
         }
     }
-    /// The mean, and the variance of the mean.
+    /// Returns the mean and the variance of the mean.
     Reference reference() const {
         Reference r{ImageRgb(sums_.width(), sums_.height()), ImageRgb(sums_.width(), sums_.height())};
         const double n = count_;

@@ -1,4 +1,4 @@
-// The references of one scene: the path tracer's, and one by an independent estimator, found in the cache or rendered.
+// The references of one scene, by the path tracer and by independent estimators, from the cache or newly rendered.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -14,33 +14,33 @@
 namespace duet::compare {
 
 struct ReferenceSettings {
-    std::filesystem::path folder; ///< of the cache
+    std::filesystem::path folder; ///< cache folder
     int spp = 1024;
     int depth = 64;
     int threads = 0;
 };
 
-/// A reference and where it is from.
+/// A reference and its origin.
 struct KeptReference {
     Reference reference;
     std::string estimator;
     std::filesystem::path file;
-    bool rendered = false; ///< now; else it was in the cache
+    bool rendered = false; ///< rendered now; else it was in the cache
 
     explicit operator bool() const { return !reference.mean.empty(); }
 };
 
-/// By the path tracer's integrator of that name ("path", "naive"), Sobol samples, and a seed of its own. Rendered and
-/// stored where the cache has none. Empty where it was stopped: then the film is kept beside where the reference will be,
-/// and the next time goes on from there.
+/// Returns a reference by the path tracer's integrator of that name ("path", "naive"), with Sobol samples and a
+/// separate seed. If it is not in the cache, it is rendered and stored there. If stopped, returns an empty
+/// reference; the film is stored next to the reference's file, and the next call resumes from it.
 KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
                            const ReferenceSettings& settings, Control& control);
 
-/// By something else: rendered with kReferenceSeeds seeds of equal shares of the samples, whose spread tells the
-/// variance (each pixel's with kReferenceSeeds − 1 degrees of freedom).
+/// Number of seeds for a reference by another renderer. Each seed gets an equal fraction of the samples. The
+/// spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
 inline constexpr int kReferenceSeeds = 8;
 struct EstimatorId {
-    std::string name;    ///< these three as in ReferenceKey
+    std::string name;    ///< name, version and program are as in ReferenceKey
     int version = 0;
     std::string program;
 };
@@ -48,7 +48,7 @@ KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scen
                                  const ReferenceSettings& settings,
                                  const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control);
 
-/// Why `naive` cannot check a scene, or nothing where it can.
+/// Returns why `naive` cannot check a scene; empty if it can.
 std::string unfit_for_naive(const Scene& scene);
 
 } // namespace duet::compare

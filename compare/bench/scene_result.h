@@ -1,4 +1,4 @@
-// What the bench found out about one scene.
+// The bench's results for one scene.
 #pragma once
 
 #include "compare/bench/bias_check.h"
@@ -11,22 +11,23 @@
 
 namespace duet::compare {
 
-/// The reference against another estimator's.
+/// The comparison of the reference with another estimator's.
 struct IndependentCheck {
     KeptReference other;
     BiasCheck check;
-    std::vector<std::string> approximations; ///< of the other: with any, a disagreement is shown but is no failure
+    std::vector<std::string> approximations; ///< of the other; with any, a disagreement is reported but is not a
+                                             ///< failure
 
     bool failed() const { return !check.consistent() && approximations.empty(); }
 };
 
 struct SceneResult {
-    std::string scene;      ///< the file, as it was given
+    std::string scene;      ///< file name as given
     std::string scene_hash; ///< hash_scene_files
     int width = 0, height = 0;
     KeptReference reference;
-    std::vector<IndependentCheck> checks; ///< against independent estimators
-    std::string no_naive;                 ///< why naive is not among them; empty: it is
+    std::vector<IndependentCheck> checks; ///< one per independent estimator
+    std::string no_naive;                 ///< why naive is not among the checks; empty: it is
     std::vector<Measurement> rows;
     std::vector<EqualTimeRow> equal_times;
     double processor_share = 1; ///< see measure.h

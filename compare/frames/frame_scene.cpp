@@ -40,14 +40,14 @@ View frame_view(const Scene& scene, FrameView view, int width, int height) {
     camera.fov_degrees = 30;
     camera.look_at = Vec3d(scene.bounds.center());
     const double tan_y = std::tan(radians(camera.fov_degrees / 2)), tan_x = tan_y * width / height;
-    double distance = 0; // as near as the whole mesh allows: |x| ≤ (distance − z)·tan for each vertex
+    double distance = 0; // smallest that fits the whole mesh: |x| ≤ (distance − z)·tan for each vertex
     for (const Vec3 p : std::get<Mesh>(scene.shapes[0]).positions) {
         const Vec3d d = Vec3d(p) - camera.look_at;
         distance = max(distance, dot(d, back) + max(abs(dot(d, right)) / tan_x, abs(dot(d, up)) / tan_y));
     }
     camera.eye = camera.look_at + back * (1.02 * distance);
     camera.near = 1e-2 * distance;
-    constexpr double kCloser = 2.4; // by a longer lens, so that the eye stays outside
+    constexpr double kCloser = 2.4; // by a smaller field of view, so that the eye stays outside
     if (view == FrameView::kClose) camera.fov_degrees = degrees(2 * std::atan(tan_y / kCloser));
     return {camera, width, height};
 }

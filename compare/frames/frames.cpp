@@ -27,7 +27,7 @@ struct MeshRows {
     std::vector<FrameRow> rows;
 };
 
-/// How many times as fast as on one processor; 0 where that was not measured.
+/// Returns the speedup over one processor; 0 if that was not measured.
 double scaling(const MeshRows& mesh, const FrameRow& row) {
     for (const FrameRow& one : mesh.rows)
         if (one.threads == 1 && row.threads > 1 && one.work == row.work && one.view == row.view)
@@ -117,7 +117,7 @@ void write_pictures(const std::filesystem::path& folder, const MeshRows& mesh) {
     }
 }
 
-/// Whether every row was measured: false where a signal came.
+/// Measures all rows of a mesh. Returns false after an interrupt signal.
 bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
                   ProgressBar& bar, double first, double share, const InterruptFlag& interrupt) {
     raster::Settings phong; // no frame here casts shadows

@@ -1,4 +1,4 @@
-// `compare frames`: the rasterizer's frames a second, beside Mesa's llvmpipe.
+// `compare frames`: compares the rasterizer's frame rate with that of Mesa's llvmpipe.
 #pragma once
 
 #include "compare/frames/measure_frames.h"
@@ -11,18 +11,19 @@ namespace duet::compare {
 
 struct FramesOptions {
     std::vector<std::filesystem::path> meshes;
-    std::filesystem::path texture; ///< base colour of all meshes; empty: grey. The peer knows none
+    std::filesystem::path texture; ///< base color of all meshes; empty: gray. The peer does not support it
     std::vector<FrameView> views{FrameView::kWhole, FrameView::kClose};
     std::vector<FrameWork> works{FrameWork::kPhong, FrameWork::kDepth};
-    std::vector<int> threads; ///< empty: 1, and all processors
+    std::vector<int> threads; ///< thread counts; empty: 1 and all processors
     FrameSettings settings;
-    std::filesystem::path folder; ///< for the pictures of both; empty: none
-    std::string stats;            ///< a file for the rows as JSON, "-" for standard output, empty: none
+    std::filesystem::path folder; ///< output folder for both renderers' images; empty: none
+    std::string stats;            ///< file for the rows as JSON; "-" for standard output; empty: none
     bool quiet = false;           ///< no table, no progress bar
 };
 
-/// Prints a table of rows. Returns 1 where our picture and the peer's differ, 130 where a signal came. Throws Error for
-/// a mesh that cannot be used, and where a peer is asked for (settings.peer) and built but cannot run.
+/// Prints a table of rows. Returns 1 if the rasterizer's image and the peer's differ, 130 after an interrupt
+/// signal. Throws Error for a mesh that cannot be used, and if the peer is requested (settings.peer) and built
+/// but cannot run.
 int frames(const FramesOptions& options);
 
 } // namespace duet::compare

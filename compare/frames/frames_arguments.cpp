@@ -1,4 +1,4 @@
-// The arguments of `compare frames`.
+// Command-line arguments of `compare frames`.
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
 #include "compare/frames/frames.h"
@@ -29,7 +29,8 @@ Subcommand add_frames(CLI::App& app) {
         ->delimiter(',')
         ->check(CLI::Range(1, 1024));
     frames->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default 1920x1080)");
-    frames->add_option("--repeats", options.settings.repeats, "Repeats of each row, ours and the peer's in turns (default 9)")
+    frames->add_option("--repeats", options.settings.repeats,
+                       "Repeats of each row, ours and the peer's in turns (default 9)")
         ->check(CLI::Range(1, 10000));
     frames->add_flag("--processor-time", options.settings.processor_time,
                      "Count the seconds of all processors instead of the clock's: on a machine that others use, too");

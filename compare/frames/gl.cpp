@@ -13,11 +13,12 @@ namespace {
     throw Error(message("llvmpipe: ", what, " (EGL error ", eglGetError(), ')'));
 }
 
-/// Read by Mesa when a display is initialized.
+/// Selects llvmpipe by environment variables, which Mesa reads when a display is initialized.
 void choose_llvmpipe(int threads) {
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    // With one thread the caller's own does the work: no hand-over to another that waits for the same processor.
+    // With one thread, the calling thread does the work itself. This avoids handing over to a thread on the
+    // same processor.
     setenv("LP_NUM_THREADS", std::to_string(threads > 1 ? threads : 0).c_str(), 1);
 }
 
@@ -48,7 +49,7 @@ GlContext::GlContext(int threads) {
 GlContext::~GlContext() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
-    eglTerminate(display_); // the next display is a new screen with threads of its own
+    eglTerminate(display_); // the next display gets a new screen with its own threads
 }
 
 void GlContext::check(const std::string& doing) const {

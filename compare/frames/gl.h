@@ -1,5 +1,5 @@
-// OpenGL 4.5 without a window: a surfaceless EGL context on Mesa's software rasterizer, and the functions that are
-// used, which EGL finds by name.
+// OpenGL 4.5 without a window: a surfaceless EGL context on Mesa's software rasterizer, and the OpenGL
+// functions in use, which EGL loads by name.
 #pragma once
 
 #if defined(DUET_LLVMPIPE)
@@ -11,10 +11,10 @@
 
 namespace duet::compare {
 
-/// The context is current to the thread that made it while it lives.
+/// An OpenGL context that is current to the thread that created it during its lifetime.
 class GlContext {
 public:
-    /// `threads`: of llvmpipe's rasterizer. Throws Error where there is no such context.
+    /// `threads` is the number of llvmpipe's rasterizer threads. Throws Error if no such context is available.
     explicit GlContext(int threads);
     ~GlContext();
     GlContext(const GlContext&) = delete;
@@ -67,7 +67,7 @@ public:
     DUET_GL_FUNCTIONS(DUET_GL_DECLARE)
 #undef DUET_GL_DECLARE
 
-    /// Throws Error where a call since the last check went wrong.
+    /// Throws Error if an OpenGL call has failed since the last check.
     void check(const std::string& doing) const;
 
 private:

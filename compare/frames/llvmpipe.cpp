@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-/// raster/shader/phong.h in GLSL.
+/// This is raster/shader/phong.h in GLSL.
 constexpr const char* kFragmentShader = R"(#version 450 core
 in vec3 p, n;
 uniform vec3 eye, to_sun, diffuse, sun, ambient;
@@ -49,8 +49,8 @@ struct Vertex {
     Vec3 p, n;
 };
 
-/// Clip coordinates by which pixel (0, 0) is the buffer's first, and depth is near/depth: reversed, with no far plane,
-/// as the rasterizer has it.
+/// Returns the projection matrix. Pixel (0, 0) comes first in the buffer, and depth is near/depth: reversed,
+/// without a far plane, as in the rasterizer.
 std::array<float, 16> clip_matrix(const View& view) {
     const Pinhole pinhole = CameraModel(view).through();
     const Mat4d& m = pinhole.world_to_pixel;
@@ -80,7 +80,7 @@ struct Peer::State {
         depth = program(kDepthShader);
         set_light(scene);
         gl.Enable(GL_CULL_FACE);
-        gl.FrontFace(GL_CW); // rows run downwards, so the picture is a mirrored one to OpenGL
+        gl.FrontFace(GL_CW); // rows run downwards, so to OpenGL the image is mirrored
         gl.Enable(GL_DEPTH_TEST);
         gl.DepthFunc(GL_GREATER);
         gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);

@@ -16,7 +16,7 @@ namespace {
 raster::Settings settings_for(FrameWork work, int threads) {
     raster::Settings settings;
     settings.threads = threads;
-    settings.front_faces_only = true; // as the peer
+    settings.front_faces_only = true; // like the peer
     settings.shading = raster::Shading::kPhong;
     settings.output = work == FrameWork::kPhong ? raster::Output::kSrgb8 : raster::Output::kNearness;
     return settings;
@@ -66,14 +66,14 @@ double median(std::vector<double> values) {
     return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
-/// What this process has used, on all its threads.
+/// Returns the CPU time that all threads of this process have used.
 double processor_seconds() {
     timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Seconds a frame, of as many frames as fill the burst.
+/// Draws frames for the duration of a burst and returns the seconds per frame.
 double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
     const double start = processor_seconds();
     const Stopwatch watch;
@@ -88,7 +88,7 @@ double time_burst(const std::function<void()>& draw, const FrameSettings& settin
 void measure(FrameRow& row, const std::function<void()>& ours, const std::function<void()>& peer,
              const FrameSettings& settings) {
     std::vector<double> our_seconds, peer_seconds, ratios;
-    time_burst(ours, settings); // warm up: memory, shaders, threads
+    time_burst(ours, settings); // warms up memory, shaders and threads
     if (peer) time_burst(peer, settings);
     for (int i = 0; i < settings.repeats; ++i) {
         if (settings.stop != nullptr && *settings.stop) return;
@@ -119,9 +119,10 @@ void compare_pictures(FrameRow& row, const Rendering& ours, const ImageFloat& ne
 
 } // namespace
 
-// A pixel's coverage may differ where an edge passes close by a sample: both snap to a grid of 1/256 pixel, the peer
-// vertices that it transformed in float. Where it does not, both shade the same point; the peer's sRGB curve is an
-// approximation that is often one code too low, which makes a FLIP of up to 0.006 over a picture's covered pixels.
+// Coverage may differ where an edge passes close to a sample. Both snap vertices to a grid of 1/256 pixel, but
+// the peer transforms them in float first. Elsewhere both shade the same point. The peer's sRGB curve is an
+// approximation that is often one code too low, which causes a FLIP error of up to 0.006 over an image's
+// covered pixels.
 bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 1e-2; }
 
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared& prepared, FrameView frame_kind,

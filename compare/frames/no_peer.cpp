@@ -1,4 +1,4 @@
-// Where EGL or OpenGL's headers are missing: no peer.
+// Stubs for a build without EGL or OpenGL headers: there is no peer.
 #if !defined(DUET_LLVMPIPE)
 
 #include "compare/frames/peer.h"

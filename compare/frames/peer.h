@@ -1,4 +1,4 @@
-// The peer of `compare frames`: Mesa's software rasterizer llvmpipe, by way of OpenGL ES.
+// The peer of `compare frames`: Mesa's software rasterizer llvmpipe, used through OpenGL.
 #pragma once
 
 #include "common/image/image.h"
@@ -10,33 +10,34 @@
 
 namespace duet::compare {
 
-/// What a frame is.
+/// The work of a frame.
 enum class FrameWork {
-    kPhong, ///< clear, transform, shade each pixel by Phong's model, encode to 8-bit sRGB in memory
-    kDepth, ///< clear, transform, keep the depths
+    kPhong, ///< clears, transforms, shades each pixel by Phong's model, encodes to 8-bit sRGB in memory
+    kDepth, ///< clears, transforms, writes depth
 };
 const char* name(FrameWork work);
 
-/// A card's view of a scene of one mesh and one sun (frame_scene.h): its vertices lie in buffers on the card's side,
-/// its picture stays there. Surfaceless: needs no display. One at a time, used by the thread that made it.
+/// Draws a scene of one mesh and one sun (frame_scene.h) with OpenGL. Vertices and image stay in buffers of the
+/// driver. The context is surfaceless and needs no display. Only one Peer may exist at a time, used by the
+/// thread that created it.
 class Peer {
 public:
-    /// Whether this program was built with EGL and OpenGL ES, without which there is no peer.
+    /// Returns whether this program was built with EGL and OpenGL. Without them there is no peer.
     static bool built();
 
-    /// `threads`: of the rasterizer, on the processors that this thread may use now. Throws Error where EGL has no
-    /// such renderer here.
+    /// `threads` is the number of rasterizer threads, on the processors that this thread may currently use.
+    /// Throws Error if EGL has no such renderer here.
     Peer(const Scene& scene, const View& view, int threads);
     ~Peer();
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
 
-    std::string name() const; ///< as the driver gives it: "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6"
-    /// One frame, finished when it returns; nothing is read back.
+    std::string name() const; ///< driver's name, such as "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6"
+    /// Draws one frame and waits until it is finished. Nothing is read back.
     void draw(FrameWork work);
-    /// The picture of the last frame drawn, of FrameWork::kPhong: sRGB-encoded values in [0, 1].
+    /// Returns the image of the last frame, which must be of FrameWork::kPhong, as sRGB-encoded values in [0, 1].
     ImageRgb picture() const;
-    /// The depths of the last frame drawn, as near/depth: 0 where nothing is seen.
+    /// Returns the last frame's reversed depth, near/depth; 0 where nothing is visible.
     ImageFloat nearness() const;
 
 private:

@@ -8,7 +8,7 @@
 namespace duet::compare {
 namespace {
 
-/// Also of the threads that libraries keep. One that ends meanwhile needs no processor.
+/// Sets the affinity of all threads, including those of libraries. Errors for threads that have just ended are ignored.
 void set_for_all_threads(const cpu_set_t& set) {
     for (const auto& task : std::filesystem::directory_iterator("/proc/self/task"))
         sched_setaffinity(std::atoi(task.path().filename().c_str()), sizeof(set), &set);

@@ -1,12 +1,12 @@
-// Which processors the threads of this process may use.
+// CPU affinity of this process's threads.
 #pragma once
 
 #include <sched.h>
 
 namespace duet::compare {
 
-/// While it lives, all threads that the process has, and those they start, share the first `count` of the processors
-/// that the calling thread could use before. Throws Error where there are not so many.
+/// During its lifetime, all threads of the process, and those they start, run on the first `count` processors
+/// that the calling thread could use before. Throws Error if there are fewer.
 class Processors {
 public:
     explicit Processors(int count);
@@ -14,7 +14,7 @@ public:
     Processors(const Processors&) = delete;
     Processors& operator=(const Processors&) = delete;
 
-    /// How many the calling thread may use.
+    /// Returns the number of processors that the calling thread may use.
     static int available();
 
 private:

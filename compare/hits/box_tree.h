@@ -1,4 +1,4 @@
-// A tree of boxes in double precision: finds what a ray may hit among many.
+// A bounding volume hierarchy in double precision, used by the reference ray tracer.
 #pragma once
 
 #include "common/vec/box.h"
@@ -11,21 +11,23 @@
 
 namespace duet::compare {
 
-/// Boxes split at the median of their centres along the longest axis. It serves the judge of the two pipelines, so it
-/// is plain on purpose, shares no code with the path tracer's own, and never leaves out a box that the ray touches.
+/// A BVH that splits the boxes at the median of their centers along the longest axis. The double-precision
+/// reference tracer uses it to judge the two pipelines. It is therefore kept simple, shares no code with the
+/// path tracer's BVH, and never skips a box that the ray touches.
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box3d>& boxes);
 
-    /// Calls t_max = visit(index, t_max) for every box the ray may touch within (ray.t_min, t_max]: the visitor
-    /// shortens the ray as it finds hits. Nearer subtrees come first.
+    /// Calls t_max = visit(index, t_max) for every box that the ray may touch within (ray.t_min, t_max]. The
+    /// visitor shortens the ray as it finds hits. Nearer subtrees are visited first.
     template <typename Visit> void visit(const Rayd& ray, Visit&& visit) const;
 
 private:
     struct Node {
         Box3d box;
-        std::uint32_t first = 0; ///< leaf: first of its items; else: its right child (the left one follows the node)
-        std::uint32_t count = 0; ///< items of a leaf, 0 for an inner node
+        std::uint32_t first = 0; ///< leaf: index of its first item; inner node: index of its right child (the left
+                                 ///< child is the next node)
+        std::uint32_t count = 0; ///< number of items in a leaf; 0 for an inner node
     };
     std::uint32_t build(const std::vector<Box3d>& boxes, std::uint32_t first, std::uint32_t count);
 
@@ -33,9 +35,10 @@ private:
     std::vector<std::uint32_t> items_;
 };
 
-/// Where the ray enters the box, or infinity where it misses it or enters beyond t_max. Conservative: the exit is moved
-/// away by the rounding error of its computation (Ize 2013, «Robust BVH Ray Traversal», §3). An axis along which the
-/// ray does not move, with the origin on the slab, gives NaN, which every comparison below ignores.
+/// Returns t where the ray enters the box, or infinity if it misses the box or enters beyond t_max. The test is
+/// conservative: the exit distance is enlarged by the rounding error of its computation (Ize 2013, "Robust BVH
+/// Ray Traversal", §3). If the ray does not move along an axis and its origin lies on the slab, the result is
+/// NaN, which every comparison below ignores.
 inline double entry(const Box3d& box, const Rayd& ray, double t_max) {
     double near = ray.t_min, far = t_max;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -53,7 +56,7 @@ inline double entry(const Box3d& box, const Rayd& ray, double t_max) {
 template <typename Visit> void BoxTree::visit(const Rayd& ray, Visit&& visit) const {
     if (nodes_.empty()) return;
     double t_max = ray.t_max;
-    std::array<std::uint32_t, 64> stack; // medians halve: the depth is the logarithm of the number of boxes
+    std::array<std::uint32_t, 64> stack; // median splits: the depth is logarithmic in the number of boxes
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {

@@ -15,7 +15,7 @@ struct Search {
     const Hit &a, &b;
     EdgeSearch result;
 
-    /// Traces one displaced ray; true when both hits have been found.
+    /// Traces one displaced ray. Returns true once both hits have been found.
     bool try_at(Vec2d p) {
         if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) trace(p);
         return result.both();
@@ -29,7 +29,7 @@ struct Search {
         result.tied_b = result.tied_b || meets(ray, nearest, b);
         return nearest;
     }
-    /// Whether the ray meets a pipeline's hit just where it meets its nearest.
+    /// Returns whether the ray hits a pipeline's primitive at the same distance as its closest hit.
     bool meets(const Rayd& ray, const ExactHit& nearest, const Hit& hit) const {
         if (!nearest.valid() || !hit.valid()) return false;
         const ExactHit other = tracer.intersect(ray, hit.object, hit.primitive);
@@ -37,7 +37,7 @@ struct Search {
     }
 };
 
-/// Circles, radii halving towards the centre: most disagreements are plain edges, and end here.
+/// Tries circles whose radii halve towards the center. This resolves most disagreements, which are ordinary edges.
 bool try_circles(Search& search) {
     constexpr int kAngles = 16;
     for (double radius = kEdgeRadius * (1 - 1e-9); radius > kEdgeRadius / 100; radius /= 2)
@@ -48,7 +48,7 @@ bool try_circles(Search& search) {
     return false;
 }
 
-/// Vogel's sunflower: even over the disk at any number of points.
+/// Tries Vogel's sunflower pattern, which covers the disk evenly for any number of points.
 bool try_disk(Search& search) {
     constexpr int kPoints = 4096;
     for (int i = 0; i < kPoints; ++i) {
@@ -59,7 +59,8 @@ bool try_disk(Search& search) {
     return false;
 }
 
-/// The part of a homogeneous polygon (x·w, y·w, depth, w) where `plane` · vertex ≥ 0 (Sutherland and Hodgman 1974).
+/// Returns the part of a homogeneous polygon (x·w, y·w, depth, w) where `plane` · vertex ≥ 0 (Sutherland and
+/// Hodgman 1974).
 std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
     const auto side = [&](Vec4d v) { return plane.x * v.x + plane.y * v.y + plane.z * v.z + plane.w * v.w; };
     std::vector<Vec4d> kept;
@@ -74,11 +75,12 @@ std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
 
 constexpr int kSides = 8;
 
-/// The part of a polygon in the world that projects into an octagon around `pixel`, its sides `reach` away; in pixels.
+/// Returns the part of a world-space polygon that projects into an octagon around `pixel`, in pixel
+/// coordinates. The octagon's sides are `reach` away from `pixel`.
 std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners, double reach) {
     std::vector<Vec4d> polygon;
     for (const Vec3d& p : corners) polygon.push_back(pinhole.world_to_pixel * Vec4d(p, 1.0));
-    // Depth is affine in the world (and equals w under perspective): what lies before the near plane goes first.
+    // Depth is affine in world space (and equals w for a perspective camera). Clip to the near plane first.
     for (Vec4d& v : polygon) v.z -= pinhole.near;
     polygon = clip(polygon, {0, 0, 1, 0});
     for (int i = 0; i < kSides && !polygon.empty(); ++i) {
@@ -91,13 +93,13 @@ std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::
     return points;
 }
 
-/// Aims just inside the border of that part: there a face that is hidden by the one before it, and seen almost edge-on,
-/// meets it.
+/// Tries points just inside the border of a polygon from within_reach(). If a hidden face is nearly edge-on,
+/// its border is where it meets the face in front of it.
 bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
     Vec2d middle;
     for (const Vec2d p : polygon) middle = middle + p * (1.0 / static_cast<double>(polygon.size()));
     constexpr int kPoints = 16;
-    constexpr double kInside = 1e-5; // of the way to the middle
+    constexpr double kInside = 1e-5; // fraction of the distance to the center
     for (std::size_t i = 0; i < polygon.size(); ++i)
         for (int k = 0; k < kPoints; ++k) {
             const Vec2d p = polygon[i] + (polygon[(i + 1) % polygon.size()] - polygon[i]) * ((k + 0.5) / kPoints);
@@ -106,17 +108,17 @@ bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
     return false;
 }
 
-/// Aims into the part of one primitive that lies within reach: its fan of triangles, low-discrepancy points in each. A
-/// sliver thousands of times thinner than the disk is found this way.
+/// Tries low-discrepancy points in the part of one primitive that lies within reach, triangle by triangle of
+/// its fan. This finds slivers thousands of times thinner than the disk.
 bool try_primitive(Search& search, const Hit& hit) {
     if (!hit.valid()) return false;
-    const std::vector<Vec2d> polygon = // in the octagon within the disk
+    const std::vector<Vec2d> polygon = // in the octagon inscribed in the disk
         within_reach(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive),
                      kEdgeRadius * std::cos(kPiDouble / kSides));
     constexpr int kPoints = 64;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
         for (int k = 0; k < kPoints; ++k) {
-            // Roberts' R2 sequence, folded into the triangle.
+            // These are points of Roberts' R2 sequence, folded into the triangle.
             double s = std::fmod(0.5 + 0.7548776662466927 * k, 1.0), t = std::fmod(0.5 + 0.5698402909980532 * k, 1.0);
             if (s + t > 1) s = 1 - s, t = 1 - t;
             const Vec2d p = polygon[0] + (polygon[i] - polygon[0]) * s + (polygon[i + 1] - polygon[0]) * t;
@@ -125,8 +127,8 @@ bool try_primitive(Search& search, const Hit& hit) {
     return try_border(search, polygon);
 }
 
-/// Whether any displaced ray could meet the primitive: not where all of it projects outside of the octagon around the
-/// disk, with some room for rounding.
+/// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects
+/// outside of the octagon around the disk, enlarged by a margin for rounding.
 bool may_be_met(const Search& search, const Hit& hit) {
     if (!hit.valid()) return true;
     const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);

@@ -1,4 +1,4 @@
-// Whether a pixel's ray, moved by next to nothing, sees another primitive.
+// Tests whether a minimal displacement of a pixel's ray makes it hit a different primitive.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -6,29 +6,30 @@
 
 namespace duet::compare {
 
-/// How far a ray is displaced at most, in pixels. The rasterizer snaps vertices to 1/256 pixel: by at most 1/512 an
-/// axis, 0.0028 pixel in all. So whatever its snapped triangle covers, the unsnapped one passes by within this
-/// distance.
+/// Maximum displacement of a ray, in pixels. The rasterizer snaps vertices to 1/256 pixel, which moves them by
+/// at most 1/512 per axis, or 0.0028 pixel in all. Every point that the snapped triangle covers therefore lies
+/// within this distance of the unsnapped triangle.
 inline constexpr double kEdgeRadius = 1.0 / 128;
 
-/// At the edge where a hidden face meets the one before it, both lie at the same distance; rounding then decides which
-/// of the two a pipeline returns (equal distances: the lower primitive). This near, in |Δt|·|cos θ| / t, the hidden one
-/// is as good as seen: some ten roundings of a float.
+/// Where a hidden face meets the face in front of it at an edge, both are at the same distance. Rounding then
+/// decides which one a pipeline returns (at equal distances: the lower primitive). The hidden face counts as
+/// visible if |Δt|·|cos θ| / t is at most this tolerance, which is about ten float roundings.
 inline constexpr double kMeetingTolerance = 1e-6;
 
-/// What rays within kEdgeRadius of the pixel's centre see of two pipelines' hits, in double precision.
+/// Which of two pipelines' hits the double-precision rays within kEdgeRadius of the pixel center find.
 struct EdgeSearch {
-    bool found_a = false, found_b = false; ///< a ray returns it as its nearest hit
-    bool tied_a = false, tied_b = false;   ///< a ray meets it within kMeetingTolerance of its nearest hit
-    ExactHit center;                       ///< what the undisplaced ray returns
+    bool found_a = false, found_b = false; ///< a ray returns it as its closest hit
+    bool tied_a = false, tied_b = false;   ///< a ray hits it within kMeetingTolerance of the closest hit
+    ExactHit center;                       ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }
     bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
 };
 
-/// Displaces the ray through `pixel` on circles, then into the parts of the two primitives that lie within reach
-/// (however thin they are), then over a dense disk, until both hits are found or all is tried: some 5,000 rays. Each
-/// ray is traced through the whole scene: being near an edge counts for nothing, seeing the primitive does.
+/// Displaces the ray through `pixel` first on circles, then into the parts of the two primitives that lie
+/// within reach (however thin they are), then over a dense disk. It stops when both hits are found or all of
+/// about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
+/// enough, a ray must hit the primitive.
 EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b);
 
 } // namespace duet::compare

@@ -9,8 +9,8 @@ namespace duet::compare {
 
 namespace {
 
-/// Points as the ray sees them: sheared along its largest axis so that it runs through (0, 0), the plane across it
-/// kept.
+/// Maps points to a space in which the ray is the line x = y = 0. The map shears along the ray's largest axis
+/// and keeps the plane across it.
 struct AcrossRay {
     Vec3d origin;
     std::size_t kx, ky, kz;
@@ -28,12 +28,12 @@ struct AcrossRay {
     }
 };
 
-/// On which side of the edge ab the ray passes: exact in sign, or 0, because rounding keeps the order of the two
-/// products.
+/// Returns a value whose sign says on which side of edge ab the ray passes. The sign is exact or the result is
+/// 0, because rounding preserves the order of the two products.
 double side(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 
-/// The ray's t on triangle abc, edges and vertices included; no ray slips between two triangles of common vertices
-/// (Woop, Benthin and Wald 2013, §3, in double precision).
+/// Returns the ray's t on triangle abc, edges and vertices included. The test is watertight: no ray slips
+/// between two triangles that share vertices (Woop, Benthin and Wald 2013, §3, in double precision).
 std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     const AcrossRay across(ray);
     const Vec2d pa = across(a), pb = across(b), pc = across(c);
@@ -41,14 +41,14 @@ std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     if (!((sa >= 0 && sb >= 0 && sc >= 0) || (sa <= 0 && sb <= 0 && sc <= 0))) return {};
     const Vec3d n = cross(b - a, c - a);
     const double slope = dot(n, ray.direction);
-    if (slope == 0) return {}; // seen edge-on, or no area
+    if (slope == 0) return {}; // edge-on, or no area
     const double t = dot(n, a - ray.origin) / slope;
     if (!(t > ray.t_min && t <= ray.t_max)) return {};
     return t;
 }
 
-/// As common/geometry/sphere.h, in double: the discriminant from the distance of the centre to the line, and the roots
-/// without subtracting nearly equal numbers.
+/// Intersects as common/geometry/sphere.h does, in double precision. The discriminant is computed from the
+/// distance of the center to the line, and the roots without subtracting nearly equal numbers.
 std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
     const Vec3d f = ray.origin - Vec3d(sphere.center);
     const double radius = sphere.radius, a = length_squared(ray.direction), b = -dot(f, ray.direction);
@@ -57,7 +57,7 @@ std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
     const double distance = length(f), c = (distance - radius) * (distance + radius);
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
     const double t0 = c / q,
-                 t1 = q / a; // q = 0 only where the ray starts on the sphere and touches it: t0 is NaN, t1 is 0
+                 t1 = q / a; // q = 0 only if the ray starts on the sphere and is tangent to it: t0 is NaN, t1 is 0
     const double low = min(t0, t1), high = max(t0, t1);
     if (low > ray.t_min && low <= ray.t_max) return low;
     if (high > ray.t_min && high <= ray.t_max) return high;
@@ -75,7 +75,7 @@ std::optional<double> intersect(const Rayd& ray, const Shape& shape, std::uint32
 Box3d primitive_box(const Shape& shape, std::uint32_t primitive) {
     Box3d box;
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        // A little larger than the sphere: rounding must not cut its poles off.
+        // The box is slightly larger than the sphere, so that rounding does not cut off its poles.
         const double r = sphere->radius * (1 + 1e-12);
         box.extend(Vec3d(sphere->center) - Vec3d(r, r, r));
         box.extend(Vec3d(sphere->center) + Vec3d(r, r, r));
@@ -92,7 +92,7 @@ std::vector<Box3d> primitive_boxes(const Shape& shape) {
     return boxes;
 }
 
-/// The box of a box under an affine map, enlarged by far more than the map's rounding error.
+/// Returns the bounding box of a transformed box, enlarged by far more than the transform's rounding error.
 Box3d transformed(const Box3d& box, const Mat4d& map) {
     Box3d result;
     for (int corner = 0; corner < 8; ++corner)
@@ -124,7 +124,8 @@ bool before(const ExactHit& a, const ExactHit& b) {
 
 } // namespace
 
-ExactTracer::ExactTracer(const Scene& scene, double time) : scene_(scene), time_(static_cast<float>(time)), object_tree_({}) {
+ExactTracer::ExactTracer(const Scene& scene, double time)
+    : scene_(scene), time_(static_cast<float>(time)), object_tree_({}) {
     std::vector<Box3d> shape_boxes, object_boxes;
     shape_trees_ = build_trees(scene, shape_boxes);
     for (const Object& object : scene.objects) {
@@ -138,13 +139,13 @@ ExactTracer::ExactTracer(const Scene& scene, double time) : scene_(scene), time_
 }
 
 Rayd ExactTracer::to_object_space(const Rayd& ray, const Placed& placed) const {
-    Rayd local = ray; // the direction is not normalized: t stays what it is
+    Rayd local = ray; // the direction is not normalized, so that t is preserved
     local.origin = transform_point(placed.to_object, ray.origin);
     local.direction = transform_vector(placed.to_object, ray.direction);
     return local;
 }
 
-// `local`: the ray in the object's space.
+// `local` is the ray in the object's space.
 bool ExactTracer::goes_through(const Rayd& ray, const Rayd& local, const ExactHit& hit) const {
     Hit rounded{hit.object, hit.primitive, 0, 0, static_cast<float>(hit.t)};
     const Shape& shape = *objects_[hit.object].shape;
@@ -170,7 +171,7 @@ ExactHit ExactTracer::nearest(const Rayd& ray) const {
             local.t_max = local_t_max;
             std::optional<double> t = compare::intersect(local, *placed.shape, primitive);
             if (scene_.needs.alpha && t && goes_through(ray, local, {object, primitive, *t})) {
-                Rayd beyond = local; // a sphere has another side
+                Rayd beyond = local; // a sphere may have a second hit
                 beyond.t_min = *t * (1 + 1e-12);
                 t = compare::intersect(beyond, *placed.shape, primitive);
                 if (t && goes_through(ray, local, {object, primitive, *t})) t.reset();

@@ -1,4 +1,4 @@
-// The judge between the two pipelines: rays through the scene in double precision.
+// A double-precision ray tracer that serves as the reference for both pipelines' hits.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -9,35 +9,35 @@
 
 namespace duet::compare {
 
-/// What a ray hits, in double precision. No hit: object is kNoObject and t infinite.
+/// A ray's hit in double precision. On a miss, object is kNoObject and t is infinite.
 struct ExactHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double t = std::numeric_limits<double>::infinity();
 
     bool valid() const { return object != kNoObject; }
-    /// Whether a pipeline's hit is of the same object and primitive (or both are none).
+    /// Returns whether a pipeline's hit is the same object and primitive (or both are misses).
     bool same_as(const Hit& hit) const {
         return object == hit.object && (object == kNoObject || primitive == hit.primitive);
     }
 };
 
-/// Traces the scene as it stands at one moment. Vertices and transforms are the pipelines' own floats; all arithmetic
-/// is double precision, so positions are 2^29 times finer than what is judged. The code is shared with neither
-/// pipeline. Refers to the scene.
+/// Traces the scene at one moment in time. Vertices and transforms are the pipelines' own floats, but all
+/// arithmetic is in double precision, which is 2^29 times finer than the results that it judges. It shares no
+/// code with either pipeline. Holds a reference to the scene.
 class ExactTracer {
 public:
-    /// `time` in [0, 1] of the objects' motion.
+    /// `time` in [0, 1] is the time of the objects' motion.
     ExactTracer(const Scene& scene, double time);
 
-    /// The nearest hit with t in (ray.t_min, ray.t_max]; at equal t the lower (object, primitive). What the ray goes
-    /// through by its opacity (common/scene/holes.h) is none.
+    /// Returns the closest hit with t in (ray.t_min, ray.t_max]; at equal t, the lower (object, primitive).
+    /// Hits that the alpha test discards (common/scene/holes.h) do not count.
     ExactHit nearest(const Rayd& ray) const;
-    /// The nearest hit of the ray with one primitive, whatever stands before it.
+    /// Returns the closest hit of the ray with one primitive, ignoring all occluders.
     ExactHit intersect(const Rayd& ray, std::uint32_t object, std::uint32_t primitive) const;
-    /// |cos θ| between the ray and the geometric normal of a primitive; on a sphere at the distance t. 0 for a triangle
-    /// without area.
+    /// Returns |cos θ| between the ray and the geometric normal of a primitive; for a sphere, the normal at
+    /// distance t. Returns 0 for a triangle without area.
     double cosine(const Rayd& ray, std::uint32_t object, std::uint32_t primitive, double t) const;
-    /// The corners of a triangle (3) or quad (4) in the world; none for a sphere.
+    /// Returns the corners of a triangle (3) or quad (4) in world space; none for a sphere.
     std::vector<Vec3d> corners(std::uint32_t object, std::uint32_t primitive) const;
 
 private:
@@ -51,14 +51,14 @@ private:
     const Scene& scene_;
     float time_;
     std::vector<Placed> objects_;
-    std::vector<BoxTree> shape_trees_;  ///< one a shape of the scene, in the shape's own space
-    std::vector<const BoxTree*> trees_; ///< one an object
+    std::vector<BoxTree> shape_trees_;  ///< one per shape of the scene, in the shape's own space
+    std::vector<const BoxTree*> trees_; ///< one per object
     BoxTree object_tree_;
 };
 
-/// How far two hits of one ray are apart: |Δt|·|cos θ| / t, the steeper of the two surfaces and the nearer of the two
-/// distances taken. Measured along the surface's normal, or a grazing ray would be asked for more than its rounded
-/// direction can give.
+/// Returns the relative distance between two hits of one ray: |Δt|·|cos θ| / t, with the larger cosine of the
+/// two surfaces and the smaller of the two distances. It is measured along the surface normal, because at
+/// grazing angles the rounding of the ray direction alone causes large differences in t.
 double distance_apart(const ExactTracer& tracer, const Rayd& ray, const ExactHit& a, const ExactHit& b);
 
 } // namespace duet::compare

@@ -16,7 +16,7 @@ struct Judge {
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
     static Vec2d center(int x, int y) { return {x + 0.5, y + 0.5}; }
 
-    /// Whether the ray meets both primitives at one distance.
+    /// Returns whether the ray hits both primitives at the same distance.
     bool depth_tie(const Rayd& r, const Hit& a, const Hit& b) const {
         if (!a.valid() || !b.valid()) return false;
         const ExactHit ea = tracer.intersect(r, a.object, a.primitive), eb = tracer.intersect(r, b.object, b.primitive);
@@ -31,7 +31,8 @@ struct Judge {
         return tie ? Verdict::kDepthTie : Verdict::kUnexplained;
     }
 
-    /// |Δt|·|cos θ| / t of two hits of one primitive; infinity where a distance is no positive number.
+    /// Returns |Δt|·|cos θ| / t of two hits of one primitive, or infinity unless both distances are finite and
+    /// positive.
     double distance_error(int x, int y, const Hit& a, const Hit& b) const {
         const double ta = a.t, tb = b.t;
         if (!(std::isfinite(ta) && std::isfinite(tb) && ta > 0 && tb > 0))
@@ -40,7 +41,7 @@ struct Judge {
     }
 };
 
-/// One row's part of the result, so that rows can be judged in parallel and put together in order.
+/// The results of one row, so that rows can be judged in parallel and merged in order.
 struct RowResult {
     HitAgreement counts;
     std::vector<UnexplainedPixel> listed;

@@ -1,4 +1,4 @@
-// Do the two pipelines see the same primitive in every pixel, at the same distance? And where not: why?
+// Checks whether both pipelines hit the same primitive at the same distance in every pixel, and explains differences.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -12,38 +12,37 @@
 namespace duet::compare {
 
 enum class Verdict : std::uint8_t {
-    kSame,     ///< same object and primitive, or nothing in both
-    kEdge,     ///< double-precision rays within 1/128 pixel of the centre return the one and the other
-    kDepthTie, ///< the double-precision ray meets both at the same distance, within kDepthTolerance; or as kEdge, but
-               ///< one of the two is met just where the other or a neighbour hides it (kMeetingTolerance in
-               ///< edge_search.h)
-    kUnexplained ///< neither: one of the pipelines is wrong
+    kSame,     ///< same object and primitive, or both miss
+    kEdge,     ///< double-precision rays within 1/128 pixel of the center find both primitives
+    kDepthTie, ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
+               ///< find one, and hit the other within kMeetingTolerance of its occluder
+    kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 
-/// Distances are equal where |Δt|·|cos θ| ≤ kDepthTolerance·t.
+/// Two distances are equal if |Δt|·|cos θ| ≤ kDepthTolerance·t.
 inline constexpr double kDepthTolerance = 1e-5;
 
-/// A pixel whose hits differ without explanation.
+/// A pixel whose hits differ without an explanation.
 struct UnexplainedPixel {
     int x = 0, y = 0;
     Hit raster, raytrace;
-    ExactHit exact; ///< what the double-precision ray through the centre returns
+    ExactHit exact; ///< closest hit of the double-precision ray through the pixel center
 };
 
 struct HitAgreement {
     std::int64_t pixels = 0, same = 0, edge = 0, depth_tie = 0, unexplained = 0; ///< pixels is the sum of the others
     Image<Verdict> verdicts;
-    std::vector<UnexplainedPixel> listed; ///< the first kListed unexplained ones, from the top
-    // Distances where both pipelines see the same primitive:
+    std::vector<UnexplainedPixel> listed; ///< the first kListed unexplained pixels, from the top
+    // The distances below are measured where both pipelines hit the same primitive.
     double worst_distance = 0;            ///< largest |Δt|·|cos θ| / t
-    int worst_x = 0, worst_y = 0;         ///< the first pixel that has it
+    int worst_x = 0, worst_y = 0;         ///< the first pixel with that distance
     std::int64_t distance_violations = 0; ///< pixels over kDepthTolerance, or without a finite distance
 };
 inline constexpr std::size_t kListed = 100;
 
-/// Judges two images of hits of one view, each made with one ray at each pixel's centre, through the lens's centre, as
-/// the shutter opens. Throws Error where an image isn't of the view's size or names a primitive that the scene doesn't
-/// have.
+/// Compares two images of hits of one view. Each must be made with one ray through each pixel's center and the
+/// lens center, at the time when the shutter opens. `threads` 0 uses all. Throws Error if an image does not
+/// have the view's size or names a primitive that is not in the scene.
 HitAgreement compare_hits(const Scene& scene, const View& view, const Image<Hit>& raster, const Image<Hit>& raytrace,
                           int threads = 0);
 

@@ -36,7 +36,8 @@ Interleaved interleave(const Timed& ours, const std::vector<Timed>& peers, int r
     std::vector<std::vector<Pair>> pairs(peers.size());
     const Stopwatch watch;
     int round = 0;
-    for (; round < repeats && (round < kLeastForVerdict || watch.seconds() < time_limit) && !control.stopped(); ++round) {
+    for (; round < repeats && (round < kLeastForVerdict || watch.seconds() < time_limit) && !control.stopped();
+         ++round) {
         our_seconds.push_back(ours());
         for (std::size_t first = 0; first < peers.size() && !control.stopped(); first += 2) {
             pairs[first].push_back({our_seconds.back(), peers[first]()});

@@ -1,4 +1,4 @@
-// Two ways of doing one thing, timed in turns: ratios that a machine's changing pace leaves alone.
+// Timing of two ways to do the same work in turns, so that changes of the CPU's speed do not affect their ratio.
 #pragma once
 
 #include "common/system/control.h"
@@ -15,14 +15,14 @@ namespace duet::compare {
 struct Range {
     double min = 0, median = 0, max = 0;
 };
-/// Of at least one value; the median of an even number is the lower one of the middle two.
+/// Returns the range of at least one value. The median of an even number of values is the lower of the middle two.
 Range range_of(std::vector<double> values);
 
 /// Does the work once and returns the seconds it took.
 using Timed = std::function<double()>;
 
-/// Measures work that `threads` threads do: of one thread its CPU time, which other programs on the machine disturb much
-/// less; of several the time that passes.
+/// Measures the time of work on `threads` threads: the CPU time of a single thread, which other programs
+/// disturb much less; the wall-clock time of several threads.
 class WorkWatch {
 public:
     explicit WorkWatch(int threads) : alone_(threads == 1), begin_(std::clock()) {}
@@ -32,42 +32,44 @@ public:
 
 private:
     bool alone_;
-    std::clock_t begin_; ///< of the process, whose other threads sleep
+    std::clock_t begin_; ///< CPU time of the process, whose other threads sleep
     Stopwatch watch_;
 };
 
 struct Versus {
-    Range ratio;                 ///< peer's seconds / ours, of neighbours in time: above 1 ours is ahead
-    double ours = 0, theirs = 0; ///< seconds of the pair of the median ratio, which is their quotient
+    Range ratio;                 ///< peer's seconds / ours, for measurements adjacent in time: above 1, Duet is faster
+    double ours = 0, theirs = 0; ///< seconds of the pair with the median ratio
 };
 struct Interleaved {
-    double seconds = 0; ///< our median, beside whatever peers
+    double seconds = 0; ///< Duet's median, also without peers
     int repeats = 0;
     std::vector<Versus> peers; ///< in the order given
 };
 
-/// Fewer measurements than these say nothing of who is ahead.
+/// With fewer measurements, there is no verdict on which side is faster.
 inline constexpr int kLeastForVerdict = 5;
 
-/// In each round ours runs before, between and after every two peers, so that each peer has ours for a neighbour: ours,
-/// A, B, ours, C, D, ours … At least kLeastForVerdict rounds, then up to `repeats` while less than `time_limit` seconds have gone.
-/// What is found means nothing where `control` was stopped.
+/// Measures in rounds. In each round, `ours` runs before, between and after every two peers, so that each peer
+/// is adjacent to it: ours, A, B, ours, C, D, ours … Makes at least kLeastForVerdict rounds if `repeats` allows
+/// it, then up to `repeats` while less than `time_limit` seconds have passed. The result is meaningless if
+/// `control` was stopped.
 Interleaved interleave(const Timed& ours, const std::vector<Timed>& peers, int repeats, double time_limit,
                        const Control& control);
 
-/// The part of a set of rays that one measurement traces: whole groups of blocks, spread evenly over the set, so that
-/// it takes about as long as was asked for.
+/// The subset of a ray set that one measurement traces: whole groups of blocks, spread evenly over the set, so
+/// that tracing takes about the requested time.
 struct Portion {
-    std::size_t rays = 0;            ///< traced in all
-    std::vector<std::size_t> groups; ///< of kGroup blocks each
+    std::size_t rays = 0;            ///< number of rays traced, over all passes
+    std::vector<std::size_t> groups; ///< groups of kGroup blocks each
     int passes = 1;
 
     static constexpr std::size_t kGroup = 4;
 };
-/// For the set of `rays` that a tracer traces at `rate` rays a second.
+/// Returns the portion of a set of `rays` rays for a tracer that traces `rate` rays per second, to last `seconds`.
 Portion portion_of(std::size_t rays, double rate, double seconds);
 
-/// Seconds (WorkWatch) that the tracer takes for the portion on `threads` threads. `answers` has a block for each of the set's.
+/// Returns the seconds (WorkWatch) to trace the portion on `threads` threads. `answers` has one element per
+/// block of the whole set.
 double trace_seconds(const Tracer& tracer, const Portion& portion, int threads, std::vector<AnswerBlock>& answers);
 
 } // namespace duet::compare

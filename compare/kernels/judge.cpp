@@ -11,16 +11,16 @@ namespace duet::compare {
 
 namespace {
 
-constexpr double kGrazing = 1e-3; ///< the cosine below which a ray runs in a surface rather than through it
-constexpr int kDirections = 16;   ///< in which a ray is displaced to look for what it just misses
-constexpr int kAround = 32;       ///< the same, to look for a way past what it hits
+constexpr double kGrazing = 1e-3; ///< cosine below which a ray is nearly parallel to a surface
+constexpr int kDirections = 16;   ///< number of directions in which a ray is displaced to find what it just misses
+constexpr int kAround = 32;       ///< number of directions in which a ray is displaced to find a way past what it hits
 
 Rayd in_double(const Ray& ray) {
     return {Vec3d(ray.origin), Vec3d(ray.direction), static_cast<double>(ray.t_min), static_cast<double>(ray.t_max),
             static_cast<double>(ray.time)};
 }
 
-/// Lengths below this cannot be told from none, at the distance t (directions are of unit length).
+/// Returns the length below which distances are not distinguishable at t. Directions are of unit length.
 double slack(const Rayd& ray, double t) { return Judge::kTolerance * (max_component(abs(ray.origin)) + std::abs(t)); }
 
 double distance_to_segment(Vec3d a, Vec3d b) { // from the origin
@@ -30,26 +30,27 @@ double distance_to_segment(Vec3d a, Vec3d b) { // from the origin
     return length(a + along * s);
 }
 
-/// The corners of a triangle in the world, from the ray's origin.
-std::array<Vec3d, 3> seen_from(const ExactTracer& exact, const Rayd& ray, std::uint32_t object, std::uint32_t triangle) {
+/// Returns the corners of a triangle in world space, relative to the ray's origin.
+std::array<Vec3d, 3> seen_from(const ExactTracer& exact, const Rayd& ray, std::uint32_t object,
+                               std::uint32_t triangle) {
     const std::vector<Vec3d> p = exact.corners(object, triangle);
     DUET_CHECK_EQ(p.size(), std::size_t{3});
     return {p[0] - ray.origin, p[1] - ray.origin, p[2] - ray.origin};
 }
 
-/// Distance between the line of the ray and the nearest edge of the triangle, seen along the ray.
+/// Returns the distance between the ray's line and the nearest edge of the triangle, projected along the ray.
 double edge_distance(const Rayd& ray, std::array<Vec3d, 3> p) {
     for (Vec3d& q : p) q = q - ray.direction * (dot(q, ray.direction) / dot(ray.direction, ray.direction));
     return min(min(distance_to_segment(p[0], p[1]), distance_to_segment(p[1], p[2])), distance_to_segment(p[2], p[0]));
 }
 
-/// Distance of the ray's origin from the triangle's plane.
+/// Returns the distance between the ray's origin and the triangle's plane.
 double plane_distance(const std::array<Vec3d, 3>& p) {
     const Vec3d n = cross(p[1] - p[0], p[2] - p[0]);
     return length(n) > 0 ? std::abs(dot(p[0], n)) / length(n) : 0;
 }
 
-/// A direction across the ray, of unit length, the i-th of `count` around it.
+/// Returns the i-th of `count` unit directions perpendicular to the ray.
 Vec3d aside(const FrameT<double>& frame, int i, int count) {
     const double angle = 2 * kPiDouble * i / count;
     return frame.s * std::cos(angle) + frame.t * std::sin(angle);
@@ -62,10 +63,10 @@ const ExactTracer& Judge::exact() const {
     return *exact_;
 }
 
-// Whether the triangle is where the answer says, on the ray or as near as rounding allows.
+// Returns whether the ray hits the triangle at the answer's distance, up to rounding.
 bool Judge::nearly_meets(const Rayd& ray, const Answer& answer) const {
     const double t = answer.t;
-    Rayd line = ray; // the surface that a ray starts from may be found on either side of its start
+    Rayd line = ray; // a ray may find the surface that it starts from on either side of its origin
     line.t_min = -slack(ray, 0) / kGrazing;
     const ExactHit hit = exact().intersect(line, answer.object, answer.triangle);
     if (hit.valid()) {
@@ -82,20 +83,21 @@ bool Judge::nearly_meets(const Rayd& ray, const Answer& answer) const {
     return nearest - slack(ray, t) <= t && t <= farthest + slack(ray, t);
 }
 
-// Whether single precision may miss what double precision hits, as it lies where the ray begins or ends.
+// Returns whether single precision may miss a double-precision hit because it is close to the ray's start or end.
 bool Judge::at_an_end(const Rayd& ray, const ExactHit& hit) const {
     const double room = slack(ray, hit.t), cosine = exact().cosine(ray, hit.object, hit.primitive, hit.t);
     return (hit.t - ray.t_min) * cosine <= room || (ray.t_max - hit.t) * cosine <= room;
 }
 
-// The same, as the ray meets the triangle's edge.
+// Returns whether single precision may miss a double-precision hit because it is close to the triangle's edge.
 bool Judge::at_an_edge(const Rayd& ray, const ExactHit& hit) const {
     return edge_distance(ray, seen_from(exact(), ray, hit.object, hit.primitive)) <= slack(ray, hit.t);
 }
 
-// Whether there is no way past what the ray hits at an edge, to `end`: rays displaced by roundings to any side are
-// stopped, too. So the edge is no outline, and a kernel whose triangles close up does not get through. Displaced by
-// several lengths, as a longer one may run into something else; a way past at any of them is one.
+// Returns whether rays displaced by rounding errors to all sides are also blocked before `end`. If so, the edge
+// that the ray hits is not a silhouette, and a watertight kernel does not let the ray through. Several
+// displacement lengths are tried, because a long one may run into another surface. A single ray that passes
+// disproves it.
 bool Judge::goes_on_around(const Rayd& ray, const ExactHit& hit, double end) const {
     const double room = slack(ray, hit.t);
     const FrameT<double> frame = frame_from_normal(normalize(ray.direction));
@@ -122,7 +124,7 @@ Finding Judge::closest(const Ray& ray, const Answer& answer, const ExactHit& fir
         return hit.object == answer.object && hit.primitive == answer.triangle;
     };
     const double t = answer.t;
-    if (answer.hit() && first.valid() && is_answer(first) && // for the most part
+    if (answer.hit() && first.valid() && is_answer(first) && // the most common case
         std::abs(first.t - t) * exact().cosine(r, first.object, first.primitive, first.t) <= slack(r, t))
         return Finding::kRight;
     if (answer.hit() && !nearly_meets(r, answer)) return Finding::kWrong;
@@ -131,7 +133,8 @@ Finding Judge::closest(const Ray& ray, const Answer& answer, const ExactHit& fir
     const auto in_that_case = [&](Finding finding) {
         return slipped ? Finding::kFault : passed ? Finding::kEdge : finding;
     };
-    for (ExactHit hit = first;; hit = exact().nearest(rest)) { // whatever lies before the answer must be possible to miss
+    // The answer is acceptable only if single precision may miss every surface in front of it.
+    for (ExactHit hit = first;; hit = exact().nearest(rest)) {
         if (!hit.valid()) return in_that_case(answer.hit() ? Finding::kEdge : Finding::kRight);
         if (answer.hit()) {
             if (is_answer(hit)) return in_that_case(Finding::kRight);
@@ -175,8 +178,8 @@ Finding Judge::occluded(const Ray& ray, const Hit& end, bool blocked) const {
     return nearly_occluded(r, end) ? Finding::kEdge : Finding::kWrong;
 }
 
-// Nothing is in the way: is there something just beside it, or just beyond the end? A ray beside it starts behind the
-// surface that the ray itself starts on, which is no reason to be blocked.
+// Returns whether there is something just beside an unoccluded ray or just beyond its end. Displaced rays start
+// behind the surface that the ray itself starts on; that surface does not count as an occluder.
 bool Judge::nearly_occluded(const Rayd& ray, const Hit& end) const {
     const double reach = std::isfinite(ray.t_max) ? ray.t_max : length(scene_.bounds.diagonal());
     const double room = slack(ray, reach);
@@ -235,7 +238,7 @@ Mismatches compare_answers(const Judge& judge, const Questions& questions, std::
         const std::size_t i = different[k];
         findings[k].first = judged(judge, questions, i, ours[i]);
         findings[k].second = questions.closest() ? judge.closest(rays[i], peers[i])
-                                                 : judge.occluded(rays[i], peers[i].hit()); // as it was asked
+                                                 : judge.occluded(rays[i], peers[i].hit()); // as queried
     });
     Mismatches result;
     result.rays = std::ssize(rays);

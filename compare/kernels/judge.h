@@ -1,4 +1,4 @@
-// Who is right where two kernels differ? A double-precision ray decides, or finds that single precision cannot.
+// Decides by a double-precision ray which of two kernels is right, or that single precision cannot decide it.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,34 +10,35 @@
 
 namespace duet::compare {
 
-/// What is to be said of one answer.
+/// The judgment of one answer.
 enum class Finding : std::uint8_t {
-    kRight, ///< the double-precision ray says so, too
-    kTie,   ///< another triangle is met at the same distance
-    kEdge,  ///< within rounding of an outline or of the ray's ends: hit and miss are both right
-    kFault, ///< within rounding of an edge, but the surface goes on beyond it: the ray slipped through between triangles
+    kRight, ///< confirmed by the double-precision ray
+    kTie,   ///< another triangle is hit at the same distance
+    kEdge,  ///< within rounding of a silhouette or of the ray's ends: hit and miss are both acceptable
+    kFault, ///< within rounding of an edge where the surface continues: the ray slipped through between triangles
     kWrong,
 };
 
 /// Judges answers for a scene of meshes.
 class Judge {
 public:
-    /// Places nearer than this part of their size (distance plus the largest coordinate of the ray's origin) count as
-    /// one: some 80 roundings of single precision.
+    /// Positions closer than this fraction of their magnitude (distance plus the largest coordinate of the
+    /// ray's origin) count as equal. It is about 80 roundings of single precision.
     static constexpr double kTolerance = 1e-5;
 
     explicit Judge(const Scene& scene) : scene_(scene) {}
 
     Finding closest(const Ray& ray, const Answer& answer) const;
-    /// The same where the double-precision ray's first hit is known.
+    /// Judges a closest hit, for a caller that already knows the double-precision ray's first hit.
     Finding closest(const Ray& ray, const Answer& answer, const ExactHit& first) const;
     ExactHit first_hit(const Ray& ray) const;
-    /// Of a shadow ray, which ends at t_max and may be blocked by anything.
+    /// Judges a shadow ray that ends at t_max and may be blocked by anything.
     Finding occluded(const Ray& ray, bool blocked) const;
-    /// Of one that ends on a triangle which does not block it (`Accelerator::occluded`), or at a mere distance.
+    /// Judges a shadow ray that ends on a triangle that does not block it (`Accelerator::occluded`), or at a
+    /// given distance.
     Finding occluded(const Ray& ray, const Hit& end, bool blocked) const;
 
-    /// The double-precision rays themselves; their tree is built when first asked for.
+    /// Returns the double-precision tracer, whose tree is built on the first call.
     const ExactTracer& exact() const;
 
 private:
@@ -52,10 +53,10 @@ private:
     mutable std::unique_ptr<const ExactTracer> exact_;
 };
 
-/// What the judge says of one kernel's answers: how many of `rays` were of a kind that counts against it.
+/// Number of a kernel's answers that were judged, and of those that count against it.
 struct Faults {
     std::int64_t rays = 0;
-    std::int64_t edge = 0;  ///< Finding::kFault: what a watertight kernel never does
+    std::int64_t edge = 0;  ///< Finding::kFault; a watertight kernel has none
     std::int64_t wrong = 0; ///< Finding::kWrong
 
     void count(Finding finding) {
@@ -72,28 +73,28 @@ struct Faults {
     bool any() const { return edge > 0 || wrong > 0; }
 };
 
-/// The rays on which two kernels differ, by what explains it. A hit of the same triangle at distances within
-/// Judge::kTolerance is no difference.
+/// The rays on which two kernels differ, by explanation. Hits of the same triangle at distances within
+/// Judge::kTolerance count as equal.
 struct Mismatches {
-    std::int64_t rays = 0; ///< asked of both
+    std::int64_t rays = 0; ///< rays that both traced
     std::int64_t tie = 0, edge = 0, fault = 0, unexplained = 0; ///< by the worse of the two findings
-    Faults ours, peer; ///< of the answers that differ: whose fault they are
+    Faults ours, peer; ///< findings for the answers that differ, per kernel
 
     std::int64_t differ() const { return tie + edge + fault + unexplained; }
 };
 
-/// A set of rays and what is asked of each: the first hit, or, where there are ends, whether anything is in the way.
-/// (The peer's shadow rays just end at their t_max.)
+/// A set of rays and the query for each: the closest hit or, if there are ends, whether anything occludes the
+/// ray. The peer's shadow rays simply end at their t_max.
 struct Questions {
     std::span<const Ray> rays;
-    std::span<const Hit> ends; ///< one a shadow ray, or none
+    std::span<const Hit> ends; ///< one per shadow ray, or none
 
     bool closest() const { return ends.empty(); }
 };
 Mismatches compare_answers(const Judge& judge, const Questions& questions, std::span<const Answer> ours,
                            std::span<const Answer> peers, int threads);
 
-/// Our answers by themselves: those to every `stride`-th ray.
+/// Judges every `stride`-th of Duet's own answers.
 Faults judge_answers(const Judge& judge, const Questions& questions, std::span<const Answer> answers,
                      std::size_t stride, int threads);
 

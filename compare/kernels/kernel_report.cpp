@@ -16,7 +16,7 @@ using nlohmann::json;
 
 bool is_rate(const KernelRow& row) { return row.work != "build" && row.work != "memory"; }
 
-/// Whether the path tracer asks just so: it has camera rays traced in bulk.
+/// Returns whether the path tracer traces such rays in this form. It traces camera rays only in bulk.
 bool as_rendered(const KernelRow& row) { return row.work != "camera"; }
 
 std::string figure(const KernelRow& row, double value) {
@@ -36,7 +36,7 @@ std::string ratio_text(const Range& ratio) {
     return out.str();
 }
 
-/// 1234567 as "1,234,567".
+/// Formats 1234567 as "1,234,567".
 std::string grouped(std::int64_t number) {
     const std::string digits = std::to_string(number);
     std::string text;
@@ -88,7 +88,7 @@ json row_json(const KernelTable& table, const KernelRow& row) {
     return result;
 }
 
-/// How much there is to explain: what nothing explains above all.
+/// Returns a sort key for the amount of differences and leaks. Unexplained ones come first.
 std::array<std::int64_t, 4> gravity(const KernelRow& row) {
     std::array<std::int64_t, 4> result{};
     if (row.mismatches) result = {row.mismatches->unexplained, row.mismatches->fault, 0, row.mismatches->differ()};
@@ -96,7 +96,8 @@ std::array<std::int64_t, 4> gravity(const KernelRow& row) {
     return result;
 }
 
-/// Of each work the row with the most to explain, and of these the most first. (Answers do not depend on threads.)
+/// Returns, for each work, the row with the largest gravity(), sorted in descending order. Answers don't depend
+/// on threads.
 std::vector<const KernelRow*> rows_to_explain(const KernelTable& table) {
     std::vector<const KernelRow*> worst;
     for (const KernelRow& row : table.rows) {
@@ -107,7 +108,8 @@ std::vector<const KernelRow*> rows_to_explain(const KernelTable& table) {
         else if (gravity(row) > gravity(**same))
             *same = &row;
     }
-    std::ranges::stable_sort(worst, [](const KernelRow* a, const KernelRow* b) { return gravity(*a)[0] > gravity(*b)[0]; });
+    std::ranges::stable_sort(worst,
+                             [](const KernelRow* a, const KernelRow* b) { return gravity(*a)[0] > gravity(*b)[0]; });
     return worst;
 }
 
@@ -137,7 +139,7 @@ void print_differences(std::ostream& out, const KernelTable& table) {
     }
 }
 
-/// Whether the answers are right: ours by the judge, ours beside the peer's, and aimed at edges.
+/// Prints the checks of the answers: by the judge, against the peer's, and for rays aimed at edges.
 void print_checks(std::ostream& out, const KernelTable& table) {
     print_differences(out, table);
     Faults judged;
@@ -161,7 +163,7 @@ void mark_best(std::vector<KernelRow>& rows) {
         row.best = !row.peer_name.empty() && std::ranges::none_of(rows, [&](const KernelRow& other) {
             const bool rival = other.work == row.work && other.threads == row.threads && !other.peer_name.empty();
             return rival && (other.ratio.median < row.ratio.median ||
-                             (&other < &row && other.ratio.median == row.ratio.median)); // of equals the first
+                             (&other < &row && other.ratio.median == row.ratio.median)); // the first of equal rows
         });
 }
 
@@ -243,15 +245,15 @@ std::vector<std::string> faults(const KernelTable& table) {
         add(judged.found.wrong, " of ", judged.found.rays, " of our answers to ", judged.work, " rays are wrong");
         add(judged.found.edge, " of ", judged.found.rays, " of our ", judged.work, " rays slipped through edges");
     }
-    std::vector<std::string> leaked; // works
+    std::vector<std::string> leaked; // works already reported
     for (const KernelRow& row : table.rows) {
         if (row.leaks && row.leaks->ours > 0 && std::ranges::count(leaked, row.work) == 0) {
             leaked.push_back(row.work);
             add(row.leaks->ours, " of our ", row.work, " rays left the closed room");
         }
         if (!row.mismatches || row.threads != 1) continue;
-        add(row.mismatches->ours.wrong, " of our answers to ", row.work, " rays are wrong (found beside ", row.peer_name,
-            ")");
+        add(row.mismatches->ours.wrong, " of our answers to ", row.work, " rays are wrong (found beside ",
+            row.peer_name, ")");
         add(row.mismatches->ours.edge, " of our ", row.work, " rays slipped through edges (found beside ",
             row.peer_name, ")");
     }

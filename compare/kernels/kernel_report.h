@@ -1,4 +1,4 @@
-// What `compare kernels` found, for reading by people and by programs.
+// The results of `compare kernels` as JSON and as text.
 #pragma once
 
 #include "compare/kernels/interleave.h"
@@ -13,28 +13,28 @@
 
 namespace duet::compare {
 
-/// Rays of one work that got out of a closed room.
+/// Number of rays of one work that escaped from a closed room.
 struct Leaks {
     std::int64_t ours = 0, peer = 0;
 };
 
-/// Ours against one setting of the peer, or ours alone.
+/// Duet compared with one setting of the peer, or Duet alone.
 struct KernelRow {
     std::string work; ///< "camera", "camera-bulk", "bounce", "shadow", "build", "memory"
     int threads = 1;
     std::string peer_name; ///< "embree 3.13.5 medium packets 16"; empty: no peer
-    /// Million rays a second; seconds (build); bytes a triangle (memory). Of the pair of neighbouring measurements that
-    /// has the median ratio; without a peer our median.
+    /// Million rays per second, seconds (build), or bytes per triangle (memory). The values are from the pair
+    /// of adjacent measurements with the median ratio; without a peer, Duet's median.
     double ours = 0, peer = 0;
-    Range ratio;          ///< above 1: ours is ahead
-    bool best = false;    ///< the peer's best setting for this work and number of threads: our lowest median ratio
-    std::size_t rays = 0; ///< of one measurement
+    Range ratio;          ///< above 1: Duet is faster
+    bool best = false;    ///< the peer's best setting for this work and thread count, with the lowest median ratio
+    std::size_t rays = 0; ///< rays of one measurement
     int repeats = 0;      ///< pairs of measurements
     std::optional<Mismatches> mismatches;
     std::optional<Leaks> leaks;
 };
 
-/// All of one scene.
+/// All results of one scene.
 struct KernelTable {
     std::string mesh, scene;
     std::size_t triangles = 0, left_out = 0;
@@ -45,32 +45,34 @@ struct KernelTable {
         std::int64_t misses;
         Faults faults;
     };
-    std::vector<Aimed> watertight; ///< ours first; empty where the scene is not closed, or no ray was asked for
+    std::vector<Aimed> watertight; ///< Duet first; empty if the scene is not closed or no rays were requested
     struct JudgedWork {
         std::string work;
         Faults found;
     };
-    std::vector<JudgedWork> judged; ///< a sample of our answers, by the double-precision judge
+    std::vector<JudgedWork> judged; ///< findings of the double-precision judge on a sample of Duet's answers
 };
 
-/// Marks, among rows of the same work and threads, the one of our lowest median ratio.
+/// Marks the row with the lowest median ratio among rows of the same work and thread count.
 void mark_best(std::vector<KernelRow>& rows);
 
-/// "ahead" where every repeat was above 1, "behind" where every one was below, else "even"; of fewer repeats than
-/// kLeastForVerdict "too few".
+/// Returns "ahead" if every repeat was above 1, "behind" if every one was below, else "even"; "too few" for
+/// fewer repeats than kLeastForVerdict.
 std::string verdict(const Range& ratio, int repeats);
 
-/// Rows as in design: mesh, scene, triangles, work, threads, ours, peer, peer_name, ratio {min, median, max} (null
-/// where there is no peer), best, rays, repeats, mismatches, leaks.
+/// Returns the rows: mesh, scene, triangles, work, threads, ours, peer, peer_name, ratio {min, median, max}
+/// (null without a peer), best, repeats; for rays also rays and as_rendered; mismatches and leaks if they were
+/// counted.
 nlohmann::json rows_json(const KernelTable& table);
 nlohmann::json watertight_json(const KernelTable& table);
 nlohmann::json judged_json(const KernelTable& table);
 
-/// One line for each work and number of threads, ours against the peer's best; then one for each work with what differs
-/// and what leaks, of the peer's setting with the most to explain. Lines with something unexplained come first.
+/// Prints one line for each work and thread count, Duet against the peer's best setting. Then prints one line
+/// for each work with the mismatches and leaks, for the peer's setting with the most of them; lines with
+/// unexplained ones come first.
 void print_table(std::ostream& out, const KernelTable& table);
 
-/// What is wrong with ours, a line each: leaks, misses, edge faults, wrong answers. Empty: nothing.
+/// Returns Duet's errors, one line each: leaks, misses, edge faults, wrong answers. Empty if there are none.
 std::vector<std::string> faults(const KernelTable& table);
 
 } // namespace duet::compare

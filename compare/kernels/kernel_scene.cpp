@@ -19,26 +19,26 @@ Box3d bounds_of(const Mesh& mesh) {
     return box;
 }
 
-/// Positions and triangles only: nothing else matters to a kernel.
+/// Appends positions and triangles only, because kernels use nothing else.
 void append(Mesh& all, const std::vector<Vec3>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     const auto first = static_cast<std::uint32_t>(all.positions.size());
     all.positions.insert(all.positions.end(), positions.begin(), positions.end());
     for (const auto& [a, b, c] : triangles) all.triangles.push_back({first + a, first + b, first + c});
 }
 
-/// The corners of a quad and its two halves.
+/// Appends a quad as its corners and two triangles.
 void append(Mesh& all, const std::array<Vec3, 4>& quad) {
     append(all, {quad.begin(), quad.end()}, {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// A scene's triangles.
+/// The triangles of a scene in one mesh.
 struct Flattened {
     Mesh mesh;
-    std::vector<std::optional<std::uint32_t>> first; ///< of each object; none of a sphere
-    std::size_t left_out = 0;                        ///< spheres
+    std::vector<std::optional<std::uint32_t>> first; ///< index of each object's first triangle; none for a sphere
+    std::size_t left_out = 0;                        ///< number of spheres omitted
 };
 
-/// Everything in the scene but spheres, in the world, as the shutter opens.
+/// Merges everything except spheres into one mesh in world space, at shutter opening.
 Flattened flattened(const Scene& scene) {
     Flattened all;
     for (const Object& object : scene.objects) {
@@ -67,7 +67,7 @@ Flattened flattened(const Scene& scene) {
     return all;
 }
 
-/// The scene's lights; those that are triangles of the flattened mesh are so by its numbers.
+/// Returns the scene's lights. Area lights refer to their triangles in the flattened mesh.
 std::vector<Light> lights_on(const Flattened& flat, std::vector<Light> lights) {
     for (Light& light : lights)
         if (auto* surface = std::get_if<SurfaceLight>(&light)) {
@@ -79,7 +79,7 @@ std::vector<Light> lights_on(const Flattened& flat, std::vector<Light> lights) {
     return lights;
 }
 
-/// A rotation, uniform over all (Shoemake 1992, «Uniform Random Rotations»): a random unit quaternion.
+/// Returns a uniformly distributed rotation from a random unit quaternion (Shoemake 1992, "Uniform Random Rotations").
 Mat4d random_rotation(std::uint64_t state) {
     const auto unit = [&](std::uint64_t i) { return static_cast<double>(stream_number(state, i) >> 11) * 0x1p-53; };
     const double r = unit(0), a = 2 * kPiDouble * unit(1), b = 2 * kPiDouble * unit(2);
@@ -91,7 +91,7 @@ Mat4d random_rotation(std::uint64_t state) {
 
 constexpr float kClutterHalf = 2.5f; ///< half the side of the box around the copies
 
-/// In a corner of the box, looking to its middle.
+/// Returns a camera in a corner of the box that looks at its center.
 Camera clutter_camera() {
     Camera camera;
     camera.eye = {2.2, 1.5, 2.3};
@@ -100,18 +100,18 @@ Camera clutter_camera() {
     return camera;
 }
 
-/// A square lamp above everything, facing down: just below the ceiling where there is one.
+/// Returns a square area light above everything, facing down. In a closed room it is just below the ceiling.
 SurfaceLight lamp_above(const Box3d& box, bool enclosed) {
     const Vec3d size = box.diagonal();
     const double side = 0.3 * max(size.x, size.z);
     const double height = enclosed ? box.high.y - 0.02 * size.y : box.high.y + max_component(size);
     const Vec3d corner = Vec3d(box.center().x - side / 2, height, box.center().z - side / 2);
-    // u × v points down: x × z = −y.
+    // The light faces along u × v, which points down because x × z = −y.
     const Quad quad{Vec3(corner), Vec3(Vec3d(side, 0, 0)), Vec3(Vec3d(0, 0, side))};
     return {quad, false, Rgb(1.0f), kNoObject, 0};
 }
 
-/// Hangs the lamp into a room, as part of the mesh that is the room's: object number `object`.
+/// Adds the area light to a room. Its triangles become part of the room's mesh, which belongs to object `object`.
 SurfaceLight hang_lamp(Mesh& room, std::uint32_t object) {
     SurfaceLight lamp = lamp_above(bounds_of(room), true);
     lamp.object = object;
@@ -120,7 +120,7 @@ SurfaceLight hang_lamp(Mesh& room, std::uint32_t object) {
     return lamp;
 }
 
-/// The 27 places of clutter for a mesh.
+/// Returns the 27 transforms of the clutter arrangement for a mesh.
 std::vector<Mat4d> clutter_places(const Mesh& mesh) {
     constexpr double kScale = 0.7, kGrid = 1.1;
     const Box3d box = bounds_of(mesh);
@@ -129,7 +129,8 @@ std::vector<Mat4d> clutter_places(const Mesh& mesh) {
     for (int copy = 0; copy < 27; ++copy) {
         const Mat4d turned = random_rotation(mix_bits(static_cast<std::uint64_t>(copy) + 1));
         const Vec3d place = Vec3d(copy % 3 - 1, copy / 3 % 3 - 1, copy / 9 - 1) * kGrid;
-        places.push_back(translation(place) * turned * scaling(Vec3d(scale, scale, scale)) * translation(-box.center()));
+        places.push_back(translation(place) * turned * scaling(Vec3d(scale, scale, scale)) *
+                         translation(-box.center()));
     }
     return places;
 }
@@ -164,7 +165,7 @@ KernelScene kernel_scene(std::string name, Arrangement arrangement, std::vector<
     return result;
 }
 
-/// The copies of clutter as instances; the room is the last object.
+/// Returns the clutter arrangement with the copies as instances. The room is the last object.
 KernelScene instanced(std::string name, Mesh mesh) {
     std::vector<Object> objects;
     for (const Mat4d& place : clutter_places(mesh)) objects.push_back(placed(0, place));
@@ -204,7 +205,7 @@ Mesh enclosed(Mesh mesh, Vec3 center, float half) {
     std::vector<Vec3> positions;
     for (std::uint32_t i = 0; i < 8; ++i)
         positions.push_back(center + Vec3(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
-    // Each face's corners, counter-clockwise seen from within.
+    // Each face's corners are counter-clockwise as seen from inside.
     constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
         {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}}};
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -249,14 +250,14 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
                         name_of(arrangement));
         return of_scene_file(loaded);
     }
-    Mesh& given = std::get<Mesh>(loaded.shapes.front()); // the ground follows it: scene_around_mesh
+    Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (scene_around_mesh)
     Mesh mesh;
     append(mesh, given.positions, given.triangles);
     const std::string name = file.stem().string();
     if (arrangement == Arrangement::kInstances) return instanced(name, std::move(mesh));
     if (arrangement == Arrangement::kClutter)
         return make_kernel_scene(name, arrangement, enclosed(cluttered(mesh), Vec3(), kClutterHalf), clutter_camera());
-    if (arrangement == Arrangement::kRoom) { // as large as it must be to hold the camera, and a little more
+    if (arrangement == Arrangement::kRoom) { // large enough to contain the camera, plus a margin
         const Box3d box = bounds_of(mesh);
         const double reach = max(max_component(abs(loaded.camera.eye - box.center())), max_component(box.diagonal()));
         mesh = enclosed(std::move(mesh), Vec3(box.center()), static_cast<float>(1.1 * reach));

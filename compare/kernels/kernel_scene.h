@@ -1,4 +1,4 @@
-// What all ray kernels trace alike: the triangles of a mesh or a scene, alone or arranged, a camera, and lights.
+// The scenes that all ray kernels trace: the triangles of a mesh or a scene in an arrangement, a camera, and lights.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,50 +10,53 @@
 namespace duet::compare {
 
 enum class Arrangement {
-    kAlone,   ///< as the file has it
-    kRoom,    ///< within a closed box, the camera too
-    kClutter, ///< 27 copies, each rotated in its own way, on a grid within a closed box: the honest incoherent test
-    kInstances, ///< the same, but the copies are instances of one mesh: a hierarchy of two levels
+    kAlone,   ///< as in the file
+    kRoom,    ///< inside a closed box, together with the camera
+    kClutter, ///< 27 rotated copies on a grid inside a closed box: a test with incoherent rays
+    kInstances, ///< the copies of kClutter as instances of one mesh, with a two-level BVH
 };
-/// "alone", "room", "clutter" or "instances"; throws Error for another name.
+/// Returns the arrangement "alone", "room", "clutter" or "instances". Throws Error for another name.
 Arrangement parse_arrangement(const std::string& name);
 const char* name_of(Arrangement arrangement);
 
-/// One mesh of triangles in world space, the single object of its scene; or instances of one, and then a mesh in world
-/// space.
+/// A scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh
+/// followed by a mesh in world space.
 struct KernelScene {
-    std::string mesh; ///< the file's name without its ending
+    std::string mesh; ///< file name without its extension
     Arrangement arrangement = Arrangement::kAlone;
     std::unique_ptr<const Scene> scene; ///< accelerators refer to it
     Camera camera;
-    std::vector<Light> lights; ///< what shadow rays go to, each in its turn
-    bool enclosed = false;     ///< every ray from the camera or a surface meets a triangle
-    std::size_t left_out = 0;  ///< the file's spheres: what is compared is triangles
+    std::vector<Light> lights; ///< targets of the shadow rays, used in turn
+    bool enclosed = false;     ///< every ray from the camera or a surface hits a triangle
+    std::size_t left_out = 0;  ///< number of spheres in the file, which are omitted
 
-    const Mesh& mesh_of(std::size_t object) const { return std::get<Mesh>(scene->shapes[scene->objects[object].shape]); }
+    const Mesh& mesh_of(std::size_t object) const {
+        return std::get<Mesh>(scene->shapes[scene->objects[object].shape]);
+    }
     const Mesh& triangles() const { return mesh_of(0); }
-    std::size_t triangle_count() const; ///< of all objects
-    /// Whether a ray that starts within must hit something: a single closed mesh, or all in a closed room.
+    std::size_t triangle_count() const; ///< over all objects
+    /// Returns whether a ray that starts inside must hit something: in a single closed mesh or in a closed room.
     bool closed() const { return enclosed || (scene->objects.size() == 1 && triangles().closed); }
 };
 
-/// Whether the file is a bare mesh, which can be arranged; a scene file stands as it is.
+/// Returns whether the file is a bare mesh, which can be arranged. A scene file is used as it is.
 bool is_bare_mesh(const std::filesystem::path& file);
 
-/// A bare mesh as the loader frames it (without its ground), or a scene file with its own camera and lights: instances
-/// in their places as the shutter opens, quads cut in two; a light that is a triangle there names it.
-/// Throws Error as load_scene does, where nothing is left, and where a scene file is to be arranged.
+/// Loads a bare mesh, framed by the loader but without the ground, or a scene file with its own camera and
+/// lights. Instances are transformed to world space at shutter opening, and quads are split into two triangles.
+/// An area light refers to its triangles in the resulting mesh. Throws Error as load_scene does, if no triangle
+/// is left, and if a scene file is to be arranged.
 KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arrangement);
 
-/// A triangle mesh within the closed box of half-side `half` around `center`: twelve triangles that face inwards.
+/// Adds a closed box of half-side `half` around `center` to the mesh: twelve triangles that face inwards.
 Mesh enclosed(Mesh mesh, Vec3 center, float half);
 
-/// 27 copies of the mesh, which is first scaled to fill [−1, 1]³ as far as its form allows: × 0.7, each rotated by
-/// angles of its own, at the points of a grid of 1.1.
+/// Returns 27 copies of the mesh. The mesh is first scaled uniformly to fit [−1, 1]³. Each copy is scaled by
+/// 0.7, rotated by its own angles and placed on a grid with spacing 1.1.
 Mesh cluttered(const Mesh& mesh);
 
-/// A mesh that is there already, with a camera; the light is a square above it, below the ceiling where there is one:
-/// then it is two more triangles, the last.
+/// Returns a scene of the given mesh and camera. The light is a square above the mesh. In a room it is below
+/// the ceiling, and its two triangles are added as the last ones of the mesh.
 KernelScene make_kernel_scene(std::string name, Arrangement arrangement, Mesh mesh, const Camera& camera);
 
 } // namespace duet::compare

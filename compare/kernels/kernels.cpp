@@ -53,7 +53,7 @@ std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
     return names.empty() ? all : chosen;
 }
 
-/// What is to be measured: each file in each arrangement it can have.
+/// A case to measure: a file in one of its possible arrangements.
 struct Case {
     std::filesystem::path file;
     Arrangement arrangement;

@@ -1,4 +1,4 @@
-// The arguments of `compare kernels`.
+// Command-line arguments of `compare kernels`.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
@@ -34,13 +34,15 @@ Subcommand add_kernels(CLI::App& app) {
                      "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is AVX-512 "
                      "medium-avx2 and high-avx2, or none (default: all)")
         ->delimiter(',');
-    kernels->add_option("--bvh", options.bvh, "Quality of our hierarchy, as of raytrace: default or high (default: default)");
+    kernels->add_option("--bvh", options.bvh,
+                        "Quality of our hierarchy, as of raytrace: default or high (default: default)");
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
     kernels
         ->add_option("--threads", options.threads,
                      "Threads of the second set of rows, after one thread's (default: all)")
         ->check(CLI::Range(1, 1024));
-    kernels->add_option("--repeats", options.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
+    kernels->add_option("--repeats", options.repeats,
+                        "Measurements of each, in turns; under 5 there is no verdict (default 7)")
         ->check(CLI::Range(1, 10000));
     kernels->add_option("--seconds", options.seconds, "Length of one measurement of rays (default 0.15)")
         ->check(number_within(1e-4, 1e4, "seconds from 1e-4 to 1e4"));

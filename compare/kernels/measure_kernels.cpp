@@ -15,14 +15,14 @@ const std::vector<std::string> kWorks{"build", "camera", "camera-bulk", "bounce"
 
 namespace {
 
-constexpr std::size_t kJudged = 20'000; ///< of our answers to each kind of ray
-constexpr double kBuildLimit = 40; ///< builds of one number of threads end after this many times `seconds`, but three
+constexpr std::size_t kJudged = 20'000; ///< number of Duet's answers to each kind of ray that are judged
+constexpr double kBuildLimit = 40; ///< time limit for the builds with one thread count, as a multiple of `seconds`
 
-/// Fractions done of one scene: each step takes its share in turn.
+/// Divides the progress of one scene into equal steps.
 class Steps {
 public:
     Steps(const Control& whole, std::size_t count) : whole_(whole), share_(1 / static_cast<double>(count)) {}
-    /// For the next step.
+    /// Returns the control of the next step.
     Control next() {
         const double begin = done_;
         done_ += share_;
@@ -34,7 +34,7 @@ private:
     double share_, done_ = 0;
 };
 
-/// Embree's devices that the settings ask for.
+/// The Embree devices that the settings require.
 class Devices {
 public:
     Devices(const std::vector<EmbreeQuality>& qualities, const Scene& scene, int threads) {
@@ -47,17 +47,17 @@ private:
     std::optional<EmbreeDevice> widest_, avx2_;
 };
 
-/// Rays, the question they ask, and all who answer.
+/// Rays, their query, and all tracers that answer it.
 struct Work {
     std::string name;
     std::vector<Ray> rays;
-    std::vector<Hit> ends; ///< of shadow rays
+    std::vector<Hit> ends; ///< for shadow rays
     Questions questions() const { return {rays, ends}; }
     Tracer ours;
     std::vector<Tracer> peers;
-    // From the answers to all rays:
-    std::vector<std::optional<Mismatches>> mismatches; ///< one a peer
-    std::vector<Leaks> leaks;                          ///< one a peer; where there is none, ours alone
+    // The fields below are computed from the answers to all rays.
+    std::vector<std::optional<Mismatches>> mismatches; ///< one per peer
+    std::vector<Leaks> leaks;                          ///< one per peer; without peers, one for Duet alone
 };
 
 class SceneMeasurement {
@@ -164,11 +164,11 @@ private:
         std::ranges::sort(works_, {}, place);
     }
 
-    /// Asks everybody about all rays, and counts where they differ and what leaks. A work without rays is none.
+    /// Traces all rays with every tracer and counts differences and leaks. A work without rays is omitted.
     void add_work(std::string name, std::vector<Ray> rays, std::vector<Hit> ends) {
         if (rays.empty() || control_.stopped()) return;
         works_.push_back({std::move(name), std::move(rays), std::move(ends), {}, {}, {}, {}});
-        Work& work = works_.back(); // does not move: there is room for all
+        Work& work = works_.back(); // does not move, because the capacity is reserved
         const Questions questions = work.questions();
         work.ours = !questions.closest()         ? our_occluded(*accelerator_, work.rays, work.ends)
                     : work.name == "camera-bulk" ? our_bulk(*accelerator_, work.rays)
@@ -186,11 +186,12 @@ private:
         if (work.peers.empty()) work.leaks.push_back({our_leaks, 0});
     }
 
-    /// Every way in which the peer can do a work.
+    /// Returns tracers for all ways in which the peer can do a work.
     std::vector<Tracer> peers_at(const Work& work) const {
         std::vector<Tracer> tracers;
         const auto add = [&](std::size_t i, Tracer tracer, const std::string& more) {
-            tracer.name = full_name(name_of(settings_.peers[i])) + (tracer.name.empty() ? "" : " " + tracer.name) + more;
+            tracer.name = full_name(name_of(settings_.peers[i])) +
+                          (tracer.name.empty() ? "" : " " + tracer.name) + more;
             tracers.push_back(std::move(tracer));
         };
         for (std::size_t i = 0; i < embree_.size(); ++i) {
@@ -219,7 +220,7 @@ private:
         const auto timed = [&](const Tracer& tracer, const Portion& portion) -> Timed {
             return [&, portion] { return trace_seconds(tracer, portion, threads, answers); };
         };
-        // A first look says how many rays take the time that was asked for.
+        // A short measurement determines how many rays take the requested time.
         const Portion look = portion_of(work.rays.size(), 1e6, 0.1 * threads);
         const double rate = static_cast<double>(look.rays) / timed(work.ours, look)();
         const Portion portion = portion_of(work.rays.size(), rate, settings_.seconds);
@@ -242,7 +243,7 @@ private:
         }
     }
 
-    /// A row a peer, or one of ours alone.
+    /// Adds one row per peer, or one for Duet alone.
     template <typename Figure>
     void add_rows(const std::string& work, int threads, const Interleaved& found, const std::vector<std::string>& names,
                   const Figure& figure) {
@@ -266,7 +267,9 @@ private:
                                        [&](std::span<const Ray> rays) { return our_bulk(*accelerator_, rays); }};
         std::vector<std::string> names{"duet", "duet bulk"};
         for (std::size_t i = 0; i < embree_.size(); ++i) {
-            kernels.push_back([this, i](std::span<const Ray> rays) { return embree_[i]->closest(rays, EmbreeForm::kSingle, false); });
+            kernels.push_back([this, i](std::span<const Ray> rays) {
+                return embree_[i]->closest(rays, EmbreeForm::kSingle, false);
+            });
             names.push_back(full_name(name_of(settings_.peers[i])));
         }
         const Watertight found = test_watertight(scene_, judge_, kernels, settings_.watertight, settings_.seed,

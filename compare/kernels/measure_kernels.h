@@ -13,18 +13,18 @@
 namespace duet::compare {
 
 struct MeasureKernels {
-    std::vector<std::string> works;   ///< of kWorks
-    std::vector<EmbreeQuality> peers; ///< empty: ours alone
-    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< of our hierarchy
+    std::vector<std::string> works;   ///< some of kWorks
+    std::vector<EmbreeQuality> peers; ///< empty: Duet alone
+    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< build quality of Duet's BVH
     PictureSize size{1920, 1080};
-    int threads = 1; ///< of the second set of rows; 1: there is none
+    int threads = 1; ///< threads of the second set of rows; 1: no second set
     int repeats = 7;
-    double seconds = 0.15;       ///< of one measurement of rays
-    std::int64_t watertight = 0; ///< rays; 0: none
+    double seconds = 0.15;       ///< duration of one measurement of rays
+    std::int64_t watertight = 0; ///< number of rays of the watertightness test; 0: none
     std::uint64_t seed = 0;
 };
 
-/// What is found means nothing where `control` was stopped.
+/// Measures the scene. The result is meaningless if `control` was stopped.
 KernelTable measure_kernels(const KernelScene& scene, const MeasureKernels& settings, const Control& control);
 
 } // namespace duet::compare

@@ -15,23 +15,24 @@ namespace duet::compare {
 
 namespace {
 
-constexpr std::size_t kChunk = 4096; ///< rays made at a time
+constexpr std::size_t kChunk = 4096; ///< number of rays generated at a time
 
-/// Every other bit of a number below 256, from the lowest on.
+/// Extracts every other bit of a number below 256, from the lowest on.
 int even_bits(int code) {
     int bits = 0;
     for (int i = 0; i < 4; ++i) bits |= (code >> (2 * i) & 1) << i;
     return bits;
 }
 
-/// Where the i-th pixel of a whole tile lies in it.
+/// Returns the position of the i-th pixel within a whole tile.
 std::pair<int, int> place_in_tile(int i, PixelOrder order) {
     static_assert(kTile == 16);
     if (order == PixelOrder::kRows) return {i % kTile, i / kTile};
     return {even_bits(i), even_bits(i >> 1)};
 }
 
-/// What `make` returns for each ray with its index, the empty left out, in order, for any number of threads.
+/// Returns the results of `make` for each ray and its index, in order and without empty ones, for any number of
+/// threads.
 template <typename Made>
 std::vector<Made> collect(std::span<const Ray> rays, int threads,
                           const std::function<std::optional<Made>(const Ray&, std::size_t)>& make) {
@@ -47,7 +48,7 @@ std::vector<Made> collect(std::span<const Ray> rays, int threads,
     return all;
 }
 
-/// The point that the ray hits first.
+/// Returns the surface point of the ray's first hit.
 std::optional<SurfacePoint> first_point(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                                         const Ray& ray) {
     const Hit hit = accelerator.closest(ray);
@@ -55,7 +56,7 @@ std::optional<SurfacePoint> first_point(const KernelScene& scene, const raytrace
     return surface_point(*scene.scene, ray, hit);
 }
 
-/// Two numbers in [0, 1) of a ray's own.
+/// Returns two random samples in [0, 1) that belong to the ray.
 Vec2 numbers(std::uint64_t seed, std::size_t index) {
     const std::uint64_t bits = hash_combine(mix_bits(seed), index);
     return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
@@ -99,7 +100,8 @@ struct Aimed {
     Hit end;
 };
 
-/// The triangle of the scene that a ray to the light ends on: of a quad's two the one that the ray meets.
+/// Returns the triangle that a ray to the light ends on. For a quad, it is the one of its two triangles that
+/// the ray hits.
 Hit end_on(const SurfaceLight& light, const Ray& ray, float distance) {
     Hit end;
     end.t = distance;
@@ -131,11 +133,12 @@ ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& ac
         const Light& light = scene.lights[index % scene.lights.size()];
         const std::optional<LightSample> s = sample_light(light, point->p, numbers(~seed, index));
         if (!s) return std::nullopt;
-        const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side that is seen
+        const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side of the incoming ray
         if (!lit) return std::nullopt;
         Aimed aimed{{offset_origin(*point, s->wi), s->wi}, {}};
         aimed.end.t = s->distance;
-        if (const auto* surface = std::get_if<SurfaceLight>(&light)) aimed.end = end_on(*surface, aimed.ray, s->distance);
+        if (const auto* surface = std::get_if<SurfaceLight>(&light))
+            aimed.end = end_on(*surface, aimed.ray, s->distance);
         aimed.ray.t_max = s->distance * kShort;
         if (aimed.end.object == kNoObject) aimed.end.t = aimed.ray.t_max;
         return aimed;

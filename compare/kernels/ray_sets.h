@@ -1,4 +1,4 @@
-// The rays that all kernels trace: those of a renderer's first two segments, in the order in which it visits pixels.
+// The ray sets that all kernels trace: a renderer's first two path segments, in the order in which it visits pixels.
 #pragma once
 
 #include "compare/kernels/kernel_scene.h"
@@ -9,28 +9,30 @@
 
 namespace duet::compare {
 
-/// Pixels are visited in tiles of kTile × kTile from the upper left: each in rows, or along a Z-curve (Morton 1966),
-/// the order in which the path tracer traces camera rays in bulk. On the curve 16 rays on end are 4 × 4 pixels.
+/// The order of pixels. Tiles of kTile × kTile are visited from the upper left, each by rows or along a Z-order
+/// curve (Morton 1966), in which the path tracer traces camera rays in bulk. On the curve, 16 consecutive rays
+/// cover 4 × 4 pixels.
 enum class PixelOrder { kRows, kZCurve };
 inline constexpr int kTile = 16;
 
-/// One ray through the centre of each pixel.
+/// Returns one ray through the center of each pixel.
 std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelOrder order, int threads);
 
-/// From each of the rays' first hits, in their order, one ray with density cos θ / π about the geometric normal, on the
-/// side the ray came from. It starts as a path's next ray does: off the surface by the hit's own error bound. The
-/// numbers drawn depend on the seed and the ray's index alone.
+/// Returns one ray from each first hit of `rays`, in order, with density cos θ / π around the geometric normal
+/// on the side of the incoming ray. It starts as a path's next ray does, offset from the surface by the hit's
+/// error bound. The random samples depend only on the seed and the ray's index.
 std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads);
 
-/// Rays, and what each is aimed at.
+/// Shadow rays and their ends.
 struct ShadowRays {
-    std::vector<Ray> rays; ///< t_max is just short of the light, for kernels that know no other way not to meet it
-    std::vector<Hit> ends; ///< as in the path tracer: the light's own triangle, which does not block, and its distance
+    std::vector<Ray> rays; ///< t_max is just short of the light, for kernels that cannot ignore the light's triangle
+    std::vector<Hit> ends; ///< distance and, as in the path tracer, the light's own triangle, which does not block
 };
-/// From each first hit one ray to a point on a light: the scene's lights take turns. Hits that face away from the
-/// point, or that the light cannot reach, send none, as in the path tracer. A light that is no triangle of the scene
-/// (a sun, a lamp above a mesh that stands alone) is a mere distance at the end.
+/// Returns one ray from each first hit to a point on a light, using the scene's lights in turn. As in the path
+/// tracer, there is no ray if the hit faces away from the point or the light cannot reach it. A light that is
+/// not a triangle of the scene (a sun, or the light above a mesh that stands alone) only has a distance as its
+/// end.
 ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator, std::span<const Ray> rays,
                        std::uint64_t seed, int threads);
 

@@ -13,9 +13,10 @@ namespace duet::compare {
 namespace {
 
 constexpr std::size_t kOrigins = 4096;
-constexpr std::int64_t kMade = 64 * static_cast<std::int64_t>(kBlock); ///< rays made and traced at a time
+constexpr std::int64_t kMade = 64 * static_cast<std::int64_t>(kBlock); ///< number of rays generated and traced at a
+                                                                       ///< time
 
-/// A ray's random numbers.
+/// The random samples of a ray.
 class Numbers {
 public:
     Numbers(std::uint64_t seed, std::uint64_t index) : state_(hash_combine(mix_bits(seed + 1), index)) {}
@@ -28,7 +29,8 @@ private:
     std::uint64_t state_, next_ = 0;
 };
 
-/// How much oftener a line from p leaves the mesh than it enters: 0 outside, 1 inside, 2 where two parts overlap.
+/// Returns how many more times a line from p leaves the mesh than enters it: 0 outside, 1 inside, 2 where two
+/// parts overlap.
 int winding_number(const ExactTracer& exact, Vec3d p) {
     Rayd ray{p, normalize(Vec3d(0.3183, 0.7071, 0.6314))};
     int winding = 0;
@@ -41,7 +43,7 @@ int winding_number(const ExactTracer& exact, Vec3d p) {
     }
 }
 
-/// The triangles of all objects, by one number, with their corners in the world.
+/// All objects' triangles under one index, with their corners in world space.
 class Targets {
 public:
     Targets(const KernelScene& scene, const Judge& judge) : exact_(judge.exact()) {
@@ -68,7 +70,7 @@ private:
     std::size_t count_ = 0;
 };
 
-constexpr std::int64_t kTogether = 16; ///< rays of one start, aimed at neighbours
+constexpr std::int64_t kTogether = 16; ///< consecutive rays that share an origin and are aimed at neighbors
 
 Ray aimed_ray(const Targets& targets, const std::vector<Vec3>& origins, std::uint64_t seed, std::int64_t number) {
     Numbers shared(seed, static_cast<std::uint64_t>(number / kTogether));
@@ -125,7 +127,7 @@ Watertight test_watertight(const KernelScene& scene, const Judge& judge, const s
     const Targets targets(scene, judge);
 
     Watertight result{rays, std::vector<Watertight::Kernel>(kernels.size())};
-    std::mutex mutex; // of the sums and the progress
+    std::mutex mutex; // protects the sums and the progress
     std::int64_t done = 0;
     parallel_for(static_cast<std::size_t>((rays + kMade - 1) / kMade), threads, [&](std::size_t batch) {
         if (control.stopped()) return;

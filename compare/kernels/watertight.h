@@ -1,4 +1,4 @@
-// Rays aimed where a surface of triangles is weakest, from within a closed scene: none may get out or slip through.
+// Tests rays aimed at the weakest points of a closed triangle mesh from inside. None may escape or slip through.
 #pragma once
 
 #include "common/system/control.h"
@@ -10,28 +10,30 @@
 
 namespace duet::compare {
 
-/// A kernel for any rays.
+/// Returns a kernel's tracer for the given rays.
 using TracerFor = std::function<Tracer(std::span<const Ray>)>;
 
-/// What became of the rays, by kernel. A third each is aimed at random points of random triangles, at points of their
-/// edges, and at vertices. They start within: at points inside a closed mesh, anywhere in a closed room; everything
-/// that they meet, outlines too, is judged by the double-precision ray. Sixteen on end start at one point and are aimed
-/// at neighbours in the mesh, so that packets are tried as packets.
+/// Results of the rays, per kernel. One third of the rays is aimed at random points of random triangles, one
+/// third at points of their edges, and one third at vertices. They start at points inside a closed mesh or
+/// anywhere in a closed room. The double-precision ray judges every hit, also at silhouettes. Sixteen
+/// consecutive rays share their origin and are aimed at neighbors in the mesh, so that packet kernels trace
+/// coherent packets.
 struct Watertight {
     struct Kernel {
-        std::int64_t misses = 0; ///< rays that found nothing, and so got out
-        Faults faults;           ///< of all rays: slipped through an edge to what lies behind, or wrong otherwise
+        std::int64_t misses = 0; ///< rays without a hit, which escaped
+        Faults faults;           ///< over all rays: slipped through an edge to what is behind, or otherwise wrong
     };
     std::int64_t rays = 0;
     std::vector<Kernel> kernels; ///< in the order given
 };
 
-/// The scene must be closed (KernelScene::closed). Rays depend on the seed and their number alone. What is found means
-/// nothing where `control` was stopped. Throws Error where no point inside was found: the mesh is too thin.
+/// Runs the test. The scene must be closed (KernelScene::closed). The rays depend only on the seed and their
+/// number. The result is meaningless if `control` was stopped. Throws Error if no point inside was found
+/// because the mesh is too thin.
 Watertight test_watertight(const KernelScene& scene, const Judge& judge, const std::vector<TracerFor>& kernels,
                            std::int64_t rays, std::uint64_t seed, int threads, const Control& control);
 
-/// Points within a closed mesh, by the double-precision ray: the winding number around each is above 0.
+/// Returns points inside a closed mesh, where the winding number of the double-precision ray is above 0.
 std::vector<Vec3> points_inside(const KernelScene& scene, const Judge& judge, std::size_t count, std::uint64_t seed);
 
 } // namespace duet::compare

@@ -11,7 +11,7 @@ namespace duet::compare {
 
 namespace {
 
-/// What one camera sample adds to I₁ … I₇.
+/// Contributions of one camera sample to I₁ … I₇.
 using Steps = std::array<Rgbd, kRungCount>;
 
 Steps steps(const PreparedPair& pair, const raster::Screen* screen, const raytrace::CameraSample& sample) {
@@ -35,7 +35,7 @@ Steps steps(const PreparedPair& pair, const raster::Screen* screen, const raytra
 }
 
 bool is_valid(const Steps& steps) {
-    constexpr std::size_t kShadowsTaken = 2; // I₃: a light sample less the shadow of all lights may be negative
+    constexpr std::size_t kShadowsTaken = 2; // I₃ may be negative: a light sample minus the shadows of all lights
     for (std::size_t k = 0; k < kRungCount; ++k) {
         const Rgbd& c = steps[k];
         if (!is_finite(c) || (k != kShadowsTaken && (c.r < 0 || c.g < 0 || c.b < 0))) return false;
@@ -43,7 +43,7 @@ bool is_valid(const Steps& steps) {
     return true;
 }
 
-/// The sums of one half of a pixel's samples.
+/// Sums over one half of a pixel's samples.
 struct Sums {
     Steps steps{};
     int count = 0;
@@ -57,7 +57,7 @@ struct Sums {
     Rgb mean(std::size_t k) const { return count > 0 ? Rgb(steps[k] / static_cast<double>(count)) : Rgb(); }
 };
 
-/// One pixel; returns the number of invalid samples.
+/// Evaluates all ladder stages for one pixel. Returns the number of invalid samples.
 int climb_pixel(const PreparedPair& pair, const raster::Screen* screen, const raytrace::SplitTracer& tracer, int x,
                 int y, LadderPictures& pictures) {
     std::array<Sums, 2> sums;
@@ -87,7 +87,7 @@ LadderPictures climb(ImageRgb first, const PreparedPair& pair, const View& view,
     const std::shared_ptr<const raster::Screen> screen =
         raster::screen_of(pair.raster, view, pair.raster_settings);
     std::atomic<std::int64_t> invalid = 0;
-    std::mutex mutex; // of the progress
+    std::mutex mutex; // protects the progress
     int rows_done = 0;
     parallel_for(static_cast<std::size_t>(view.height), pair.raytrace_settings.threads, [&](std::size_t row) {
         for (int x = 0; x < view.width; ++x) {

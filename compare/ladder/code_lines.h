@@ -1,4 +1,4 @@
-// What each rung of the ladder costs in code: counted when the program is built, from the files that code.txt names.
+// Lines of code of each rung of the ladder. They are counted at build time from the files that code.txt lists.
 #pragma once
 
 #include <span>
@@ -7,12 +7,12 @@
 namespace duet::compare {
 
 struct CodeFile {
-    int rung;              ///< 1 to kRungCount; 0: the frame around all
-    std::string_view side; ///< "raster", "raytrace", or "both": shared code
-    std::string_view path; ///< from the top of the sources
-    int lines;             ///< neither blank nor only comment
+    int rung;              ///< 1 to kRungCount; 0: code that belongs to no rung
+    std::string_view side; ///< "raster", "raytrace", or "both" for shared code
+    std::string_view path; ///< relative to the root of the sources
+    int lines;             ///< neither blank nor comment only
 };
-/// In the order of the table.
+/// Returns the files in the order of code.txt.
 std::span<const CodeFile> code_files();
 
 } // namespace duet::compare

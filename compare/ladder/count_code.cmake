@@ -3,12 +3,12 @@
 function(count_lines FILE RESULT)
     file(READ ${FILE} text)
     string(PREPEND text "\n")
-    string(REGEX REPLACE "\n[ \t]*//[^\n]*" "" text "${text}") # lines of comment alone
+    string(REGEX REPLACE "\n[ \t]*//[^\n]*" "" text "${text}") # comment-only lines
     string(REGEX REPLACE "[ \t\r]+" "" text "${text}")
     string(REGEX REPLACE "\n+" "\n" text "${text}\n") # blank lines
     string(REGEX REPLACE "[^\n]" "" text "${text}")
     string(LENGTH "${text}" count)
-    math(EXPR count "${count} - 1") # the newline put before all
+    math(EXPR count "${count} - 1") # the newline inserted at the start
     set(${RESULT} ${count} PARENT_SCOPE)
 endfunction()
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One bar for a list of tasks, each a part of the whole by its cost.
+/// One progress bar for several tasks. The fraction of each is proportional to its cost.
 class Tasks {
 public:
     Tasks(double cost, bool quiet, const InterruptFlag& interrupt)
@@ -37,7 +37,7 @@ private:
     double cost_, begun_ = 0;
 };
 
-/// Measures and climbs; where a signal came, the result is worthless.
+/// Renders and measures everything. After an interrupt signal, the result is incomplete and must not be used.
 LadderResult find_out(const Scene& scene, const View& view, const LadderOptions& options,
                       const InterruptFlag& interrupt) {
     const Stopwatch watch;

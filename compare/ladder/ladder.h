@@ -1,4 +1,4 @@
-// `compare ladder`: both pipelines side by side, rung by rung, and where the difference of their pictures comes from.
+// `compare ladder`: compares both pipelines rung by rung and attributes the difference of their images to causes.
 #pragma once
 
 #include "compare/pipeline.h"
@@ -10,16 +10,17 @@ namespace duet::compare {
 
 struct LadderOptions {
     std::filesystem::path scene, folder;
-    PictureSize size{0, 0};    ///< 0: the scene's
-    PipelineSettings settings; ///< an odd raytrace_spp is rounded up: the samples come in two halves
-    std::string stats;         ///< a file for the figures of report.json, "-" for standard output, empty: none
+    PictureSize size{0, 0};    ///< 0: the scene's size
+    PipelineSettings settings; ///< an odd raytrace_spp is rounded up, because the samples form two halves
+    std::string stats;         ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;        ///< no progress bar, no table
 };
 
-/// Writes index.html, report.json, cause.png, the pictures of each rung (RUNG-QUANTITY-raster.png and -raytrace.png)
-/// and of the ladder (picture-0.png to picture-7.png, change-1.png to change-7.png) to the folder, which is made if it
-/// is missing; each whole or not at all. Returns the program's exit code: 0, or 130 where a signal came, and then
-/// nothing is written. Throws Error for a scene or folder that cannot be used.
+/// Writes index.html, report.json, cause.png, the images of each rung (RUNG-QUANTITY-raster.png and
+/// -raytrace.png) and of the ladder (picture-0.png to picture-7.png, change-1.png to change-7.png) to the
+/// folder, which is created if it is missing. Each file is written completely or not at all. Returns the
+/// program's exit code: 0, or 130 after an interrupt signal, in which case nothing is written. Throws Error for
+/// a scene or folder that cannot be used.
 int ladder(const LadderOptions& options);
 
 } // namespace duet::compare

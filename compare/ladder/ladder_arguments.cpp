@@ -1,4 +1,4 @@
-// The arguments of `compare ladder`.
+// Command-line arguments of `compare ladder`.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"

@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kWidest = 640; ///< of the pictures on the page, in pixels
+constexpr int kWidest = 640; ///< maximum width of images on the page, in pixels
 
-/// Each pixel the mean of a square of `factor` pixels a side, fewer at the right and lower edges.
+/// Returns the image reduced by a box filter of `factor` × `factor` pixels, fewer at the right and lower edges.
 ImageRgb reduced(const ImageRgb& image, int factor) {
     if (factor == 1) return image;
     ImageRgb small((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor);
@@ -28,7 +28,7 @@ ImageRgb reduced(const ImageRgb& image, int factor) {
     return small;
 }
 
-/// The picture as the source of an <img>.
+/// Returns the image as the source of an <img>.
 std::string data_url(const ImageRgb& image, int factor) {
     return "data:image/jpeg;base64," + base64(encode_jpeg(reduced(image, factor), {.jpeg_quality = 92}));
 }

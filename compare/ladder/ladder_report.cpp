@@ -30,7 +30,7 @@ json shares_json(const LadderResult& result) {
     return list;
 }
 
-/// The figures of one rung; null where no pixel is finite.
+/// Returns the error metrics of one rung; null if no pixel is finite.
 json error_json(const ErrorMetrics& m) {
     if (m.pixels == 0) return nullptr;
     return {{"rmse", m.rmse},
@@ -79,7 +79,7 @@ json rung_json(const LadderResult& result, std::size_t k) {
 
 std::string percent(double part) {
     std::ostringstream text;
-    text << std::fixed << std::setprecision(2) << (std::abs(part) < 5e-5 ? 0 : 100 * part) << " %"; // no "-0.00"
+    text << std::fixed << std::setprecision(2) << (std::abs(part) < 5e-5 ? 0 : 100 * part) << " %"; // avoids "-0.00"
     return text.str();
 }
 
@@ -97,7 +97,8 @@ int lines_of(std::size_t k, std::string_view side) {
     return lines;
 }
 
-/// One row of the second table: a quantity, or what is missing. The lines of code stand in the rung's first row.
+/// Prints one row of the second table: a quantity, or that it is missing. Only a rung's first row has its lines
+/// of code.
 void print_row(std::ostream& out, std::size_t k, bool first, const MeasuredQuantity* q) {
     out << "  " << k + 1 << ' ' << std::left << std::setw(14) << (q ? q->name : kRungNames[k].id) << std::right
         << std::setw(16) << (q ? error_text(*q) : "-") << std::setw(12)

@@ -1,4 +1,4 @@
-// What `compare ladder` tells: as JSON, as a table, as a page.
+// The results of `compare ladder` as JSON, as a table and as a page.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -12,7 +12,7 @@
 
 namespace duet::compare {
 
-/// All that was found out about one scene.
+/// All results for one scene.
 struct LadderResult {
     const Scene& scene;
     View view;
@@ -22,21 +22,22 @@ struct LadderResult {
     LadderPictures pictures;
     Shares shares;
     CauseMap map;
-    ImageMetrics metrics; ///< of the rasterizer's picture from the path tracer's
-    double seconds = 0;   ///< of everything, from the loaded scene on
+    ImageMetrics metrics; ///< of the rasterizer's image against the path tracer's
+    double seconds = 0;   ///< total time, without loading the scene
 };
 
-/// report.json: scene, version, width, height, threads, seed, max_depth, samples_per_pixel (raster, raytrace), seconds,
-/// metrics; `shares`: eight of {cause, title, share, largest_in: part of the visible pixels}; shares_sum,
-/// difference_rms, nothing_to_explain, visible_pixels (part of all); `rungs`: seven of {rung, id, title, note, ways,
-/// quantities: [{name, seconds, samples_per_pixel, metrics (rmse, mae, relmse, mean_signed_error) or hits}], code:
-/// {raster, raytrace, both: {lines, files}}}; frame: the code that is no rung's; invalid_samples.
+/// Returns report.json: scene, version, width, height, threads, seed, max_depth, samples_per_pixel (raster,
+/// raytrace), seconds, metrics; `shares`: eight of {cause, title, share, largest_in: fraction of the visible
+/// pixels}; shares_sum, difference_rms, nothing_to_explain, visible_pixels (fraction of all); `rungs`: seven of
+/// {rung, id, title, note, ways, quantities: [{name, seconds, samples_per_pixel, metrics (rmse, mae, relmse,
+/// mean_signed_error) or hits}], code: {raster, raytrace, both: {lines, files}}}; frame: the code that belongs
+/// to no rung; invalid_samples.
 nlohmann::json ladder_json(const LadderResult& result);
 
-/// The table for the terminal.
+/// Prints the table for the terminal.
 void print_ladder(std::ostream& out, const LadderResult& result);
 
-/// The page, one self-contained file. Pictures wider than 640 pixels are shown smaller there.
+/// Returns the page as one self-contained file. It shows images wider than 640 pixels at reduced size.
 std::string ladder_page(const LadderResult& result, const nlohmann::json& report);
 
 } // namespace duet::compare

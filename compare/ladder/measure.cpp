@@ -9,7 +9,7 @@ namespace duet::compare {
 
 namespace {
 
-/// How a sample's cost compares with that of a whole path; roughly, for the progress bar.
+/// Approximate cost of a sample relative to a path-traced one, for the progress bar.
 constexpr double kRasterCost = 0.1, kRayCost = 0.4;
 
 struct Rendered {
@@ -64,7 +64,7 @@ ImageRgb hit_picture(const Image<Hit>& hits) {
     ImageRgb picture(hits.width(), hits.height(), Rgb(0.01f));
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) continue;
-        // Steps by the golden ratio spread any number of hues evenly.
+        // Multiples of the golden ratio distribute any number of hues evenly.
         const double hue = 2 * kPiDouble * std::fmod(hits[i].object * 0.6180339887498949, 1.0);
         const float shade = 0.25f + 0.75f * unit_float(high_bits(mix_bits(hits[i].primitive + 1)));
         const auto channel = [&](double turn) {

@@ -1,4 +1,4 @@
-// Renders the rungs of the ladder: each quantity by itself, both ways, with its time and error.
+// Renders the rungs of the ladder: each quantity separately in both pipelines, with its time and error.
 #pragma once
 
 #include "compare/hits/hit_agreement.h"
@@ -11,29 +11,29 @@
 namespace duet::compare {
 
 struct MeasuredSide {
-    ImageRgb picture; ///< linear; of hits: false colours
+    ImageRgb picture; ///< linear; false colors for hits
     double seconds = 0;
     int samples_per_pixel = 0;
 };
 struct MeasuredQuantity {
     std::string name;
     MeasuredSide raster, raytrace;
-    ErrorMetrics error;               ///< of the rasterizer's from the path tracer's; of hits: zero
-    std::optional<HitAgreement> hits; ///< of rung 1
+    ErrorMetrics error;               ///< of the rasterizer's image against the path tracer's; zero for hits
+    std::optional<HitAgreement> hits; ///< present for rung 1 only
 };
 using MeasuredRung = std::vector<MeasuredQuantity>;
 
-/// Hands out a Control for the next task, whose expected cost is given as a number of path-traced samples a pixel.
+/// Returns a Control for the next task. `cost` is its expected cost in path-traced samples per pixel.
 using NextTask = std::function<Control(double cost)>;
-/// The tasks' costs together.
+/// Returns the total cost of all tasks of the plan.
 double measuring_cost(const std::array<RungPlan, kRungCount>& plan);
 
-/// Renders what the plan says. Stopped, it returns what is finished.
+/// Renders what the plan specifies. If stopped, returns what is finished.
 std::array<MeasuredRung, kRungCount> measure_rungs(const Scene& scene, const View& view,
                                                    const std::array<RungPlan, kRungCount>& plan, int threads,
                                                    const NextTask& next_task);
 
-/// Each object has a hue of its own, its primitives shades of it; what hits nothing is dark.
+/// Returns the hits in false colors: each object has its own hue, each primitive a shade of it, and misses are dark.
 ImageRgb hit_picture(const Image<Hit>& hits);
 
 } // namespace duet::compare

@@ -20,7 +20,7 @@ Quantity quantity(std::string name, const PreparedPair& pair, const raster::Sett
 Quantity hits(const PreparedPair& pair) {
     raster::Settings raster = pair.raster_settings;
     raster.samples_per_pixel = 1;
-    raster.shading = raster::Shading::kDepth; // the cheapest picture: only its hits are kept
+    raster.shading = raster::Shading::kDepth; // cheapest shading: only the hits are used
     raster.aovs.hit = true;
     raytrace::Settings raytrace = pair.raytrace_settings;
     raytrace.samples_per_pixel = 1;
@@ -38,7 +38,7 @@ Quantity surface(const char* name, const PreparedPair& pair, raster::Shading sha
     return quantity(name, pair, raster, raytrace);
 }
 
-/// Parts of the light alone. `environment`: whether the settings that name it are left on.
+/// Renders some components of the light alone. `environment` sets the settings of that name.
 Quantity light(const char* name, const PreparedPair& pair, const raster::PartSet& parts,
                raytrace::Integrator integrator, bool environment) {
     raster::Settings raster = pair.raster_settings;
@@ -54,7 +54,7 @@ constexpr raster::PartSet kLights{.emission = true, .direct = true, .environment
 constexpr raster::PartSet kEnvironment{.emission = false, .direct = false, .environment = true, .reflection = false};
 constexpr raster::PartSet kReflection{.emission = false, .direct = false, .environment = false, .reflection = true};
 
-/// The rung, or, where the scene does not have the quantity, a note that says so.
+/// Returns the rung, or only the note `absent` if the scene does not have the quantity.
 RungPlan if_present(bool present, RungPlan rung, const char* absent) {
     if (present) return rung;
     return {{}, "", "", absent};
@@ -68,8 +68,8 @@ PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& common) {
     raster::Settings raster;
     raster.samples_per_pixel = common.raster_spp;
     raytrace::Settings raytrace;
-    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves,
-    raytrace.aovs.variance = true; // which are replicates
+    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves
+    raytrace.aovs.variance = true; // makes the halves replicates
     raytrace.max_depth = common.max_depth;
     raster.threads = raytrace.threads = common.threads;
     raster.seed = raytrace.seed = common.seed;
@@ -90,7 +90,7 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
                            "Surface point and texture of its hits.",
                            "Shared code: from a hit on, both are the same. Where these pictures differ, samples lie "
                            "elsewhere in the pixel."};
-    PreparedPair open = pair; // nothing casts a shadow
+    PreparedPair open = pair; // renders without shadows
     open.raster_settings.shadows = false;
     const RungPlan direct{{light("direct", open, kLights, Integrator::kUnshadowed, false)},
                           "Each light in closed form; on rough metal by a linearly transformed cosine.",

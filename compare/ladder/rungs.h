@@ -1,4 +1,4 @@
-// The rungs of the ladder: what is compared at each, and how either pipeline renders it by itself.
+// The rungs of the ladder: the quantity that each one compares, and how each pipeline renders it separately.
 #pragma once
 
 #include "compare/pipeline.h"
@@ -11,12 +11,12 @@
 
 namespace duet::compare {
 
-/// The rungs in their fixed order. A cause of difference is named for the rung at which the traced quantity takes its
-/// place.
+/// The rungs in their fixed order. A cause of difference is named after the rung at which the traced quantity
+/// replaces the approximation.
 struct RungName {
-    const char* id;    ///< in files and keys
-    const char* title; ///< the quantity
-    const char* cause; ///< what a difference is called that goes away at this rung
+    const char* id;    ///< identifier in files and keys
+    const char* title; ///< name of the quantity
+    const char* cause; ///< name of the difference that disappears at this rung
 };
 inline constexpr std::size_t kRungCount = 7;
 inline constexpr std::array<RungName, kRungCount> kRungNames{{
@@ -29,16 +29,16 @@ inline constexpr std::array<RungName, kRungCount> kRungNames{{
     {"everything", "Everything", "indirect light"},
 }};
 
-/// The two pipelines, prepared for one scene, and what they share.
+/// Both pipelines, prepared for the same scene.
 struct PreparedPair {
     raster::Prepared raster;
-    raster::Settings raster_settings; ///< of the full picture
+    raster::Settings raster_settings; ///< of the full image
     raytrace::Prepared raytrace;
-    raytrace::Settings raytrace_settings; ///< of the full picture; an even number of samples
+    raytrace::Settings raytrace_settings; ///< of the full image, with an even number of samples
 };
 PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& settings);
 
-/// Something that both pipelines render, alone: in Rendering::radiance, or, of rung 1, in Rendering::hit.
+/// A quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in Rendering::hit.
 struct Quantity {
     std::string name;
     RenderFunction raster, raytrace;
@@ -46,13 +46,14 @@ struct Quantity {
 };
 
 struct RungPlan {
-    std::vector<Quantity> quantities;     ///< none where the scene does not have the rung's light
-    std::string raster_way, raytrace_way; ///< how each comes by it: a sentence
+    std::vector<Quantity> quantities;     ///< empty if the scene does not have the rung's light
+    std::string raster_way, raytrace_way; ///< how each pipeline computes it, as a sentence
     std::string note;                     ///< what the scene or the rasterizer lacks; empty: nothing
 };
 
-/// An approximation that the rasterizer learns belongs into its rung's settings here, and, where it makes light, into
-/// raster::LightParts: the rest of the ladder follows.
+/// Returns what both pipelines render at each rung. A new approximation of the rasterizer must be added to the
+/// settings of its rung here and, if it contributes light, to raster::LightParts. The rest of the ladder needs
+/// no change.
 std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPair& pair);
 
 } // namespace duet::compare

@@ -13,7 +13,7 @@ namespace {
 
 double product(Rgbd a, Rgbd b) { return a.r * b.r + a.g * b.g + a.b * b.b; }
 
-/// Δ_k of one pixel and half: k counts from 0 here.
+/// Returns Δ_k of one pixel and half. Here k counts from 0.
 Rgbd change(const LadderPictures& pictures, std::size_t half, std::size_t k, std::size_t pixel) {
     const auto& steps = pictures.halves[half];
     return Rgbd(k == 0 ? pictures.first[pixel] : steps[k - 1][pixel]) - Rgbd(steps[k][pixel]);
@@ -40,7 +40,7 @@ Image<Causes> all_causes(const LadderPictures& pictures) {
     return causes;
 }
 
-/// The cause with the largest sum over a pixel and its neighbours.
+/// Returns the cause with the largest sum over a pixel and its neighbors.
 std::size_t largest_around(const Image<Causes>& causes, std::size_t pixel) {
     const int px = static_cast<int>(pixel) % causes.width(), py = static_cast<int>(pixel) / causes.width();
     Causes sums{};
@@ -64,9 +64,9 @@ Causes pixel_causes(const LadderPictures& pictures, std::size_t pixel) {
 Shares shares(const LadderPictures& pictures) {
     const int width = pictures.first.width(), height = pictures.first.height();
     Causes total{};
-    double squares = 0, light = 0; // of D, and of I₇
+    double squares = 0, light = 0; // sums of squares of D and of I₇
     for (int y = 0; y < height; ++y) {
-        Causes row{}; // a sum of its own: rounding errors grow with the length of a sum
+        Causes row{}; // summed per row, because rounding errors grow with the length of a sum
         double row_squares = 0;
         for (int x = 0; x < width; ++x) {
             const auto pixel =
@@ -109,7 +109,7 @@ CauseMap map_causes(const LadderPictures& pictures) {
 }
 
 std::array<int, 3> cause_color(std::size_t cause) {
-    // Okabe and Ito 2008, «Color Universal Design»; noise is grey.
+    // The colors are from Okabe and Ito 2008, "Color Universal Design". Noise is gray.
     static constexpr std::array<std::array<int, 3>, kCauseCount> kColors{{{86, 180, 233},
                                                                           {240, 228, 66},
                                                                           {204, 121, 167},
@@ -122,7 +122,7 @@ std::array<int, 3> cause_color(std::size_t cause) {
 }
 
 ImageRgb cause_picture(const CauseMap& map) {
-    constexpr double kFull = 24; // steps from which on a colour is full
+    constexpr double kFull = 24; // 8-bit steps from which on a color has full brightness
     ImageRgb picture(map.cause.width(), map.cause.height());
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const auto color = cause_color(map.cause[i]);

@@ -10,10 +10,10 @@ namespace duet::compare {
 
 namespace {
 
-/// Keeps zero references from dividing by zero, and dark ones from dominating.
+/// This term avoids division by zero and keeps dark references from dominating.
 constexpr double kRelativeFloor = 0.01;
 
-/// The share of the pixels that relmse_trimmed leaves out: a few fireflies are most of many a relMSE.
+/// Fraction of the pixels that relmse_trimmed excludes. In many images a few fireflies cause most of the relMSE.
 constexpr double kTrimmedShare = 0.001;
 
 struct Sums {
@@ -42,7 +42,7 @@ struct Sums {
 bool has_nan(Rgb c) { return std::isnan(c.r) || std::isnan(c.g) || std::isnan(c.b); }
 bool has_infinity(Rgb c) { return std::isinf(c.r) || std::isinf(c.g) || std::isinf(c.b); }
 
-/// The mean of the smallest relative squared errors, one a pixel.
+/// Returns the mean of the relative squared errors, one per pixel, without the largest.
 double trimmed_mean(std::vector<double>& errors) {
     const std::size_t kept =
         errors.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(errors.size()));
@@ -53,7 +53,7 @@ double trimmed_mean(std::vector<double>& errors) {
     return sum / static_cast<double>(kept);
 }
 
-/// Counts what is not finite in a pixel of A or B: true where something is.
+/// Counts non-finite values in a pixel of A and B. Returns true if there are any.
 bool count_unusable(ErrorMetrics& metrics, Rgb a, Rgb b) {
     metrics.nan_a += has_nan(a);
     metrics.nan_b += has_nan(b);
@@ -74,7 +74,7 @@ ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
     relative.reserve(a.size());
     Sums total;
     for (int y = 0; y < a.height(); ++y) {
-        Sums row; // summed by row first: the error of a long sum grows with its length
+        Sums row; // summed per row first, because the rounding error of a sum grows with its length
         for (int x = 0; x < a.width(); ++x) {
             if (count_unusable(metrics, a(x, y), b(x, y))) continue;
             const Rgbd value(a(x, y)), reference(b(x, y)), difference = value - reference;
@@ -94,7 +94,7 @@ ErrorMetrics error_metrics(const ImageRgb& a, const ImageRgb& b) {
         total.add(row);
     }
     const double pixels = static_cast<double>(metrics.pixels);
-    metrics.mse = total.squared / (3 * pixels); // 0 / 0: NaN, as promised
+    metrics.mse = total.squared / (3 * pixels); // 0 / 0 gives NaN, as documented
     metrics.rmse = std::sqrt(metrics.mse);
     metrics.mae = total.absolute / (3 * pixels);
     metrics.psnr = -10 * std::log10(metrics.mse);

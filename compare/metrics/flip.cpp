@@ -14,15 +14,16 @@ namespace {
 
 using Filters = std::array<SeparableFilter, kFlipFilters>;
 
-// Colour -------------------------------------------------------------------------------------------------------------
+// Color --------------------------------------------------------------------------------------------------------------
 
-/// A 3 × 3 matrix on colours, in rows.
+/// A 3 × 3 matrix for colors, by rows.
 struct ColorMatrix {
     Vec3 x, y, z;
     Vec3 operator*(Vec3 c) const { return {dot(x, c), dot(y, c), dot(z, c)}; }
 };
 
-/// Linear sRGB to CIE XYZ with each row scaled to the sum 1: relative to the white point, which is (1, 1, 1). And back.
+/// Matrices from linear sRGB to CIE XYZ and back. Each row of the first is scaled to the sum 1: XYZ is relative
+/// to the white point, which becomes (1, 1, 1).
 constexpr ColorMatrix kToXyz{{0.4338953888f, 0.3762423726f, 0.1898622385f},
                              {0.2126368217f, 0.7151829818f, 0.0721801965f},
                              {0.0177524232f, 0.1094656287f, 0.8727819482f}};
@@ -32,20 +33,21 @@ constexpr ColorMatrix kFromXyz{{3.0803419883f, -1.5373989695f, -0.5429430188f},
 
 Vec3 as_vector(Rgb c) { return {c.r, c.g, c.b}; }
 
-/// YCxCz, a linear space of opponent colours with L*a*b*'s scale.
+/// Converts to YCxCz, a linear opponent color space with the scale of L*a*b*.
 Vec3 opponent(Rgb linear) {
     const Vec3 xyz = kToXyz * as_vector(linear);
     return {116 * xyz.y - 16, 500 * (xyz.x - xyz.y), 200 * (xyz.y - xyz.z)};
 }
 
-/// Linear RGB, clamped to what a screen shows.
+/// Converts YCxCz to linear RGB, clamped to the range of a display.
 Vec3 from_opponent(Vec3 c) {
     const float y = (c.x + 16) / 116;
     const Vec3 rgb = kFromXyz * Vec3(y + c.y / 500, y, y - c.z / 200);
     return {clamp(rgb.x, 0.0f, 1.0f), clamp(rgb.y, 0.0f, 1.0f), clamp(rgb.z, 0.0f, 1.0f)};
 }
 
-/// CIE L*a*b* with a* and b* scaled by L*/100: colours differ less where it is dark (Hunt's effect).
+/// Converts to CIE L*a*b* with a* and b* scaled by L*/100: color differences are less visible in the dark (Hunt
+/// effect).
 Vec3 hunt_lab(Vec3 linear) {
     constexpr float kDelta = 6.0f / 29;
     const auto f = [](float t) {
@@ -56,13 +58,13 @@ Vec3 hunt_lab(Vec3 linear) {
     return {lightness, 0.01f * lightness * 500 * (x - y), 0.01f * lightness * 200 * (y - z)};
 }
 
-/// The HyAB distance of two colours, to the power q_c = 0.7.
+/// Returns the HyAB distance of two colors to the power q_c = 0.7.
 float color_distance(Vec3 a, Vec3 b) {
     const Vec3 d = a - b;
     return std::pow(std::abs(d.x) + std::sqrt(sqr(d.y) + sqr(d.z)), 0.7f);
 }
 
-/// The distance mapped to [0, 1]: most of the range, 0.95, for the lower 0.4 of what can occur (§4.1.3).
+/// Maps the distance to [0, 1]. The lower 0.4 of the possible distances get most of the range, 0.95 (§4.1.3).
 float color_error(Vec3 a, Vec3 b) {
     static const float largest = color_distance(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1}));
     constexpr float kPt = 0.95f;
@@ -72,8 +74,8 @@ float color_error(Vec3 a, Vec3 b) {
 
 // Filtering ----------------------------------------------------------------------------------------------------------
 
-/// The rows of a picture that are worked on at once: few enough for a cache, many enough to pay for the rows beyond
-/// them that the filters reach.
+/// Number of image rows per band. A band is small enough for the cache, and large enough to amortize the rows
+/// beyond it that the filters reach.
 constexpr int kBandRows = 64;
 
 struct Rows {
@@ -91,7 +93,7 @@ void add_scaled(float* sum, const float* values, float factor, int count) {
     for (int x = 0; x < count; ++x) sum[x] += factor * values[x];
 }
 
-/// Beyond its borders a picture goes on with the values at its borders.
+/// Filters one row. Beyond its borders, the image is extended with its border values.
 void filter_row(const float* values, int width, const Kernel& kernel, std::vector<float>& padded, float* result) {
     const int r = radius(kernel);
     padded.assign(static_cast<std::size_t>(width + 2 * r), values[0]);
@@ -102,7 +104,8 @@ void filter_row(const float* values, int width, const Kernel& kernel, std::vecto
         add_scaled(result, padded.data() + r + k, kernel[static_cast<std::size_t>(r + k)], width);
 }
 
-/// One channel filtered, rows y0 to y1 − 1 of a picture of `height` rows; `channel` holds all rows that this needs.
+/// Filters one channel in rows y0 to y1 − 1 of an image of `height` rows. `channel` must contain all rows
+/// within reach.
 Rows apply(const SeparableFilter& filter, Rows& channel, int y0, int y1, int height) {
     const int r = radius(filter.vertical), width = channel.width;
     Rows across(std::max(y0 - r, 0), std::min(y1 + r, height), width), result(y0, y1, width);
@@ -118,13 +121,13 @@ Rows apply(const SeparableFilter& filter, Rows& channel, int y0, int y1, int hei
 
 // The metric ---------------------------------------------------------------------------------------------------------
 
-/// What an observer sees of a band of rows: filtered colours, and how strong edges and points are.
+/// What an observer perceives of a band of rows: filtered colors and the strength of edges and points.
 struct Perceived {
     std::vector<Vec3> color;
     std::vector<float> edge, point;
 };
 
-/// `linear(pixel)` is what the screen shows, linear RGB in [0, 1].
+/// `linear(pixel)` returns the displayed color as linear RGB in [0, 1].
 template <typename ToLinear>
 Perceived perceive(const ImageRgb& image, const ToLinear& linear, const Filters& filters, int y0, int y1) {
     int reach = 0;
@@ -144,14 +147,15 @@ Perceived perceive(const ImageRgb& image, const ToLinear& linear, const Filters&
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 color{f[kAchromatic][i], f[kRedGreen][i], f[kBlueYellowNarrow][i] + f[kBlueYellowWide][i]};
         seen.color[i] = hunt_lab(from_opponent(color));
-        // Features are found in Y from 0 to 1, which Y of YCxCz is but for a factor (and an offset they don't see).
+        // Features are detected in Y with range 0 to 1. It equals Y of YCxCz up to a factor and an offset,
+        // which the derivative filters ignore.
         seen.edge[i] = std::sqrt(sqr(f[kEdgeX][i]) + sqr(f[kEdgeY][i])) / 116;
         seen.point[i] = std::sqrt(sqr(f[kPointX][i]) + sqr(f[kPointY][i])) / 116;
     }
     return seen;
 }
 
-/// Raises the rows from y0 of the map to the errors found between two perceptions of them (§4.3).
+/// Raises the rows of the map from y0 on to the errors between two perceptions of them (§4.3).
 void raise(ImageFloat& map, int y0, const Perceived& test, const Perceived& reference) {
     float* errors = &map(0, y0);
     for (std::size_t i = 0; i < test.color.size(); ++i) {
@@ -163,7 +167,8 @@ void raise(ImageFloat& map, int y0, const Perceived& test, const Perceived& refe
     }
 }
 
-/// perceive_band(image, y0, y1, k) is exposure k's perception; the map gets the largest error of all.
+/// Computes the maximum error over all exposures. perceive_band(image, y0, y1, k) returns the perception at
+/// exposure k.
 template <typename PerceiveBand>
 ImageFloat error_map(const ImageRgb& test, const ImageRgb& reference, int exposures, int threads,
                      const PerceiveBand& perceive_band) {
@@ -176,7 +181,7 @@ ImageFloat error_map(const ImageRgb& test, const ImageRgb& reference, int exposu
     return map;
 }
 
-/// Both pictures with the pixels that are not finite in one of them black in both.
+/// Both images, with pixels that are not finite in one of them set to black in both.
 struct FinitePair {
     ImageRgb test, reference;
     std::vector<std::size_t> bad;
@@ -193,7 +198,7 @@ FinitePair finite_pair(const ImageRgb& test, const ImageRgb& reference) {
     return pair;
 }
 
-/// The error up to which the smallest errors add up to more than `share` of their sum.
+/// Returns the smallest error such that all errors up to it add up to more than the fraction `share` of the sum.
 double weighted_percentile(const std::vector<float>& sorted, double sum, double share) {
     double running = 0;
     for (const float error : sorted)
@@ -219,23 +224,23 @@ void pool(Flip& flip, const std::vector<std::size_t>& bad) {
 
 // Exposures ----------------------------------------------------------------------------------------------------------
 
-/// Narkowicz's fit of the ACES film curve, its own exposure of 0.6 taken out: (a x² + b x) / (c x² + d x + e).
+/// Narkowicz's fit of the ACES film curve, without its built-in exposure of 0.6: (a x² + b x) / (c x² + d x + e).
 constexpr double kA = 0.36 * 2.51, kB = 0.6 * 0.03, kC = 0.36 * 2.43, kD = 0.6 * 0.59, kE = 0.14;
 
-/// The curve clamped to [0, 1]; beyond the clamped argument it is 1 in any case.
+/// Evaluates the curve, clamped to [0, 1]. Beyond the clamped argument it is 1 in any case.
 float aces(float x) {
     constexpr auto a = float(kA), b = float(kB), c = float(kC), d = float(kD), e = float(kE);
     x = clamp(x, 0.0f, 1e4f);
     return std::min((a * x * x + b * x) / (c * x * x + d * x + e), 1.0f);
 }
 
-/// The x of which the curve is t: the positive root of (a − c t) x² + (b − d t) x − e t.
+/// Returns the x at which the curve is t: the positive root of (a − c t) x² + (b − d t) x − e t.
 double aces_inverse(double t) {
     const double p = (kB - kD * t) / (kA - kC * t) / 2, q = -kE * t / (kA - kC * t);
     return -p + std::sqrt(p * p - q);
 }
 
-/// Sets start, stop and number of exposures; 0 to 0, one of them, where the reference is black.
+/// Sets start, stop and number of exposures. A black reference gets a single exposure, 0.
 void choose_exposures(HdrFlip& flip, const ImageRgb& reference, const std::vector<std::size_t>& bad) {
     std::vector<double> luminances;
     std::size_t next_bad = 0;
@@ -272,7 +277,7 @@ Flip flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_deg
     return result;
 }
 
-// The paper encodes each exposure to sRGB and decodes it again: that is left out.
+// The paper encodes each exposure to sRGB and decodes it again. This is omitted here.
 HdrFlip hdr_flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_degree, int threads) {
     const FinitePair pair = finite_pair(test, reference);
     const Filters filters = flip_filters(pixels_per_degree);

@@ -1,39 +1,42 @@
-// FLIP: how different two pictures look to someone who alternates between them.
+// FLIP: the perceived difference of two images when alternating between them.
 #pragma once
 
 #include "common/image/image.h"
 
 namespace duet::compare {
 
-/// A screen 0.7 m wide with 3840 pixels seen from 0.7 m: the paper's observer.
+/// The paper's viewing conditions: a screen 0.7 m wide with 3840 pixels, viewed from 0.7 m.
 inline constexpr double kFlipPixelsPerDegree = 3840 * 3.14159265358979323846 / 180; // 67.02
 
-/// A map of errors in [0, 1] and its pooled values. A pixel that is not finite in either picture is black in both for
-/// its neighbours, NaN in the map, and left out of the values, which are NaN where no pixel is left.
+/// An error map in [0, 1] and its pooled values. A pixel that is not finite in either image is set to black in
+/// both images when its neighbors are filtered. It is NaN in the map and excluded from the pooled values, which
+/// are NaN if no pixel is left.
 struct Flip {
     ImageFloat map;
     double mean = 0;
-    /// Below it lie the pixels that hold half of the sum of all errors; the quartiles: a quarter, three quarters.
+    /// Errors below which the pixels hold one half, one quarter and three quarters of the sum of all errors.
     double weighted_median = 0, first_quartile = 0, third_quartile = 0;
     double min = 0, max = 0;
 };
 
-/// FLIP of two pictures of sRGB-encoded values in [0, 1] (clamped to it), seen at so many pixels a degree of visual
-/// angle. Throws Error where the pictures differ in size. The same bits for any number of threads (0: all).
-/// Andersson et al. 2020, «FLIP: A Difference Evaluator for Alternating Images».
+/// Computes FLIP of two images of sRGB-encoded values, clamped to [0, 1]. `pixels_per_degree` is the number of
+/// pixels per degree of visual angle. Throws Error if the images differ in size. The result is bitwise
+/// identical for any number of threads (0: all). Andersson et al. 2020, "FLIP: A Difference Evaluator for
+/// Alternating Images".
 Flip flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_degree = kFlipPixelsPerDegree,
           int threads = 0);
 
-/// The largest error of any exposure, pixel by pixel.
+/// The maximum of the FLIP error over all exposures, per pixel.
 struct HdrFlip : Flip {
     double start_exposure = 0, stop_exposure = 0; ///< in stops: radiance is scaled by 2^exposure
-    int exposures = 0;                            ///< evenly from start to stop
+    int exposures = 0;                            ///< number of exposures, evenly spaced from start to stop
 };
 
-/// FLIP of two pictures of linear radiance (below 0: taken as 0), over the exposures which take the reference's
-/// brightest and its median luminance to 0.85 of white on the ACES curve, about a stop apart. Where the median is 0
-/// it is that of the luminances above 0. Otherwise as flip().
-/// Andersson et al. 2021, «Visualizing Errors in Rendered High Dynamic Range Images».
+/// Computes HDR-FLIP of two images of linear radiance (negative values count as 0). The exposures range from
+/// the one that maps the reference's maximum luminance to 0.85 of white on the ACES curve to the one that does
+/// so for its median, about one stop apart. If the median is 0, the median of the positive luminances is used.
+/// Parameters and errors are those of flip(). Andersson et al. 2021, "Visualizing Errors in Rendered High
+/// Dynamic Range Images".
 HdrFlip hdr_flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_degree = kFlipPixelsPerDegree,
                  int threads = 0);
 

@@ -24,7 +24,7 @@ Kernel scaled(const Taps& t, double factor) {
     return kernel;
 }
 
-/// Positive taps are scaled to the sum 1, negative ones to −1.
+/// Scales positive taps to the sum 1 and negative taps to the sum −1.
 Kernel balanced(const Taps& t) {
     double positive = 0, negative = 0;
     for (const double tap : t) (tap > 0 ? positive : negative) += std::abs(tap);
@@ -33,7 +33,7 @@ Kernel balanced(const Taps& t) {
     return kernel;
 }
 
-/// A term a √(π/b) exp(−π² z/b) of a contrast sensitivity function, z in degrees squared (Table 1).
+/// A term a √(π/b) exp(−π² z/b) of a contrast sensitivity function, with z in degrees squared (Table 1).
 struct Sensitivity {
     double a, b;
 };
@@ -41,10 +41,11 @@ constexpr Sensitivity kLightness{1, 0.0047}, kRedness{1, 0.0053}, kBlueness[2] =
 
 } // namespace
 
-// A Gaussian of x² + y² is the product of one of x and one of y, and so is its derivative by x. The papers' kernels
-// are square and normalized by sums over the square, which are products of sums, too: nothing is approximated here.
+// A Gaussian of x² + y² is the product of a Gaussian of x and one of y, and so is its derivative by x. The
+// papers' kernels are square and normalized by sums over the square, which are products of sums as well.
+// Nothing is approximated here.
 std::array<SeparableFilter, kFlipFilters> flip_filters(double pixels_per_degree) {
-    // All contrast filters reach three standard deviations of the widest.
+    // All contrast filters extend to three standard deviations of the widest one.
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kBlueness[0].b / 2) / kPiDouble * pixels_per_degree));
     const auto gaussian = [&](Sensitivity s) {
         return taps(radius, [&](double x) { return std::exp(-sqr(kPiDouble * x / pixels_per_degree) / s.b); });

@@ -1,4 +1,4 @@
-// The filters of FLIP: how much detail an observer sees, and where an edge or a point is.
+// The filters of FLIP: contrast sensitivity, edge detection and point detection.
 #pragma once
 
 #include <array>
@@ -6,16 +6,16 @@
 
 namespace duet::compare {
 
-/// An odd number of taps; the middle one is for the pixel itself.
+/// An odd number of filter taps, centered on the pixel.
 using Kernel = std::vector<float>;
 
-/// A two-dimensional filter as two of one dimension, applied to one channel of a picture.
+/// A two-dimensional filter of one image channel as the product of two one-dimensional filters.
 struct SeparableFilter {
-    std::size_t channel; ///< of Y, Cx, Cz
+    std::size_t channel; ///< index into Y, Cx, Cz
     Kernel horizontal, vertical;
 };
 
-/// The eight filters, by what they give.
+/// The eight filters, named by their output.
 enum FlipFilter : std::size_t {
     kAchromatic,
     kRedGreen,
@@ -28,8 +28,9 @@ enum FlipFilter : std::size_t {
     kFlipFilters
 };
 
-/// Contrast sensitivity and feature detection for an observer who sees so many pixels in a degree of visual angle
-/// (above 0; 67 and less give at most 21 taps). Andersson et al. 2020, §4.1.1 and §4.2.1.
+/// Returns the contrast sensitivity and feature detection filters for an observer with `pixels_per_degree`
+/// pixels per degree of visual angle, above 0; up to 67 gives at most 21 taps. Andersson et al. 2020, §4.1.1
+/// and §4.2.1.
 std::array<SeparableFilter, kFlipFilters> flip_filters(double pixels_per_degree);
 
 } // namespace duet::compare

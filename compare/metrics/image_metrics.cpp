@@ -10,7 +10,7 @@ namespace duet::compare {
 
 namespace {
 
-/// The three figures that need linear values, of the decoded pictures.
+/// Copies the metrics that need linear values from those of the decoded images.
 void take_linear_figures(ErrorMetrics& metrics, const ErrorMetrics& linear) {
     metrics.relmse = linear.relmse;
     metrics.relmse_trimmed = linear.relmse_trimmed;

@@ -1,4 +1,4 @@
-// All figures of a pair of pictures.
+// All metrics of a pair of images.
 #pragma once
 
 #include "common/image/image_file.h"
@@ -17,28 +17,29 @@ using Encoding = PixelFile::Encoding;
 struct ImageMetrics {
     ErrorMetrics errors;
     double ssim = 0;
-    HdrFlip flip;           ///< of encoded pictures FLIP: no exposures
-    std::optional<ZTest> z; ///< where a variance is known
+    HdrFlip flip;           ///< HDR-FLIP of linear images; FLIP of encoded images, with no exposures
+    std::optional<ZTest> z; ///< present if a variance is known
 };
 
-/// The figures of A against the reference, both as stored: linear radiance, or sRGB-encoded values in [0, 1]. Of the
-/// latter relMSE, SMAPE and the mean signed error compare the decoded values, all else the values as they are. The
-/// z-test is the caller's. Throws Error where the pictures differ in size.
+/// Computes the metrics of A against the reference. Both hold linear radiance or sRGB-encoded values in [0, 1],
+/// as `encoding` says. For encoded images, relMSE, SMAPE and the mean signed error compare the decoded values;
+/// all other metrics compare the encoded values. The caller adds the z-test. Throws Error if the images differ
+/// in size.
 ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encoding encoding, int threads = 0);
 
-/// Encoded values to linear ones.
+/// Decodes sRGB-encoded values to linear ones.
 ImageRgb decoded(const ImageRgb& image);
 
-/// One number of them.
+/// One metric as a number with a name.
 struct Figure {
-    std::string name; ///< as in the JSON and in METRIC=VALUE
+    std::string name; ///< name in the JSON and in METRIC=VALUE
     double value = 0;
     std::string meaning;
     bool less_is_worse = false;
 };
 
-/// Those that can have a limit, in a table's order; the names are always the same, the values of a z-test that was not
-/// made NaN.
+/// Returns the metrics that can have a limit, in the order of the table. The list always has the same names;
+/// the z-test's values are NaN if no z-test was made.
 std::vector<Figure> figures(const ImageMetrics& metrics);
 
 } // namespace duet::compare

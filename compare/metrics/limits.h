@@ -1,4 +1,4 @@
-// Limits of figures: what --fail-above says.
+// Limits on metrics, as given by --fail-above.
 #pragma once
 
 #include "compare/metrics/image_metrics.h"
@@ -9,17 +9,18 @@
 namespace duet::compare {
 
 struct Limit {
-    std::string metric; ///< one of figures()
+    std::string metric; ///< name of one of figures()
     double value = 0;
 };
 
-/// "METRIC=VALUE". Throws Error, which lists the metrics, for an unknown one, and where VALUE is no finite number.
+/// Parses "METRIC=VALUE". Throws Error, with a list of the metrics, if METRIC is unknown or VALUE is not a
+/// finite number.
 Limit parse_limit(const std::string& text);
-/// "mse, rmse, …".
+/// Returns all metrics' names as "mse, rmse, …".
 std::string metric_names();
 
-/// One sentence for each limit that is exceeded, and by how much: by a value above it, or below it where less is worse.
-/// NaN exceeds every limit.
+/// Returns one sentence for each exceeded limit, which says by how much. A value exceeds its limit if it is
+/// above it, or below it if less is worse. NaN exceeds every limit.
 std::vector<std::string> exceeded(const std::vector<Limit>& limits, const std::vector<Figure>& found);
 
 } // namespace duet::compare

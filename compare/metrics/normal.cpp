@@ -15,7 +15,7 @@ double upper_quantile(double p) {
     return low;
 }
 
-// 1 − (1 − p)^n, without losing a small p.
+// This form of 1 − (1 − p)^n does not lose a small p to rounding.
 double sidak(double p, double tests) { return -std::expm1(tests * std::log1p(-p)); }
 
 double sidak_level(double level, double tests) { return -std::expm1(std::log1p(-level) / tests); }

@@ -1,11 +1,11 @@
-// Pictures that are compared pixel by pixel have one size.
+// A check that two images have the same size, for metrics that compare them pixel by pixel.
 #pragma once
 
 #include "common/image/image.h"
 
 namespace duet::compare {
 
-/// Throws Error, which names both sizes, where the pictures differ in size.
+/// Throws Error, with both sizes, if the images differ in size.
 template <typename PixelA, typename PixelB> void check_same_size(const Image<PixelA>& a, const Image<PixelB>& b) {
     if (a.width() != b.width() || a.height() != b.height())
         throw Error(

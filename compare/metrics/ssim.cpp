@@ -21,11 +21,11 @@ Window gaussian_window() {
     return window;
 }
 
-/// Weighted means and central moments over a window, or a part of one, put together without cancellation (Chan, Golub
-/// and LeVeque 1979, «Updating Formulae and a Pairwise Algorithm for Computing Sample Variances»).
+/// Weighted means and central moments over a window or a part of one, merged without cancellation (Chan, Golub
+/// and LeVeque 1979, "Updating Formulae and a Pairwise Algorithm for Computing Sample Variances").
 struct Moments {
     double a = 0, b = 0;            ///< means
-    double aa = 0, bb = 0, ab = 0;  ///< sums of weighted products of deviations from them
+    double aa = 0, bb = 0, ab = 0;  ///< weighted sums of products of deviations from the means
     double weight = 0;
 
     void add(double w, const Moments& m) {
@@ -49,7 +49,7 @@ struct Sum {
     std::int64_t count = 0;
 };
 
-/// All windows of one channel whose topmost row is y.
+/// Returns the sum and number of the similarities of all windows of one channel whose top row is y.
 Sum row_of_windows(const ImageRgb& a, const ImageRgb& b, int y, std::size_t channel, const Window& window) {
     std::vector<Moments> columns(static_cast<std::size_t>(a.width()));
     for (int k = 0; k < kWindow; ++k)
@@ -85,7 +85,7 @@ double ssim(const ImageRgb& a, const ImageRgb& b, int threads) {
             total.value += sum.value;
             total.count += sum.count;
         }
-    return total.value / static_cast<double>(total.count); // 0 / 0: NaN, as promised
+    return total.value / static_cast<double>(total.count); // 0 / 0 gives NaN, as documented
 }
 
 } // namespace duet::compare

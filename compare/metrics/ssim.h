@@ -1,18 +1,20 @@
-// SSIM: how alike two pictures are in structure.
+// SSIM: the structural similarity of two images.
 #pragma once
 
 #include "common/image/image.h"
 
 namespace duet::compare {
 
-/// The structural similarity index of Wang et al. 2004 («Image Quality Assessment»), mean over the channels: 1 for
-/// equal pictures, less for others. Windows of 11 × 11 pixels, weighted by a Gaussian of σ 1.5; K₁ = 0.01, K₂ = 0.03.
-/// - Border: only windows that lie wholly in the picture count, as in the authors' program. A picture less than 11
-///   pixels wide or high has none: NaN.
-/// - Dynamic range: L = 1, the peak of the PSNR, for stored and for linear values. The range of a linear picture's
-///   values would be that of its lamps, against which all else is alike.
-/// - Windows with a value that is not finite are left out.
-/// Throws Error where the pictures differ in size. The same bits for any number of threads (0: all).
+/// Returns the structural similarity index of Wang et al. 2004 ("Image Quality Assessment"), averaged over the
+/// channels. It is 1 for equal images and less for others. Windows are 11 × 11 pixels, weighted by a Gaussian
+/// with σ = 1.5; K₁ = 0.01 and K₂ = 0.03.
+/// - Border: Only windows that lie entirely within the image count, as in the authors' program. An image less than
+///   11 pixels wide or high has none, and the result is NaN.
+/// - Dynamic range: L = 1, the peak of the PSNR, for encoded and for linear values. With the value range of a linear
+///   image as L, its light sources would set L so high that all other pixels would count as alike.
+/// - Windows that contain a value that is not finite are skipped.
+/// Throws Error if the images differ in size. The result is bitwise identical for any number of threads (0:
+/// all).
 double ssim(const ImageRgb& a, const ImageRgb& b, int threads = 0);
 
 } // namespace duet::compare

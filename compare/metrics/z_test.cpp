@@ -7,32 +7,35 @@
 #include <array>
 #include <cmath>
 
-// How a difference is judged by variances of so few replicates
+// How a difference is judged by variances from few replicates
 //
-// A variance from two replicates (common/film/film.h) has one degree of freedom: it is right on average and, pixel by
-// pixel, worthless: a difference divided by its root has Student's distribution of one degree, Cauchy's, whose
-// variance is infinite. Two ways out are taken.
+// A variance from two replicates (common/film/film.h) has one degree of freedom. It is correct on average but
+// useless for a single pixel: a difference divided by its square root has Student's t distribution with one
+// degree of freedom, which is Cauchy's and has infinite variance. Two remedies are used.
 //
-// To describe single pixels, the variance is averaged over 5 × 5 of them, of which the differences of the others are
-// estimates, too: at the edge of a lamp a well stratified sampler's replicates often agree to the last bit. With some
-// ν = 50 degrees of freedom E z² = ν / (ν − 2) = 1.04.
+// To describe single pixels, the variance is averaged over 5 × 5 pixels. The squared differences of the other
+// pixels are also estimates of it and are included, because at the edge of a light a well-stratified sampler's
+// replicates often agree to the last bit. With about ν = 50 degrees of freedom, E z² = ν / (ν − 2) = 1.04.
 //
-// To decide, differences dᵢ are added over many pixels. Pixels are independent, so the sum's variance is the sum of
-// the variances σᵢ², however they differ, and both sᵢ², the estimate, and, where the pictures agree, dᵢ² are σᵢ² on
-// average. So
+// To decide, the differences dᵢ are added over many pixels. Pixels are independent, so the variance of the sum
+// is the sum of the variances σᵢ², however much they differ. The expected value of the estimate sᵢ² is σᵢ²,
+// and so is that of dᵢ² if the images agree. Therefore
 //
 //     T = Σ dᵢ / √V,   V = ½ Σ (sᵢ² + dᵢ²)
 //
-// is standard normal for many pixels. With V = Σ sᵢ² alone, a block with one noisy pixel whose replicates happen to
-// agree would be found to differ: the chance is that of Cauchy's tail, some percent. With dᵢ² in V no single pixel can
-// raise |T| above √2, k pixels not above √(2k); and T's tails are lighter than the normal's: for normal differences of
-// one variance T²/(2k) has the Beta distribution of ½ and k − ½, and for any differences that are symmetric about 0,
-// P(|T′| > x) ≤ 2 exp(−x²/2), where V = Σ dᵢ² (Hoeffding 1963, Theorem 2, given the |dᵢ|). What a difference of the
-// means adds to V costs no power at 1024 pixels. Blocks are that large because Monte Carlo noise is skewed: with a
-// skewness γ of the differences, the odds of T beyond x are off by a factor of about exp(γ x³ / (6 √k)), for γ = 1,
-// k = 1024 and x = 4 (some hundred blocks) 1.4; of blocks of 8 × 8 it would be 4 and more. The smallest of all p-values
-// is corrected by Šidák's formula, which for correlated normals (the whole and its blocks) errs to the safe side
-// (Šidák 1967).
+// is standard normal for many pixels. With V = Σ sᵢ² alone, a block with one noisy pixel whose replicates
+// happen to agree would be reported as different. Its probability is that of Cauchy's tail, a few percent. With
+// dᵢ² in V, a single pixel cannot raise |T| above √2, nor k pixels above √(2k). The tails of T are also lighter
+// than the normal distribution's: for normal differences of equal variance, T²/(2k) has the Beta distribution
+// with parameters ½ and k − ½. For any differences that are symmetric about 0, P(|T′| > x) ≤ 2 exp(−x²/2),
+// where V = Σ dᵢ² (Hoeffding 1963, Theorem 2, given the |dᵢ|). The amount that a difference of the means adds
+// to V costs no power at 1024 pixels.
+//
+// The blocks are that large because Monte Carlo noise is skewed. If the differences have skewness γ, the odds
+// of T beyond x are off by a factor of about exp(γ x³ / (6 √k)). For γ = 1, k = 1024 and x = 4 (a few hundred
+// blocks) this is 1.4; for blocks of 8 × 8 pixels it would be 4 or more. The smallest of all p-values is
+// corrected by Šidák's formula. For correlated normal variables (the whole image and its blocks) the formula is
+// conservative (Šidák 1967).
 
 namespace duet::compare {
 
@@ -40,11 +43,11 @@ namespace {
 
 constexpr int kBlock = 32, kPoolRadius = 2;
 
-/// Two programs that compute the same number in single precision differ by up to about so much of it. That is no noise
-/// that averages out over a block: differences are taken to be smaller by it.
+/// Two programs that compute the same number in single precision differ by up to about this fraction of it.
+/// This error does not average out over a block as noise does. All differences are therefore reduced by it.
 constexpr double kRounding = 1e-5;
 
-/// The decision is made at this level, and the detectable difference found with one minus this probability.
+/// Significance level of the decision. The detectable difference is found with one minus this probability.
 constexpr double kLevel = 0.01;
 
 struct Value {
@@ -78,7 +81,7 @@ Values differences(const NoisyImage& a, const NoisyImage& b) {
     return values;
 }
 
-/// The sums that decide, over some pixels.
+/// The sums over a group of pixels on which the decision is based.
 struct Sums {
     double difference = 0, variance = 0;
     std::int64_t count = 0;
@@ -97,8 +100,9 @@ struct Sums {
     double z() const { return count > 0 ? difference / std::sqrt(variance) : 0; }
 };
 
-/// The variance of a pixel's difference, from the pixels around it: half from all the variances, half from the squared
-/// differences of the others, of which the pixel's own would hide it.
+/// Estimates the variance of a pixel's difference from the pixels around it: half from all the variances, half
+/// from the squared differences of the other pixels. The pixel's own squared difference is excluded, because it
+/// would hide the difference.
 double pooled_variance(const Values& values, int x, int y, std::size_t c) {
     double variances = 0, squares = -sqr(values(x, y)[c].difference);
     int count = 0;
@@ -146,8 +150,8 @@ struct Region {
     std::array<Sums, 3> sums;
 };
 
-/// The blocks, and last the whole. Blocks at the right and lower border take what is left with them: none is smaller
-/// than 32 × 32 but in a picture that is.
+/// Returns the blocks, followed by the whole image. Blocks at the right and lower borders include the remaining
+/// pixels, so that no block is smaller than 32 × 32, unless the image is.
 std::vector<Region> regions(const Values& values) {
     std::vector<Region> list;
     Region whole{0, 0, values.width(), values.height(), {}};
@@ -167,8 +171,9 @@ std::vector<Region> regions(const Values& values) {
     return list;
 }
 
-/// The difference of means that is found where it is `threshold` standard errors. V holds the differences themselves: as
-/// k grows by itself, T = kδ / √(V + k·δ²/2) nears √(2k). Infinite where that is below the threshold: too few pixels.
+/// Returns the mean difference that equals `threshold` standard errors. V includes the differences themselves:
+/// as a difference δ grows, T = kδ / √(V + k·δ²/2) approaches √(2k). Returns infinity if that is below the
+/// threshold, because there are too few pixels.
 double detectable(const Sums& whole, double threshold) {
     const double k = static_cast<double>(whole.count), room = k - sqr(threshold) / 2;
     return room > 0 ? threshold * std::sqrt(whole.variance) / std::sqrt(k * room) : static_cast<double>(kInfinity);

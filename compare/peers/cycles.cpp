@@ -10,13 +10,13 @@
 
 namespace duet::compare {
 
-extern const std::string_view kCyclesScript; // compare/peers/cycles.py, by CMakeLists.txt
+extern const std::string_view kCyclesScript; // compare/peers/cycles.py, embedded by CMakeLists.txt
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with its owner.
+/// A temporary folder that is deleted with its owner.
 struct TemporaryFolder {
     fs::path path;
     TemporaryFolder() {
@@ -32,7 +32,7 @@ struct TemporaryFolder {
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 };
 
-/// The number behind `label` in a line of the log, or nothing.
+/// Returns the number after `label` in a line of the log, or nothing.
 std::optional<double> number_after(const std::string& line, std::string_view label) {
     const std::size_t at = line.find(label);
     if (at == std::string::npos) return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<double> number_after(const std::string& line, std::string_view lab
 
 } // namespace
 
-/// The folder goes last, after Blender has ended.
+/// The member order ensures that the folder is deleted last, after Blender has ended.
 class CyclesPeer::Process {
 public:
     Process(const Scene& scene, const View& view, const ExportSettings& settings)
@@ -58,13 +58,14 @@ public:
         if (!blender_.write_line(line)) fail();
     }
 
-    /// Reads until the script says `word`; the last render time the log told on the way. Empty where stopped.
+    /// Reads lines until the script prints `word`. Returns the last render time logged before it (0 if none),
+    /// or nothing if stopped.
     std::optional<double> wait_for(const std::string& word, const Control& control) {
         double seconds = 0;
         while (!control.stopped()) {
             const Subprocess::Read read = blender_.read_line(std::chrono::milliseconds(100));
             if (read.status == Subprocess::Status::kTimeout) continue;
-            if (read.status == Subprocess::Status::kEnd) { // perhaps by the signal that stops us
+            if (read.status == Subprocess::Status::kEnd) { // may be due to the interrupt signal
                 if (control.stopped()) break;
                 fail();
             }
@@ -118,7 +119,7 @@ std::string CyclesPeer::program(const Control& control) {
 Trial CyclesPeer::render(const Job& job, Control& control) {
     if (!wait_until_ready(control)) return {};
     const fs::path picture = process_->picture();
-    // Cycles' seeds are 31 bits.
+    // Cycles' seeds have 31 bits.
     process_->send(message(job.spp, ' ', job.seed % 0x7fffffff, ' ', job.adaptive ? 1 : 0, ' ', picture.string()));
     const std::optional<double> seconds = process_->wait_for("duet: rendered", control);
     if (!seconds) return {};

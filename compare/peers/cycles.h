@@ -1,4 +1,4 @@
-// Blender's Cycles as a contender: the same scene, rendered by a Blender that runs beside us.
+// Blender's Cycles as a contender of the bench: it renders the same scene in a Blender subprocess.
 #pragma once
 
 #include "compare/bench/contender.h"
@@ -8,11 +8,11 @@
 
 namespace duet::compare {
 
-/// One Blender process with one scene. Its renders do not overlap with each other's or with ours.
+/// One Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
 class CyclesPeer {
 public:
-    /// Exports the scene into a temporary folder and starts Blender, found in PATH, with it. Throws Error where Blender
-    /// is not installed or the scene cannot be exported (export_scene says when).
+    /// Exports the scene to a temporary folder and starts Blender, which must be in PATH, with it. Throws Error
+    /// if Blender is not installed or the scene cannot be exported (see export_scene).
     CyclesPeer(const Scene& scene, const View& view, const ExportSettings& settings);
     ~CyclesPeer();
     CyclesPeer(const CyclesPeer&) = delete;
@@ -21,34 +21,38 @@ public:
     struct Job {
         int spp = 1;
         std::uint64_t seed = 0;
-        bool adaptive = false; ///< Cycles' own adaptive sampling, at its default threshold; spp is then the limit
+        bool adaptive = false; ///< Cycles' own adaptive sampling, at its default threshold; spp is then the maximum
     };
-    /// `seconds` is what Cycles logs as «render time (without synchronization)»: no start-up, no scene, no hierarchy,
-    /// no file. Throws Error (exit code 1), with Blender's last lines, where it fails. Returns an empty picture where
-    /// `control` was stopped; the process is of no use afterwards.
+    /// Renders one image. The returned `seconds` is what Cycles logs as "render time (without
+    /// synchronization)". It excludes start-up, scene loading, the BVH build and file output. Throws Error
+    /// (exit code 1) with Blender's last lines if Blender fails. Returns an empty image if `control` was
+    /// stopped; the process cannot be used afterwards.
     Trial render(const Job& job, Control& control);
 
-    /// A picture without Cycles' own small bias: it takes each pixel's first sample through the pixel's centre, so that
-    /// edges are wrong by a share 1/spp (2.5 % of a thin bright lamp at 16 samples, 0.3 % at 128). With that sample,
-    /// rendered by itself, taken away, the mean of the others is left. spp ≥ 2. Empty where `control` was stopped.
+    /// Renders an image without a small bias of Cycles. Cycles takes the first sample of each pixel through the
+    /// pixel center. Edges are therefore wrong by a fraction 1/spp: 2.5 % of a thin bright light at 16 samples,
+    /// 0.3 % at 128. This function renders that first sample separately, subtracts it, and returns the mean of
+    /// the other samples. Requires spp ≥ 2. Returns an empty image if `control` was stopped.
     ImageRgb unbiased_picture(int spp, std::uint64_t seed, Control& control);
 
     const ExportNotes& notes() const;
 
-    /// "Blender 3.4.1": waits until it has built the scene. Empty where `control` was stopped.
+    /// Returns Blender's name and version, such as "Blender 3.4.1", once it has built the scene. Returns an
+    /// empty string if `control` was stopped.
     std::string program(const Control& control);
 
 private:
     class Process;
     std::unique_ptr<Process> process_;
     bool wait_until_ready(const Control& control);
-    bool ready_ = false; ///< Blender has built the scene
+    bool ready_ = false; ///< whether Blender has built the scene
 };
 
-/// The version of what the export and the settings make Cycles converge to, as raytrace::kEstimatorVersion is ours.
+/// Version of the export and settings that determine what Cycles converges to, like raytrace::kEstimatorVersion
+/// for Duet. Reference images are cached under it.
 inline constexpr int kCyclesExportVersion = 3;
 
-/// Cycles with adaptive sampling and without; they share the peer.
+/// Returns two contenders, Cycles with and without adaptive sampling, which share the peer.
 std::vector<Contender> cycles_contenders(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps);
 
 } // namespace duet::compare

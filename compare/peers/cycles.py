@@ -1,7 +1,8 @@
-# Builds in Blender the scene that compare/peers/export_scene.cpp wrote, then renders it with Cycles as often as it is asked to.
+# Builds the scene that compare/peers/export_scene.cpp wrote in Blender, then renders it with Cycles on each request.
 # Run by compare/peers/cycles.cpp: blender -b --factory-startup --debug-cycles --python cycles.py -- FOLDER
-# Blender's world is used as it is: y stays up, nothing is turned.
-# For Blender 3.x and 4.x: where their names differ a tuple lists the alternatives, of which the first that is there is taken.
+# The scene's coordinates are used in Blender without rotation, with y up.
+# The script supports Blender 3.x and 4.x. Where their names differ, a tuple lists the alternatives, and the first that
+# exists is used.
 import array
 import json
 import math
@@ -13,12 +14,12 @@ from mathutils import Matrix, Vector
 
 FOLDER = sys.argv[sys.argv.index("--") + 1]
 WHITE = (1.0, 1.0, 1.0, 1.0)
-GLOSSY = ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")  # 4.0 kept the latter's name for both
-SHARP = ("SHARP", "GGX")  # since 4.0 a roughness of 0 says it
+GLOSSY = ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")  # since 4.0, the second name is for both
+SHARP = ("SHARP", "GGX")  # since 4.0, a roughness of 0 is used instead of SHARP
 
 
 def first_known(owner, name, *values):
-    """Sets a property to the first of the values that this Blender knows."""
+    """Sets a property to the first of the values that this version of Blender supports."""
     for value in values:
         try:
             setattr(owner, name, value)
@@ -29,7 +30,7 @@ def first_known(owner, name, *values):
 
 
 def set_where_known(value, name, *owners):
-    """Sets a property of the first owner that has it: some have moved, others have gone and need no setting."""
+    """Sets a property of the first owner that has it; none if newer versions have removed it."""
     for owner in owners:
         if hasattr(owner, name):
             setattr(owner, name, value)
@@ -41,7 +42,7 @@ def rgba(color):
 
 
 def read_array(typecode, part):
-    """Numbers of geometry.bin: part is [offset in bytes, count]."""
+    """Returns an array from geometry.bin; part is [offset in bytes, count]."""
     values = array.array(typecode)
     with open(os.path.join(FOLDER, "geometry.bin"), "rb") as file:
         file.seek(part[0])
@@ -50,7 +51,7 @@ def read_array(typecode, part):
 
 
 class Nodes:
-    """A node tree, built bottom-up: add(...) returns an output socket."""
+    """A node tree that is built bottom-up: add(...) returns an output socket."""
 
     def __init__(self, owner):
         owner.use_nodes = True
@@ -91,7 +92,7 @@ class Nodes:
 
 def load_picture(name):
     image = bpy.data.images.load(os.path.join(FOLDER, name))
-    image.colorspace_settings.name = "Non-Color"  # the file is linear, with our primaries: as it is
+    image.colorspace_settings.name = "Non-Color"  # the file is linear, with Duet's primaries
     return image
 
 
@@ -102,7 +103,7 @@ def texture(nodes, t):
         settings = {"image": load_picture(t["file"]), "interpolation": "Linear" if t["bilinear"] else "Closest"}
         return nodes.add("ShaderNodeTexImage", "Color", settings, Vector=scaled)
     place = nodes.add("ShaderNodeAttribute", "Vector", {"attribute_name": "p_object"}) if t["solid"] else uv
-    # Cycles' checker is over three dimensions, with its second colour where the sum of the cells' numbers is even.
+    # Cycles' checker is three-dimensional. It uses Color2 where the sum of the cell indices is even.
     shift = 1.0 / 4096 if t["solid"] else 0.0
     moved = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY_ADD"}, _0=place, _1=(t["scale"],) * 3, _2=(shift,) * 3)
     return nodes.add("ShaderNodeTexChecker", "Color", {}, Vector=moved, Scale=1.0, Color1=rgba(t["odd"]), Color2=rgba(t["even"]))
@@ -115,13 +116,13 @@ def slot(nodes, s):
 
 
 def metal(nodes, m):
-    # Schlick's Fresnel term at the shading normal: exact for a mirror.
+    # This is Schlick's Fresnel term at the shading normal, which is exact for a mirror.
     geometry = nodes.tree.nodes.new("ShaderNodeNewGeometry")
     cosine = nodes.math("ABSOLUTE", nodes.dot(geometry.outputs["Incoming"], geometry.outputs["Normal"]))
     grazing = nodes.math("POWER", nodes.math("SUBTRACT", 1.0, cosine), 5.0)
     color = nodes.mix(grazing, slot(nodes, m["slot"]), WHITE)
     smooth = m["roughness"] ** 2 < 1e-4
-    # Blender squares the roughness, too: alpha is its square. What a microfacet sends to others comes back with us.
+    # In Blender, too, alpha is the square of the roughness. Duet's metal includes multiple scattering, as MULTI_GGX.
     return nodes.add(GLOSSY, 0, {"distribution": SHARP if smooth else "MULTI_GGX"}, Color=color,
                      Roughness=0.0 if smooth else m["roughness"])
 
@@ -131,8 +132,8 @@ def clear_glass(m):
 
 
 def dielectric(nodes, m):
-    # Blender's own glass is ours where it is rough, Fresnel's term at the microfacet, and all light kept; but it tints
-    # reflections, too.
+    # Blender's rough glass matches Duet's: it has the Fresnel term at the microfacet and conserves energy. But it also
+    # tints reflections, so it is used for clear glass only.
     rough = m["roughness"]
     if rough > 0 and clear_glass(m):
         return nodes.add("ShaderNodeBsdfGlass", 0, {"distribution": "MULTI_GGX"}, Color=WHITE, IOR=m["ior"], Roughness=rough)
@@ -143,7 +144,7 @@ def dielectric(nodes, m):
 
 
 def absorption(nodes, m):
-    # Blender's coefficient is (1 - color)*density.
+    # Blender's absorption coefficient is (1 - color)*density.
     sigma = m.get("absorption", (0.0, 0.0, 0.0))
     density = max(sigma)
     if density == 0.0:
@@ -152,11 +153,11 @@ def absorption(nodes, m):
 
 
 def principled(nodes, m):
-    # Blender's specular 0.5 is a reflectance of 0.04 at normal incidence.
+    # In Blender, specular 0.5 means a reflectance of 0.04 at normal incidence.
     normal = ((m["ior"] - 1.0) / (m["ior"] + 1.0)) ** 2
     inputs = {"Base_Color": slot(nodes, m["slot"]), "Metallic": m["metallic"], "Roughness": m["roughness"]}
     if bpy.app.version < (4, 0, 0):
-        # Its coat is a quarter of one of index 1.5; only through a link may it be more than 1.
+        # Blender's coat is a quarter of a coat with index 1.5. Values above 1 are only possible through a link.
         coat = nodes.math("MULTIPLY", 4.0, m["clearcoat"]) if m["clearcoat"] > 0.0 else 0.0
         inputs |= {"Specular": normal / 0.08, "Clearcoat": coat, "Clearcoat_Roughness": m["clearcoat_roughness"]}
     else:
@@ -202,7 +203,7 @@ def make_mesh(name, part):
     mesh.loops.foreach_set("vertex_index", triangles)
     mesh.polygons.add(count)
     mesh.polygons.foreach_set("loop_start", array.array("i", range(0, 3 * count, 3)))
-    if bpy.app.version < (3, 6):  # later ones know it from loop_start
+    if bpy.app.version < (3, 6):  # later versions derive it from loop_start
         mesh.polygons.foreach_set("loop_total", array.array("i", [3]) * count)
     mesh.polygons.foreach_set("material_index", read_array("i", part["slots"]))
     mesh.polygons.foreach_set("use_smooth", array.array("b", [1 if part["normals"] else 0]) * count)
@@ -213,7 +214,7 @@ def make_mesh(name, part):
     mesh.update(calc_edges=True)
     if part["normals"]:
         normals = read_array("f", part["normals"])
-        set_where_known(True, "use_auto_smooth", mesh)  # 4.1 and later always use the corners' normals
+        set_where_known(True, "use_auto_smooth", mesh)  # since 4.1, the corners' normals are always used
         mesh.normals_split_custom_set([normals[i:i + 3] for i in range(0, len(normals), 3)])
     if len(mesh.polygons) != count:
         raise RuntimeError(f"{name}: Blender made {len(mesh.polygons)} of {count} triangles")
@@ -238,7 +239,7 @@ def make_objects(scene, materials):
 
 
 def undo_spot_cosine(data, direction):
-    """Within its cone a spot of Cycles falls off with the cosine of the angle from its axis; ours does not."""
+    """Removes the cosine falloff of Cycles' spot light within its cone, which Duet's does not have."""
     nodes = Nodes(data)
     incoming = nodes.add("ShaderNodeNewGeometry", "Incoming")
     cosine = nodes.math("ABSOLUTE", nodes.dot(incoming, direction))
@@ -311,20 +312,20 @@ def set_up_render(settings):
     render.engine = "CYCLES"
     render.resolution_x, render.resolution_y, render.resolution_percentage = settings["width"], settings["height"], 100
     render.threads_mode, render.threads = "FIXED", settings["threads"]
-    render.use_persistent_data = True  # the hierarchy is built once, as ours is
+    render.use_persistent_data = True  # the BVH is built once, as in Duet
     render.use_compositing = render.use_sequencer = render.use_motion_blur = False
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
     render.image_settings.color_mode = "RGB"
     render.dither_intensity = 0.0
     cycles.device = "CPU"
     cycles.pixel_filter_type = "BOX"
-    # As efficient as the default, but scrambled by pixel: pixels are independent, which the bias check builds on. (4.2 and
-    # later hide it among their developers' options, and would take blue noise.)
+    # This pattern is as efficient as the default but scrambled per pixel, so that pixels are independent, as the bias
+    # check requires. Since 4.2 it is a developer option, and the default is blue noise.
     preferences = bpy.context.preferences
     set_where_known(True, "show_developer_ui", preferences.view)
     set_where_known(True, "use_cycles_debug", preferences.experimental)
     first_known(cycles, "sampling_pattern", "SOBOL", "SOBOL_BURLEY")
-    bounces = settings["depth"] - 1  # Cycles counts the scatterings after the first
+    bounces = settings["depth"] - 1  # Cycles counts scattering events after the first
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0.0
     cycles.blur_glossy = 0.0

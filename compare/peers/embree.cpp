@@ -8,7 +8,8 @@
 namespace duet::compare {
 
 std::string name_of(EmbreeQuality quality) {
-    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "") + (quality.avx2 ? "-avx2" : "");
+    return std::string(quality.high ? "high" : "medium") + (quality.robust ? "-robust" : "") +
+           (quality.avx2 ? "-avx2" : "");
 }
 
 #if defined(DUET_EMBREE)
@@ -20,7 +21,7 @@ std::string embree_version() {
 struct EmbreeDevice::Handle {
     RTCDevice device = nullptr;
     std::atomic<std::int64_t> bytes{0};
-    std::vector<std::vector<Vec3>> positions; // of each shape
+    std::vector<std::vector<Vec3>> positions; // per shape
     const Scene* scene = nullptr;
 
     ~Handle() {
@@ -39,7 +40,7 @@ void fail_on_error(RTCDevice device) {
 } // namespace
 
 EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_(std::make_shared<Handle>()) {
-    // simd512: AVX-512 wherever the processor has it, whatever clock frequency Embree thinks it costs there.
+    // The option simd512 uses AVX-512 wherever the CPU has it, even where Embree expects a reduced clock frequency.
     const char* const instructions = avx2 ? "isa=avx2" : "frequency_level=simd512";
     handle_->device = rtcNewDevice(message("threads=", threads, ",", instructions).c_str());
     fail_on_error(handle_->device);
@@ -53,14 +54,14 @@ EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_
     handle_->scene = &scene;
     for (const Shape& shape : scene.shapes) {
         handle_->positions.push_back(std::get<Mesh>(shape).positions);
-        handle_->positions.back().emplace_back(); // a vertex is read as 16 bytes
+        handle_->positions.back().emplace_back(); // padding: Embree reads a vertex as 16 bytes
     }
 }
 
 struct EmbreeScene::Built {
     std::shared_ptr<EmbreeDevice::Handle> device;
     RTCScene scene = nullptr;
-    std::vector<RTCScene> of_shapes; // of those that instances show
+    std::vector<RTCScene> of_shapes; // one per shape, null if it is not instanced
     std::int64_t bytes = 0;
 
     Built(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality);
@@ -190,14 +191,14 @@ Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
                 for (const Ray& ray : block_of(rays, block)) {
                     RTCRay query_ray = as_embree(ray);
                     occluded1(scene, query, query_ray);
-                    *answers++ = {ray.t_max, query_ray.tfar < 0 ? 0 : Answer::kNone}; // −infinity: blocked
+                    *answers++ = {ray.t_max, query_ray.tfar < 0 ? 0 : Answer::kNone}; // blocked: tfar = −∞
                 }
             }};
 }
 
 #else
 
-// Without Embree nobody gets as far as this: the version is empty.
+// These stubs replace Embree in a build without it. Version and qualities are empty, so that callers skip the rest.
 std::string embree_version() { return {}; }
 struct EmbreeDevice::Handle {};
 std::vector<EmbreeQuality> embree_qualities() { return {}; }

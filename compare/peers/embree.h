@@ -1,4 +1,5 @@
-// Embree's ray kernels as a peer: the same triangles, the same rays. Optional: compiled in where it is installed.
+// Embree's ray kernels as a peer that traces the same triangles with the same rays. Compiled in only if Embree
+// is installed.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,32 +11,35 @@
 
 namespace duet::compare {
 
-/// "embree 3.13.5", or empty where this program was built without it.
+/// Returns the version, such as "embree 3.13.5"; empty if this program was built without Embree.
 std::string embree_version();
 
-/// How a hierarchy is built and traced: RTC_BUILD_QUALITY_MEDIUM or _HIGH (spatial splits), RTC_SCENE_FLAG_ROBUST or
-/// not, with the processor's widest instructions or with AVX2, which on some processors is faster than AVX-512.
+/// Embree's settings for building and traversing a BVH: RTC_BUILD_QUALITY_MEDIUM or _HIGH (spatial splits),
+/// with or without RTC_SCENE_FLAG_ROBUST, and with the widest instructions of the CPU or with AVX2, which is
+/// faster than AVX-512 on some CPUs.
 struct EmbreeQuality {
     bool high = false, robust = false, avx2 = false;
 
     friend bool operator==(const EmbreeQuality&, const EmbreeQuality&) = default;
 };
-/// "medium", "medium-robust", "high", "high-robust"; with "-avx2" behind them.
+/// Returns "medium", "medium-robust", "high" or "high-robust", followed by "-avx2" if that is set.
 std::string name_of(EmbreeQuality quality);
-/// What is worth trying on this machine: without AVX-512 the widest is AVX2 already. Empty without Embree.
+/// Returns the settings that differ on this CPU. Without AVX-512, AVX2 is already the widest. Empty without Embree.
 std::vector<EmbreeQuality> embree_qualities();
 
-/// How rays are handed over. Streams are Embree 3's (rtcIntersect1M; rtcIntersectNp: arrays of one quantity each).
+/// The form in which rays are passed to Embree. Streams exist only in Embree 3: rtcIntersect1M (an array of
+/// structures) and rtcIntersectNp (a structure of arrays).
 enum class EmbreeForm { kSingle, kPackets8, kPackets16, kStreamM, kStreamNp };
-/// The forms that this version knows for many rays at once.
+/// Returns the forms for many rays at once that the installed version of Embree supports.
 std::vector<EmbreeForm> embree_bulk_forms();
 
-/// Embree's threads, its instruction set, its account of memory; and the scene's meshes in the form it asks for
-/// (the last vertex must be followed by readable memory). Refers to the scene, which has nothing but meshes.
-/// Throws Error (exit code 1) where Embree fails, and where this program was built without it.
+/// An Embree device with its threads, instruction set and memory monitor. It also holds the scene's vertices in
+/// the form that Embree requires: readable memory must follow the last vertex. It keeps a reference to the
+/// scene, which must contain only meshes. Throws Error (exit code 1) if Embree fails or this program was built
+/// without it.
 class EmbreeDevice {
 public:
-    /// threads: for building, at least 1. avx2: with AVX2 rather than the widest instructions.
+    /// `threads`: build threads, at least 1. `avx2`: use AVX2 instead of the widest instructions.
     EmbreeDevice(const Scene& scene, int threads, bool avx2 = false);
 
     struct Handle;
@@ -45,25 +49,26 @@ private:
     std::shared_ptr<Handle> handle_;
 };
 
-/// The scene's hierarchy, of two levels where it has instances; built by the constructor, from the triangles to a
-/// committed scene.
+/// A BVH of the scene, with two levels if the scene has instances. The constructor performs the whole build,
+/// from the triangles to a committed scene.
 class EmbreeScene {
 public:
-    /// Of a device with or without AVX2, as the quality says.
+    /// The device must use AVX2 if and only if the quality does.
     EmbreeScene(const EmbreeDevice& device, EmbreeQuality quality);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// What Embree allocated since the scene was begun and still holds, as its memory monitor is told; without the
-    /// caller's vertices and indices, which it uses where they are.
+    /// Returns the memory in bytes that Embree allocated for this scene and still holds, as reported to its
+    /// memory monitor. It excludes the caller's vertices and indices, which Embree uses in place.
     std::int64_t memory_bytes() const;
 
-    /// rtcIntersect1, or packets or streams of consecutive rays, laid out in memory beforehand; a stream is copied, as it
-    /// is overwritten with the hits. `coherent` sets the flag of that name. Denormals are flushed to zero meanwhile, as
-    /// Embree's manual recommends. The scene and the rays must outlive the tracer.
+    /// Returns a tracer for closest hits: rtcIntersect1, or packets or streams of consecutive rays. Packets and
+    /// streams are laid out in memory in advance; a stream is copied before each call, because Embree
+    /// overwrites it with the hits. `coherent` sets Embree's flag of that name. Denormals are flushed to zero
+    /// during tracing, as Embree's manual recommends. The scene and the rays must outlive the tracer.
     Tracer closest(std::span<const Ray> rays, EmbreeForm form, bool coherent) const;
-    /// rtcOccluded1.
+    /// Returns a tracer for occlusion by rtcOccluded1. The scene and the rays must outlive it.
     Tracer occluded(std::span<const Ray> rays) const;
 
 private:

@@ -1,5 +1,5 @@
-// Rays in Embree's forms (single, packets, streams), and the calls of its third and fourth versions in one. For embree.cpp;
-// empty where Embree is not installed.
+// Rays in Embree's forms (single, packets, streams), and one interface to the calls of Embree 3 and 4. Included
+// by embree.cpp only; empty if Embree is not installed.
 #pragma once
 
 #include "compare/peers/embree.h"
@@ -26,7 +26,7 @@
 
 namespace duet::compare {
 
-/// Denormals count as zero while it lives, in this thread.
+/// Flushes denormals to zero in the current thread during the object's lifetime.
 class FlushToZero {
 public:
 #if defined(__SSE__)
@@ -41,7 +41,7 @@ private:
 #endif
 };
 
-/// What a query says of its rays besides themselves: Embree 3's context, Embree 4's arguments.
+/// Parameters of a query besides its rays: the context in Embree 3, the arguments in Embree 4.
 #if DUET_EMBREE >= 4
 struct Query {
     RTCIntersectArguments closest;
@@ -81,13 +81,14 @@ inline void intersect_stream(RTCScene scene, Query& query, std::span<RTCRayHit> 
 }
 #endif
 
-/// Embree names the instance, where there is one, and the geometry: both by the object's number.
+/// Embree returns the geometry and, if there is one, the instance. Both have the object's index as their ID.
 inline Answer answer_of(float t, unsigned geometry, unsigned instance, unsigned triangle) {
     if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
     return {t, triangle, instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance};
 }
 
-/// Embree's rays include their start, ours do not: what matters where they start at 0, on a surface.
+/// Returns the ray's start for Embree, whose interval includes t = tnear; Duet's excludes t_min. The difference
+/// matters for rays that start at t = 0 on a surface.
 inline float start_of(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
 
 inline RTCRay as_embree(const Ray& ray) {
@@ -105,7 +106,7 @@ inline RTCRay as_embree(const Ray& ray) {
             0};
 }
 
-/// What a packet is made of, ready to be copied: arrays of one quantity each.
+/// The rays of a packet as a structure of arrays, ready to be copied.
 template <int kWidth> struct alignas(64) PacketRays {
     using Lanes = float[kWidth];
     Lanes org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, tfar;
@@ -117,7 +118,7 @@ template <int kWidth> std::vector<PacketRays<kWidth>> packets_of(std::span<const
     for (std::size_t i = 0; i < packets.size() * kWidth; ++i) {
         PacketRays<kWidth>& packet = packets[i / kWidth];
         const std::size_t lane = i % kWidth;
-        const Ray& ray = rays[std::min(i, rays.size() - 1)]; // lanes beyond the end are switched off
+        const Ray& ray = rays[std::min(i, rays.size() - 1)]; // lanes beyond the end are masked off
         packet.org_x[lane] = ray.origin.x, packet.org_y[lane] = ray.origin.y, packet.org_z[lane] = ray.origin.z;
         packet.dir_x[lane] = ray.direction.x, packet.dir_y[lane] = ray.direction.y;
         packet.dir_z[lane] = ray.direction.z;
@@ -176,7 +177,7 @@ inline RTCRayHit as_embree_hit(const Ray& ray) {
 }
 
 #if DUET_EMBREE == 3
-/// A block's rays as a stream of structures.
+/// Returns a function that traces a block's rays as an array of structures (rtcIntersect1M).
 inline std::function<void(std::size_t, Answer*)> stream_of_structures(RTCScene scene, std::span<const Ray> rays,
                                                                bool coherent) {
     const auto laid_out = std::make_shared<std::vector<RTCRayHit>>();
@@ -195,7 +196,7 @@ inline std::function<void(std::size_t, Answer*)> stream_of_structures(RTCScene s
     };
 }
 
-/// A block's rays and hits as arrays of one quantity each.
+/// The rays and hits of a block as a structure of arrays.
 struct alignas(64) StreamArrays {
     using Floats = std::array<float, kBlock>;
     using Numbers = std::array<unsigned, kBlock>;
@@ -206,12 +207,14 @@ struct alignas(64) StreamArrays {
         RTCRayHitNp p;
         p.ray = {org_x.data(), org_y.data(), org_z.data(), tnear.data(), dir_x.data(), dir_y.data(),
                  dir_z.data(), time.data(),  tfar.data(),  mask.data(),  id.data(),    flags.data()};
-        p.hit = {ng_x.data(), ng_y.data(), ng_z.data(), u.data(), v.data(), prim.data(), geom.data(), {instance.data()}};
+        p.hit = {ng_x.data(), ng_y.data(), ng_z.data(), u.data(),
+                 v.data(),    prim.data(), geom.data(), {instance.data()}};
         return p;
     }
 };
 
-inline std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene, std::span<const Ray> rays, bool coherent) {
+inline std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene, std::span<const Ray> rays,
+                                                                   bool coherent) {
     const auto laid_out = std::make_shared<std::vector<PacketRays<kBlock>>>(packets_of<kBlock>(rays));
     const std::size_t size = rays.size();
     return [scene, laid_out, size, coherent](std::size_t block, Answer* answers) {

@@ -8,7 +8,7 @@ namespace duet::compare {
 
 namespace {
 
-/// Adds triangles given in an object's space.
+/// Builds a triangle soup in world space from triangles in object space.
 class SoupBuilder {
 public:
     explicit SoupBuilder(const Mat4& to_world)
@@ -25,7 +25,7 @@ public:
         return static_cast<std::int32_t>(soup_.positions.size() - 1);
     }
     void add_triangle(Corner a, Corner b, Corner c, std::uint16_t slot, bool smooth) {
-        if (mirrors_) std::swap(b, c); // the front is the image of the front
+        if (mirrors_) std::swap(b, c); // keeps front faces in front
         for (const Corner& corner : {a, b, c}) {
             soup_.triangles.push_back(corner.vertex);
             soup_.uvs.push_back(corner.uv);
@@ -45,7 +45,7 @@ private:
 TriangleSoup mesh_triangles(const Mesh& mesh, const Mat4& to_world) {
     SoupBuilder builder(to_world);
     for (const Vec3 p : mesh.positions) builder.add_vertex(p);
-    constexpr Vec2 kOwn[] = {{0, 0}, {1, 0}, {0, 1}}; // what a mesh without texture coordinates has
+    constexpr Vec2 kOwn[] = {{0, 0}, {1, 0}, {0, 1}}; // texture coordinates of a mesh without any
     const bool smooth = !mesh.normals.empty();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         std::array<SoupBuilder::Corner, 3> corners;
@@ -85,7 +85,7 @@ TriangleSoup sphere_triangles(int rings) {
     SoupBuilder builder{Mat4()};
     const int sectors = 2 * rings;
     std::vector<SoupBuilder::Corner>
-        grid; // (rings + 1) × (sectors + 1): the seam and the poles have corners of their own
+        grid; // (rings + 1) × (sectors + 1): corners at the seam and the poles are duplicated
     for (int j = 0; j <= rings; ++j)
         for (int i = 0; i <= sectors; ++i) {
             const Vec2 uv(static_cast<float>(i) / static_cast<float>(sectors),
@@ -96,8 +96,8 @@ TriangleSoup sphere_triangles(int rings) {
     const auto corner = [&](int i, int j) { return grid[static_cast<std::size_t>(j * (sectors + 1) + i)]; };
     for (int j = 0; j < rings; ++j)
         for (int i = 0; i < sectors; ++i) {
-            // At a pole one edge of the cell is a point, and one triangle is none.
-            // Seen from outside u grows to the right.
+            // At a pole, one edge of the cell degenerates to a point, so one of its two triangles is omitted.
+            // Seen from outside, u increases to the right.
             if (j > 0) builder.add_triangle(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), 0, true);
             if (j + 1 < rings) builder.add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1), 0, true);
         }
@@ -107,7 +107,9 @@ TriangleSoup sphere_triangles(int rings) {
 double area(const TriangleSoup& soup) {
     double sum = 0;
     for (std::size_t i = 0; i < soup.triangles.size(); i += 3) {
-        const auto p = [&](std::size_t k) { return Vec3d(soup.positions[static_cast<std::size_t>(soup.triangles[i + k])]); };
+        const auto p = [&](std::size_t k) {
+            return Vec3d(soup.positions[static_cast<std::size_t>(soup.triangles[i + k])]);
+        };
         sum += length(cross(p(1) - p(0), p(2) - p(0))) / 2;
     }
     return sum;

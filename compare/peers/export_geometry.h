@@ -1,4 +1,4 @@
-// Shapes as plain triangle meshes, for renderers that know nothing else.
+// Conversion of shapes to triangle meshes, for renderers that support no other shapes.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -8,26 +8,27 @@
 
 namespace duet::compare {
 
-/// Triangles with what belongs to each of their corners, three corners a triangle, counter-clockwise from the front.
+/// A triangle mesh with attributes per triangle corner. Triangles are counter-clockwise when seen from the front.
 struct TriangleSoup {
     std::vector<Vec3> positions;         ///< shared vertices
     std::vector<std::int32_t> triangles; ///< three indices each
-    std::vector<std::int32_t> slots;     ///< material slot, one a triangle
-    std::vector<Vec3> normals;           ///< one a corner, unit; or empty: flat
-    std::vector<Vec2> uvs;               ///< one a corner
-    std::vector<Vec3> object_positions;  ///< one a corner, in the object's own space
+    std::vector<std::int32_t> slots;     ///< material slot, one per triangle
+    std::vector<Vec3> normals;           ///< one per corner, unit length; empty: flat shading
+    std::vector<Vec2> uvs;               ///< one per corner
+    std::vector<Vec3> object_positions;  ///< one per corner, in object space
 };
 
-/// A mesh or quads in world space under `to_world`; what it mirrors keeps its front by an exchange of corners.
+/// Converts a mesh or quads to world space. If `to_world` mirrors, two corners are swapped so that front faces
+/// stay front faces.
 TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world);
 
-/// The unit sphere about the origin in rings and sectors, its vertices on the sphere, with smooth normals and the
-/// texture coordinates of sphere_uv. No vertex is more than π/rings from the next; faces lie within 1 −
-/// cos(π/(2·rings)) below the sphere's surface.
+/// Returns the unit sphere around the origin, tessellated in rings and sectors, with smooth normals and the
+/// texture coordinates of sphere_uv. Its vertices lie on the sphere, at most an angle of π/rings apart. Faces
+/// lie at most 1 − cos(π/(2·rings)) below the sphere's surface.
 TriangleSoup sphere_triangles(int rings);
 constexpr std::int64_t sphere_triangle_count(int rings) { return 4 * std::int64_t{rings} * (rings - 1); }
 
-/// Of all triangles.
+/// Returns the total area of the triangles.
 double area(const TriangleSoup& soup);
 
 } // namespace duet::compare

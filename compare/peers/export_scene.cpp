@@ -20,8 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// As round as 2^21 triangles in all spheres allow: Cycles sums its emitters' triangles in float, and of 65 million (the
-/// lamps of lanterns.json in 128 rings) it loses 3 % of the light. With 16 rings the outline is within 1 % of the radius.
+/// Returns the number of rings per sphere, from 16 to 128, such that all spheres together have at most 2^21
+/// triangles if possible. Cycles sums over emissive triangles in float; with 65 million of them (the lights of
+/// lanterns.json at 128 rings) it loses 3 % of the light. With 16 rings the silhouette is within 1 % of the
+/// radius.
 int sphere_rings(std::int64_t spheres) {
     constexpr std::int64_t kMostTriangles = std::int64_t{1} << 21;
     int rings = 128;
@@ -127,7 +129,8 @@ private:
         } else if (const auto* coated = std::get_if<Coated>(&m)) {
             if (coated->albedo.texture >= 0) refuse("textures under a coat are not exported");
             result["type"] = "principled";
-            result["slot"]["value"] = rgb_json(coated->at(scene_.textures, SurfacePoint{}).diffuse); // with what the coat throws back
+            // This albedo includes inter-reflection within the coat.
+            result["slot"]["value"] = rgb_json(coated->at(scene_.textures, SurfacePoint{}).diffuse);
             result["metallic"] = result["clearcoat"] = result["clearcoat_roughness"] = 0;
             result["roughness"] = constant(coated->roughness, "roughness");
             result["ior"] = coated->ior;
@@ -145,7 +148,7 @@ private:
         return result;
     }
 
-    /// Those that no object shows are of no account: they may be what cannot be exported.
+    /// Exports the materials. Those that no object uses are replaced by Diffuse, because they may not be exportable.
     json materials() {
         std::set<std::uint32_t> used;
         for (const Object& o : scene_.objects) used.insert(o.materials.begin(), o.materials.end());
@@ -195,8 +198,8 @@ private:
             return {{"type", "constant"}, {"radiance", rgb_json(constant->radiance)}};
         if (const auto* sky = std::get_if<SkyEnvironment>(&scene_.environment))
             return {{"type", "sky"}, {"down", rgb_json(sky->down)}, {"up", rgb_json(sky->up)}};
-        // Cycles: u = ½ − atan2(y, x)/2π of the direction, its z up. Ours: u = ½ + (atan2(x, −z) + rotation)/2π. So
-        // the direction is turned by these rows first.
+        // Cycles maps a direction with z up to u = ½ − atan2(y, x)/2π. Duet uses u = ½ + (atan2(x, −z) +
+        // rotation)/2π. These rows rotate the direction before Cycles' mapping.
         const auto& image = std::get<ImageEnvironment>(scene_.environment);
         const double s = std::sin(static_cast<double>(image.rotation)),
                      c = std::cos(static_cast<double>(image.rotation));
@@ -215,7 +218,7 @@ private:
         const bool orthographic = c.projection == Camera::Projection::kOrthographic;
         const Vec3d dx = orthographic ? view.origin_dx : view.direction_dx;
         const Vec3d right = normalize(dx), back = view.forward * -1.0, up = cross(back, right);
-        const Vec3d eye(Vec3(c.eye)); // as CameraModel rounds it
+        const Vec3d eye(Vec3(c.eye)); // rounded as in CameraModel
         Mat4d m;
         for (std::size_t r = 0; r < 3; ++r) m[r] = {right[r], up[r], back[r], eye[r]};
         const double focus = c.focus_distance > 0 ? c.focus_distance : length(c.look_at - c.eye);
@@ -261,7 +264,7 @@ private:
 
     void add_objects(json& file) {
         json meshes = json::array(), objects = json::array();
-        std::optional<std::size_t> sphere_mesh; // one for all
+        std::optional<std::size_t> sphere_mesh; // one mesh shared by all spheres
         double sphere_radius = 1;
         for (const Object& o : scene_.objects) {
             json object = {{"name", o.name}, {"materials", o.materials}};
@@ -269,7 +272,8 @@ private:
             if (const auto* sphere = std::get_if<Sphere>(&scene_.shapes[o.shape])) {
                 if (!sphere_mesh) {
                     const int rings = sphere_rings(count_spheres());
-                    notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings), " triangles, of a sphere's area"));
+                    notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings),
+                                          " triangles, of a sphere's area"));
                     sphere_mesh = meshes.size();
                     const TriangleSoup soup = sphere_triangles(rings);
                     sphere_radius = std::sqrt(4 * kPiDouble / area(soup));

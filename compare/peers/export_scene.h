@@ -1,4 +1,4 @@
-// Our scene in a form that a script in Blender can build it from: compare/peers/cycles.py.
+// Export of a scene in a form from which a Blender script (compare/peers/cycles.py) can rebuild it.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -11,16 +11,16 @@
 namespace duet::compare {
 
 struct ExportSettings {
-    int depth = 64;  ///< scattering events at most; at least 1
-    int threads = 1; ///< of the peer
+    int depth = 64;  ///< maximum number of scattering events; at least 1
+    int threads = 1; ///< threads of the peer
 };
 
-/// What an export could not keep exactly, each in a sentence.
+/// What an export could not represent exactly, one sentence each.
 using ExportNotes = std::vector<std::string>;
 
-/// Writes scene.json, geometry.bin (meshes in world space as the path tracer sees them) and pictures (linear EXR) into
-/// an existing folder. Throws Error that names what has no counterpart: noise textures, motion while the shutter is
-/// open, spot lights wider than a half-space, depth 0.
+/// Writes scene.json, geometry.bin (meshes in world space as the path tracer uses them) and images (linear EXR)
+/// to an existing folder. Throws Error that names any feature without a counterpart: noise textures, motion
+/// while the shutter is open, spot lights wider than a half-space, depth 0, and others.
 ExportNotes export_scene(const std::filesystem::path& folder, const Scene& scene, const View& view,
                          const ExportSettings& settings);
 

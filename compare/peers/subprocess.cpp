@@ -20,7 +20,7 @@ namespace duet::compare {
 
 namespace {
 
-/// What the new process does first: one end of each pipe becomes its standard streams.
+/// Actions of the new process before it runs the program: the ends of the pipes become its standard streams.
 class FileActions {
 public:
     FileActions(int in, int out) {
@@ -41,7 +41,7 @@ private:
 } // namespace
 
 Subprocess::Subprocess(const std::vector<std::string>& command) {
-    // A socket instead of a pipe towards it: writing to one that nobody reads can be kept from raising SIGPIPE.
+    // The input is a socket instead of a pipe, because writing to a closed socket can be kept from raising SIGPIPE.
     std::array<int, 2> in{}, out{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in.data()) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0)
         throw Error(message(command.front(), ": cannot be started: ", std::strerror(errno)), 1);

@@ -1,4 +1,4 @@
-// Another program that is spoken to line by line.
+// A subprocess with a line-based text protocol.
 #pragma once
 
 #include <chrono>
@@ -9,25 +9,26 @@
 
 namespace duet::compare {
 
-/// Runs while it lives; ended by its destructor (SIGTERM, after two seconds SIGKILL).
+/// A process that runs during the object's lifetime. The destructor ends it with SIGTERM, and after two seconds
+/// with SIGKILL.
 class Subprocess {
 public:
-    /// Starts the program, found in PATH; its standard error is joined to its standard output. Throws Error where it
-    /// cannot be started.
+    /// Starts the program, which must be in PATH. Its standard error is merged into its standard output. Throws
+    /// Error if it cannot be started.
     explicit Subprocess(const std::vector<std::string>& command);
     ~Subprocess();
     Subprocess(const Subprocess&) = delete;
     Subprocess& operator=(const Subprocess&) = delete;
 
-    /// A line to its standard input. False where it no longer listens.
+    /// Writes a line to the process's standard input. Returns false if the process no longer reads it.
     bool write_line(const std::string& line);
 
     enum class Status { kLine, kTimeout, kEnd };
     struct Read {
         Status status = Status::kEnd;
-        std::string line{}; ///< without its end
+        std::string line{}; ///< without the line end
     };
-    /// The next line it wrote; kTimeout where none came within `wait`, kEnd where none will come.
+    /// Reads the next line of output. The status is kTimeout if none came within `wait`, kEnd if no more will come.
     Read read_line(std::chrono::milliseconds wait);
 
 private:

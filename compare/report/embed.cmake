@@ -1,5 +1,5 @@
-# A page's sources (HTML, CSS, JavaScript) become string constants in the compare library, so that the program needs no
-# files beside it: compare/report/html.h. FILES: one .html, any number of .css and .js, joined in the order given.
+# Embeds a page's sources (HTML, CSS, JavaScript) as string constants in the compare library (compare/report/html.h), so
+# that the program needs no additional files. FILES: one .html, any number of .css and .js, joined in the order given.
 function(duet_embed_page TARGET NAME)
     set(PAGE_NAME ${NAME})
     set(PAGE_HTML "")
@@ -16,7 +16,7 @@ function(duet_embed_page TARGET NAME)
     endforeach()
     set(source ${DUET_GENERATED}/${NAME}_page.cpp)
     configure_file(${PROJECT_SOURCE_DIR}/compare/report/page.cpp.in ${source} @ONLY)
-    # The standard asks compilers for 65,536 characters; GCC and Clang take more.
+    # The standard only requires support for literals of 65,536 characters, but GCC and Clang accept more.
     set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
     target_sources(${TARGET} PRIVATE ${source})
 endfunction()

@@ -13,12 +13,12 @@ std::uint16_t half_bits(float value) {
     if (std::isnan(value)) return with_sign(0x7e00);
     if (std::isinf(value)) return with_sign(0x7c00);
     if (size >= 65504.0f) return with_sign(0x7bff);
-    // Below 2^-14 the steps are 2^-24. nearbyint rounds ties to even; 1024 steps are the bits of 2^-14 itself.
+    // Below 2^-14 the step is 2^-24. nearbyint rounds ties to even. A result of 1024 steps yields the bits of 2^-14.
     if (size < 0x1p-14f) return with_sign(static_cast<std::uint32_t>(std::nearbyint(size * 0x1p24f)));
-    // Drop 13 of 23 bits, ties to even; a carry goes into the exponent, as it should.
+    // Drop 13 of 23 mantissa bits, rounding ties to even. A carry into the exponent gives the correct result.
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(size);
     const std::uint32_t rounded = bits + 0xfff + ((bits >> 13) & 1);
-    return with_sign((rounded >> 13) - (112u << 10)); // exponents are biased by 127 there, by 15 here
+    return with_sign((rounded >> 13) - (112u << 10)); // the exponent bias is 127 in float, 15 in half
 }
 
 std::string base64(std::string_view bytes) {

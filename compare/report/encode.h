@@ -1,4 +1,4 @@
-// Pictures as text for a web page: small, and the same after decoding.
+// Lossless compression of images to text for a web page.
 #pragma once
 
 #include "common/image/image.h"
@@ -10,19 +10,20 @@
 
 namespace duet::compare {
 
-/// The IEEE half-precision number nearest to a float (ties to even), as bits. Beyond ±65504: the largest finite one;
-/// infinities and NaN stay themselves.
+/// Returns the bits of the IEEE half-precision number nearest to a float (ties to even). Values beyond ±65504
+/// become the largest finite number; infinities and NaN are preserved.
 std::uint16_t half_bits(float value);
 
-/// Base64 with padding (RFC 4648, §4).
+/// Returns the bytes in Base64 with padding (RFC 4648, §4).
 std::string base64(std::string_view bytes);
 
-/// A picture of unsigned numbers of `bytes` (1 to 4) bytes each as base64 text. Each number becomes its difference from
-/// its left neighbour (modulo 2^(8·bytes); the first of a row: from 0), the differences are stored as planes of equal
-/// significance, the highest byte first, and deflated (zlib format): like PNG's filters, but for numbers of any width.
+/// Encodes an image of unsigned integers of `bytes` bytes each (1 to 4) as Base64 text. Each value is replaced
+/// by its difference from its left neighbor (modulo 2^(8·bytes); from 0 at the start of a row). The differences
+/// are stored as planes of equal significance, highest byte first, and deflated (zlib format). This resembles
+/// PNG's filters, but works for integers of any width.
 std::string encode_plane(const std::vector<std::uint32_t>& values, int width, int bytes);
 
-/// A picture's red, green and blue in half precision, two bytes a number, each as encode_plane makes it.
+/// Encodes an image's red, green and blue in half precision, two bytes each, by encode_plane.
 std::vector<std::string> encode_picture(const ImageRgb& image);
 
 } // namespace duet::compare

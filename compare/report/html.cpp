@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The template with each {{mark}} replaced by its value, in one pass: what a value holds is no mark.
+/// Replaces each {{placeholder}} of the template in one pass. Braces within values are not interpreted.
 std::string fill_in(std::string_view page, const std::map<std::string_view, std::string_view>& values) {
     std::string text;
     for (std::size_t at = 0;;) {
@@ -43,7 +43,7 @@ std::string escape_html(const std::string& text) {
     return escaped;
 }
 
-/// JSON that can stand in a script element: no text in it can end the element.
+/// Returns JSON that is safe within a script element: no text in it can close the element.
 std::string script_json(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
     for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))

@@ -1,5 +1,5 @@
-// What every page of the compare tool is made with: a template, styles and scripts that are built into the program, and
-// data that is safe to put into them.
+// Generation of the compare tool's HTML pages from templates, styles and scripts that are embedded in the
+// program, and from data that is escaped for embedding.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,9 +8,9 @@
 
 namespace duet::compare {
 
-/// The source of one kind of page, embedded by embed.cmake from a folder of .html, .css and .js files.
+/// The sources of one kind of page, embedded by embed.cmake from a folder of .html, .css and .js files.
 struct PageSource {
-    std::string_view html; ///< with the marks {{title}}, {{css}}, {{data}} and {{js}}
+    std::string_view html; ///< with the placeholders {{title}}, {{css}}, {{data}} and {{js}}
     std::string_view css, js;
 };
 
@@ -18,7 +18,8 @@ extern const PageSource kReportSource; ///< compare/report/page/
 extern const PageSource kLadderSource; ///< compare/ladder/page/
 extern const PageSource kBenchSource;  ///< compare/bench/page/
 
-/// The whole page, one self-contained file: `title` is text, `data` becomes the JSON of its script element.
+/// Returns the complete page as one self-contained file. `title` is plain text; `data` becomes the JSON of its
+/// script element.
 std::string make_page(const PageSource& source, const std::string& title, const nlohmann::json& data);
 
 } // namespace duet::compare

@@ -1,11 +1,11 @@
-// Where a subcommand's results go: found out before a long render, not after.
+// Preparation of output folders, so that errors show before a long render and not after it.
 #pragma once
 
 #include <filesystem>
 
 namespace duet::compare {
 
-/// The folder, made if it is missing. Throws Error where that cannot be.
+/// Creates the folder if it is missing and returns it. Throws Error if it cannot be created.
 std::filesystem::path make_folder(const std::filesystem::path& folder);
 
 } // namespace duet::compare

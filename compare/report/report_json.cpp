@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// JSON has neither infinity nor NaN: they become null.
+// JSON has neither infinity nor NaN. Both become null.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json hit_json(const Scene& scene, std::uint32_t object, std::uint32_t primitive, double t) {

@@ -1,4 +1,4 @@
-// The figures of a comparison as JSON: what report.json and the page's tables hold.
+// The results of a comparison as JSON, for report.json and the tables of the page.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,14 +10,16 @@
 
 namespace duet::compare {
 
-/// The metrics by name, null where one is infinite or no number: mse, rmse, mae, psnr (null: equal pictures), relmse,
-/// relmse_trimmed, smape, mean_signed_error [r, g, b], worst, worst_pixel [x, y], ssim; flip (the mean), flip_…
-/// (weighted_median, first_quartile, third_quartile, min, max; of linear pictures start_exposure, stop_exposure,
-/// exposures); pixels; nan, infinite and non_finite (either), whose keys are the two names; z_test where one was made.
+/// Returns the metrics by name; a value that is infinite or NaN becomes null. Keys: mse, rmse, mae, psnr (null
+/// for equal images), relmse, relmse_trimmed, smape, mean_signed_error [r, g, b], worst, worst_pixel [x, y],
+/// ssim; flip (the mean), flip_… (weighted_median, first_quartile, third_quartile, min, max; for linear images
+/// also start_exposure, stop_exposure, exposures); pixels; nan, infinite and non_finite (either), each with the
+/// two names as keys; z_test if one was made.
 nlohmann::json metrics_json(const ImageMetrics& metrics, const std::string& name_a, const std::string& name_b);
 
-/// pixels, same, edge, depth_tie, unexplained; distance (worst, bound, violations, pixel); unexplained_pixels: for up
-/// to 100 of them pixel and the hits raster, raytrace and exact (object, name, primitive, t; object null: nothing).
+/// Returns the hit agreement. Keys: pixels, same, edge, depth_tie, unexplained; distance (worst, bound,
+/// violations, pixel); unexplained_pixels, for up to 100 of them the pixel and the hits raster, raytrace and
+/// exact (object, name, primitive, t; object is null for a miss).
 nlohmann::json hits_json(const HitAgreement& agreement, const Scene& scene);
 
 } // namespace duet::compare

@@ -22,14 +22,16 @@ std::string plane(const Image<Pixel>& image, int bytes, const Value& value_at) {
     return encode_plane(values, image.width(), bytes);
 }
 
-// The difference has planes of its own: that of two rounded numbers would be mostly rounding where they are close.
+// The difference is encoded by itself, because the difference of two rounded images would be mostly rounding
+// error where they are close.
 json difference_planes(const ImageRgb& a, const ImageRgb& b) {
     ImageRgb difference(a.width(), a.height());
     for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
     return encode_picture(difference);
 }
 
-/// Errors in steps of 1/4095 (twelve bits: the eye sees fewer); one step more stands for NaN.
+/// Encodes the FLIP map in steps of 1/4095. Twelve bits exceed what the eye distinguishes. The code 4096 stands
+/// for NaN.
 json flip_json(const ReportPage& page) {
     const ImageFloat& map = page.metrics.flip.map;
     const auto code = [&](std::size_t i) {
@@ -39,12 +41,12 @@ json flip_json(const ReportPage& page) {
     return {{"name", page.encoding == Encoding::kEncoded ? "FLIP" : "HDR-FLIP"}, {"map", plane(map, 2, code)}};
 }
 
-// Objects are stored plus one: none becomes 0. B's hits are stored as what differs (exclusive or) from A's, which is
-// next to nothing.
+// Objects are stored plus one, so that a miss becomes 0. B's hits are stored as the exclusive or with A's,
+// which is almost always 0.
 std::uint32_t object_code(const Hit& hit) { return hit.object + 1; }
 std::uint32_t primitive_code(const Hit& hit) { return hit.valid() ? hit.primitive : 0; }
 
-/// What each object is called on the page: its name, or what it is made of.
+/// Returns a label for each object: its name, or its shape and material.
 json object_labels(const Scene& scene) {
     static constexpr const char* kKinds[] = {"sphere", "quad", "mesh"};
     json labels = json::array();
@@ -74,8 +76,8 @@ json hits_of(const ReportHits& hits) {
                           [&](std::size_t i) { return static_cast<std::uint32_t>(hits.agreement.verdicts[i]); })}};
 }
 
-/// The statistics of a rendering; beside them the stages [[name, seconds], …] and the skips [[what, why, count or −1],
-/// …] in the order they happened.
+/// Returns the statistics of a rendering, the stages [[name, seconds], …], and the skips [[what, why, count or
+/// −1], …] in the order in which they occurred.
 json rendering_json(const ReportRendering& rendering) {
     json stages = json::array(), skipped = json::array();
     for (const auto& [name, seconds] : rendering.statistics.seconds) stages.push_back({name, seconds});

@@ -1,4 +1,4 @@
-// The report: one HTML file with everything in it, that asks the network for nothing.
+// The report page: one self-contained HTML file that makes no network requests.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -12,38 +12,39 @@
 
 namespace duet::compare {
 
-/// What is known of a picture that a pipeline has made.
+/// What is known about an image that a pipeline rendered.
 struct ReportRendering {
     const RenderContext& context;
     const RenderStatistics& statistics;
 };
 
-/// One of the page's two pictures.
+/// One of the two images of the page.
 struct ReportSide {
-    std::string name;                              ///< as the page calls it: "Rasterizer", or a file's name
-    const ImageRgb& picture;                       ///< linear; the page keeps it in half precision
-    std::optional<ReportRendering> rendering = {}; ///< its times, what it approximated and what it skipped
+    std::string name;                              ///< name on the page: "Rasterizer", or a file name
+    const ImageRgb& picture;                       ///< linear; stored on the page in half precision
+    std::optional<ReportRendering> rendering = {}; ///< its times, approximations and skips
 };
 
-/// Which primitive each picture shows in each pixel.
+/// The primitive that each image shows in each pixel.
 struct ReportHits {
-    const Scene& scene; ///< for the names of its objects and materials
+    const Scene& scene; ///< provides the names of objects and materials
     const Image<Hit>&a, &b;
     const HitAgreement& agreement;
 };
 
-/// What the page shows. All pictures are of one size. What isn't there has no place on the page: files have neither
-/// hits nor times.
+/// The contents of the page. All images have the same size. The page omits what is not present: image files
+/// have neither hits nor times.
 struct ReportPage {
     std::string title;
     ReportSide a, b;                       ///< B is the reference
-    const ImageMetrics& metrics;           ///< page/metrics.js says what each figure means
-    Encoding encoding = Encoding::kLinear; ///< what the metrics compare; kEncoded: the page shows the 8-bit values too
+    const ImageMetrics& metrics;           ///< page/metrics.js describes each metric
+    Encoding encoding = Encoding::kLinear; ///< encoding of the compared values; kEncoded: the page also shows 8-bit
+                                           ///< values
     std::optional<ReportHits> hits = {};
 };
 
-/// The page's text: two pictures to split, flicker, subtract and zoom into, and the tables. Its state can be linked to
-/// (`#mode=difference&zoom=8&x=120&y=40`). Some 9 MB at 960 × 540.
+/// Returns the page: two images to split, flicker, subtract and zoom, and the tables. The URL's fragment links
+/// to its state (`#mode=difference&zoom=8&x=120&y=40`). It takes about 9 MB for images of 960 × 540 pixels.
 std::string report_page(const ReportPage& page);
 
 } // namespace duet::compare

@@ -5,21 +5,25 @@
 #include <algorithm>
 #include <limits>
 
-// The R differences of a channel have the mean m, the standard deviation s and the skewness γ. Student's T = √R m / s
-// is skewed where they are, and they are: Russian roulette takes a little from most pictures and gives much to a few.
-// Hall's transformation takes the skewness out («On the Removal of Skewness by Transformation», 1992, §2):
+// How a bias is found
+//
+// The R differences of a channel have the mean m, the standard deviation s and the skewness γ. Student's T = √R
+// m / s is skewed if the differences are. They are: Russian roulette removes a little from most images and adds
+// much to a few. Hall's transformation removes the skewness ("On the Removal of Skewness by Transformation",
+// 1992, §2):
 //
 //     g = T + γ T² / (3 √R) + γ² T³ / (27 R) + γ / (6 √R)
 //
-// is normal to the next order in 1/√R, and grows with T. That s is estimated makes its tails heavier; of
-// S = g / √(1 + g²/R), which for γ = 0 is the sum of differences over the root of the sum of their squares, they are
-// lighter than the normal's beyond √3 (S²/R has the Beta distribution of ½ and (R − 1)/2): false alarms are rarer than
-// kFalseAlarm.
+// is normal to the next order in 1/√R and increases with T. Its tails are heavier because s is estimated. The
+// test therefore uses S = g / √(1 + g²/R), which for γ = 0 is the sum of the differences over the root of the
+// sum of their squares. Beyond √3 its tails are lighter than the normal distribution's (S²/R has the Beta
+// distribution with parameters ½ and (R − 1)/2), so that false alarms are rarer than kFalseAlarm.
 //
-// A bias is found where |S| exceeds z, the quantile of kFalseAlarm for three channels: where T is beyond some T₀,
-// for the sign which the skewness hides more. A bias μ moves T by √R μ / s, from which it differs by more than the
-// quantile of kMiss with the probability kMiss. So μ = (T₀ + z(kMiss)) s / √R is found with 1 − kMiss. s is only
-// estimated; it is taken at the upper end of its band, its relative error being 1/√(2(R − 1)).
+// A bias is found if |S| exceeds z, the quantile of kFalseAlarm for three channels. This happens if T is beyond
+// some T₀, taken for the sign for which the skewness makes it larger. A bias μ shifts T by √R μ / s. T deviates
+// from that by more than the quantile of kMiss with probability kMiss. So μ = (T₀ + z(kMiss)) s / √R is found
+// with probability 1 − kMiss. Since s is only estimated, the upper end of its band is used; its relative error
+// is 1/√(2(R − 1)).
 
 namespace duet::compare {
 
@@ -29,14 +33,14 @@ constexpr double kChannels = 3;
 
 double threshold() { return upper_quantile(sidak_level(kFalseAlarm, kChannels) / 2); } // 2.93
 
-/// S of T.
+/// Returns S as a function of T.
 double without_skewness(double t, double skewness, double count) {
     const double a = skewness / std::sqrt(count);
     const double g = t + a * t * t / 3 + a * a * t * t * t / 27 + a / 6;
     return g / std::sqrt(1 + g * g / count);
 }
 
-/// T₀; infinite where no T is enough.
+/// Returns T₀, or infinity if no T suffices.
 double least_found(double skewness, double count) {
     double low = 0, high = 1e3;
     for (int i = 0; i < 60; ++i) {
@@ -81,7 +85,7 @@ double BiasTest::detectable() const {
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         const Moments m = moments(c);
-        if (!(without_[c] > 0) || m.deviation == 0) continue; // what there is of a bias has no noise to hide in
+        if (!(without_[c] > 0) || m.deviation == 0) continue; // any bias shows without noise
         const double t = least_found(m.skewness, count) + upper_quantile(kMiss);
         largest = std::max(largest, t * m.deviation * upper / std::sqrt(count) / (without_[c] / count));
     }

@@ -38,7 +38,7 @@ std::string reason_of(const SkipCase& skip, const Rendering& rendering) {
     return skip.statistic.empty() ? "" : "this scene has none to leave out";
 }
 
-/// The order changes from pair to pair, so neither way always comes first to a warm cache.
+/// Renders the repeats. The order alternates from pair to pair, so that neither way always benefits from warm caches.
 void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& view, const MeasureOptions& options,
                     Control& control) {
     std::vector<double> seconds[2];
@@ -62,8 +62,8 @@ void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& v
     result.with = summary(seconds[1]);
 }
 
-/// Pairs until the bias would be found, or the budget is spent. The number of pairs follows from the spread of the
-/// differences, not from their mean: stopping does not favour a verdict.
+/// Renders pairs until the bias would be detected or the time limit is reached. The number of pairs depends on
+/// the spread of the differences and not on their mean, so that stopping favors neither verdict.
 BiasTest find_bias(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control) {
     constexpr int kBatch = 32;
     BiasTest test;

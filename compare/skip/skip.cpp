@@ -61,7 +61,7 @@ std::string percent(double share) {
     return out.str();
 }
 
-/// What was proved, or why not.
+/// Returns what was proved, or why nothing was.
 std::string verdict(const SkipMeasurement& m, double wanted) {
     if (m.pixels_differ == 0) return "same bits";
     if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.pictures, " pictures differ");
@@ -70,7 +70,8 @@ std::string verdict(const SkipMeasurement& m, double wanted) {
         message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", std::setprecision(2), test.p());
     if (test.p() < kFalseAlarm) return "BIASED by " + found;
     if (!std::isfinite(test.detectable()))
-        return message("NOT PROVED: ", test.pairs(), " pairs in the time given say nothing yet: a longer --budget is needed");
+        return message("NOT PROVED: ", test.pairs(),
+                       " pairs in the time given say nothing yet: a longer --budget is needed");
     const std::string power = "one of " + percent(test.detectable()) + " would be found";
     if (!m.proved)
         return message("NOT PROVED: no bias, but only ", power, " (", found, "): ", percent(wanted),

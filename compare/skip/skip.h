@@ -1,4 +1,4 @@
-// `compare skip`: what each skip saves, and proof that the picture is the same.
+// `compare skip`: measures what each skip saves, and proves that the image stays the same.
 #pragma once
 
 #include "compare/pipeline.h"
@@ -10,16 +10,16 @@ namespace duet::compare {
 
 struct SkipOptions {
     std::filesystem::path scene;
-    PictureSize size{0, 0}; ///< 0 x 0: the scene's shape, its longer side 128 pixels
+    PictureSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 128 pixels
     SkipSettings settings;
     MeasureOptions measure;
-    std::vector<std::string> only; ///< PIPELINE/NAME, or NAME in both; empty: all
-    std::string stats;             ///< a file for the figures as JSON, "-" for standard output, empty: none
+    std::vector<std::string> only; ///< PIPELINE/NAME, or NAME for both pipelines; empty: all
+    std::string stats;             ///< file for the results as JSON; "-" for standard output; empty: none
     bool quiet = false;            ///< no progress bar, no table
 };
 
-/// Prints a table of all skips. Returns 1 where a skip is not proved to leave the picture as it is, 130 where a signal
-/// came. Throws Error for a scene or a name that cannot be used.
+/// Prints a table of all skips. Returns 1 if a skip is not proved to preserve the image, 130 after an interrupt
+/// signal. Throws Error for a scene or a name that cannot be used.
 int skip(const SkipOptions& options);
 
 } // namespace duet::compare

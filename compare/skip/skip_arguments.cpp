@@ -1,4 +1,4 @@
-// The arguments of `compare skip`.
+// Command-line arguments of `compare skip`.
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "compare/arguments.h"

@@ -7,11 +7,11 @@ namespace duet::compare {
 
 namespace {
 
-// But the variance, for which the path tracer takes its samples otherwise.
+// All AOVs except the variance, for which the path tracer would draw its samples differently.
 constexpr AovSet kAllAovs{
     .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
 
-/// A skip that is a switch of Skips.
+/// A skip that is controlled by a member of Skips.
 struct Switch {
     const char* name;
     bool Skips::*member;
@@ -20,9 +20,10 @@ struct Switch {
     SkipProof proof = SkipProof::kSameBits;
 };
 
-// At a silhouette a sample that only the snapped outline covers belongs to a front and a back face; rounding says which
-// is nearer. So without culling a pixel in some 100,000 of a dense mesh may show the back face, at the same place and
-// distance: mostly the bits are the same, and where they are not the bias is tested.
+// At a silhouette, a sample that only the snapped triangles cover belongs to a front face and a back face, and
+// rounding decides which is nearer. Without culling, about one pixel in 100,000 of a dense mesh may therefore
+// show the back face, at the same position and distance. The bits are mostly the same; if not, the bias is
+// tested.
 constexpr Switch kRaster[] = {
     {"frustum", &Skips::frustum, "objects and triangles that no pixel can see", "outside the frustum"},
     {"back_faces", &Skips::back_faces, "back faces of closed, opaque meshes", "backfaces", SkipProof::kNoBias},
@@ -45,7 +46,7 @@ constexpr Switch kRaytrace[] = {
     {"shadow_rays", &Skips::shadow_rays, "shadow rays to light that is not reflected"},
 };
 
-/// set(settings, with) turns the skip on or off.
+/// Returns a case. set(settings, with) turns the skip on or off.
 template <typename Settings, typename Prepared, typename Set>
 SkipCase make_case(const char* pipeline, const Switch& s, const Prepared& prepared, const Settings& settings,
                    const Set& set) {
@@ -62,7 +63,7 @@ SkipCase make_case(const char* pipeline, const Switch& s, const Prepared& prepar
             }};
 }
 
-/// The pipeline's switches, and the auxiliary pictures, which are asked for or not.
+/// Adds the pipeline's switches and the AOVs, which are rendered only on request.
 template <typename Settings, typename Prepared, std::size_t N>
 void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const Switch (&switches)[N],
                const Prepared& prepared, const Settings& settings) {

@@ -1,4 +1,4 @@
-// The skips of both pipelines, each as something that can be rendered with and without.
+// The skips of both pipelines, each as a case that can be rendered with and without the skip.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -12,35 +12,35 @@
 
 namespace duet::compare {
 
-/// How a skip is proved to leave the picture as it is.
+/// How a skip is proved to preserve the image.
 enum class SkipProof {
-    kSameBits, ///< every picture is the same to the last bit
-    kNoBias,   ///< the expected picture is: a test that finds a bias of 0.1 % with 99 % power
+    kSameBits, ///< every image is the same to the last bit
+    kNoBias,   ///< the expected image is the same, by a test that finds a bias of 0.1 % with 99 % power
 };
 
 /// A skip to be measured.
 struct SkipCase {
-    std::string pipeline, name; ///< "raster" or "raytrace"; as the command line and the JSON call it
-    std::string left_out;       ///< what, in words
-    std::string statistic;      ///< its name in RenderStatistics::skipped; empty: it has none
+    std::string pipeline, name; ///< "raster" or "raytrace"; name on the command line and in JSON
+    std::string left_out;       ///< what it omits, in words
+    std::string statistic;      ///< name in RenderStatistics::skipped; empty: none
     SkipProof proof = SkipProof::kSameBits;
-    /// One picture, with the skip or without it.
+    /// Renders one image with or without the skip.
     std::function<Rendering(const View& view, std::uint64_t seed, bool with, Control& control)> render;
 };
 
-/// A skip of design that a pipeline does not have.
+/// A skip of the design that a pipeline does not implement.
 struct MissingSkip {
     std::string pipeline, name;
 };
 
 struct SkipSettings {
     int raster_spp = 4, raytrace_spp = 4;
-    int threads = 0; ///< 0: all
+    int threads = 0; ///< 0: all hardware threads
 };
 
-/// All skips of both pipelines, in order, for one scene, which must outlive them.
+/// Returns all skips of both pipelines, in order, for one scene, which must outlive them.
 std::vector<SkipCase> skip_cases(const Scene& scene, const SkipSettings& settings);
-/// What is not built: occluded triangles and tiles, converged pixels.
+/// Returns what is not implemented: occluded triangles and tiles, converged pixels.
 std::vector<MissingSkip> missing_skips();
 
 } // namespace duet::compare

@@ -11,7 +11,7 @@ namespace duet::compare {
 
 namespace {
 
-// The seeds of trials: far from those of references.
+// First seed of the trials, far from the references' seeds.
 constexpr std::uint64_t kFirstSeed = 1;
 
 double own_relmse(const Reference& reference) {
@@ -23,7 +23,7 @@ double own_relmse(const Reference& reference) {
     return sum / (3.0 * static_cast<double>(reference.mean.size()));
 }
 
-/// Renders of one scene, and their errors.
+/// Renders one scene and measures the errors.
 class Trials {
 public:
     Trials(const Scene& scene, const View& view, const Reference& reference, const StopSettings& settings)

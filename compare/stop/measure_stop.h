@@ -1,5 +1,6 @@
-// Whether a render ends where it was told to: the error it got against the error asked for, the time it took against the
-// time allowed; and what adaptive sampling is worth beside as many samples spread evenly.
+// Measures whether a render stops where it should: the achieved error against the requested error, and the time
+// taken against the time limit. It also compares adaptive sampling with uniform sampling at the same sample
+// count.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -13,45 +14,45 @@
 namespace duet::compare {
 
 struct StopSettings {
-    double error = 1e-3; ///< relMSE asked for
-    double time = 0;     ///< seconds asked for in a second experiment; 0: none
+    double error = 1e-3; ///< requested relMSE
+    double time = 0;     ///< time limit in seconds for a second experiment; 0: none
     int seeds = 20;
-    int threads = 0;     ///< 0: all
+    int threads = 0;     ///< 0: all hardware threads
 };
 
-/// One seed: a render to an error, and one with as many samples in the mean, spread evenly.
+/// One seed: a render with an error limit, and a uniformly sampled one with the same mean sample count.
 struct StopTrial {
     std::uint64_t seed = 0;
-    double samples = 0;           ///< a pixel, in the mean, when it ended
+    double samples = 0;           ///< mean samples per pixel at the end
     double seconds = 0, even_seconds = 0;
-    double stated = 0;            ///< relMSE, as the render estimated it
-    double relmse = 0, mse = 0;   ///< against the reference, less the reference's own error
+    double stated = 0;            ///< relMSE as estimated by the render
+    double relmse = 0, mse = 0;   ///< against the reference, minus the reference's own error
     double even_relmse = 0, even_mse = 0;
 };
-/// One render to a time.
+/// One render with a time limit.
 struct TimeTrial {
-    double seconds = 0;  ///< of the render
-    double one_pass = 0; ///< of the least pass that there is at the end: two samples a pixel
+    double seconds = 0;  ///< time of the render
+    double one_pass = 0; ///< time of the smallest final pass: two samples per pixel
 };
 
-/// A scene's trials and what they say. Ratios of squared errors are ratios of their means over the seeds.
+/// Trials and results of a scene. Ratios of squared errors are ratios of their means over the seeds.
 struct StopResult {
     std::vector<StopTrial> trials;
     std::vector<TimeTrial> times;
-    bool caustics = false; ///< see has_caustics
+    bool caustics = false; ///< result of has_caustics
 
-    double median_error() const;  ///< relMSE got, the median of the seeds
+    double median_error() const;  ///< achieved relMSE, median over the seeds
     double mean_samples() const;
-    bool at_once() const; ///< half of the seeds, or more, ended with the least samples that there may be
-    double to_even_relmse() const; ///< adaptive over even: of relMSE × seconds, below 1 where adaptivity pays
+    bool at_once() const; ///< whether at least half of the seeds stopped at the minimum sample count
+    double to_even_relmse() const; ///< adaptive over uniform sampling in relMSE × seconds; below 1, adaptivity pays
     double to_even_mse() const;
 };
 
-/// Whether light may be focused by mirrors or glass into spots that camera paths seldom find: there is a mirror, or
-/// glass, and a light that is sampled. No error estimate knows of light that no sample has found.
+/// Returns whether the scene may have caustics that camera paths seldom find: it has a specular surface (mirror
+/// or glass) and a light that is sampled. No error estimate accounts for light that no sample has found.
 bool has_caustics(const Scene& scene);
 
-/// Empty where it was stopped.
+/// Returns nothing if stopped.
 std::optional<StopResult> measure_stop(const Scene& scene, const View& view, const Reference& reference,
                                        const StopSettings& settings, Control& control);
 

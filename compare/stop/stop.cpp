@@ -25,7 +25,7 @@ View view_of(const Scene& scene, PictureSize size) {
     return {scene.camera, side(scene.width), side(scene.height)};
 }
 
-/// The time farthest from what was asked for: over it, and whether by more than allowed.
+/// The time that deviates most from the requested one, as their ratio, and whether any time is out of tolerance.
 struct WorstTime {
     double ratio = 1;
     bool missed = false;
@@ -44,13 +44,14 @@ struct Row {
     std::string scene;
     View view;
     StopResult result;
-    double error_ratio = 0; ///< got over asked
+    double error_ratio = 0; ///< achieved / requested
     WorstTime time;
 
-    /// Less than was asked for is right where no render could have ended sooner.
+    /// Returns whether the error is out of tolerance. A smaller error is acceptable if no render could have
+    /// stopped sooner.
     bool missed_error() const {
         if (result.caustics || (result.at_once() && error_ratio < 1)) return false;
-        return !(std::abs(error_ratio - 1) <= kErrorTolerance); // NaN has missed, too
+        return !(std::abs(error_ratio - 1) <= kErrorTolerance); // true for NaN
     }
 };
 
@@ -80,7 +81,7 @@ json as_json(const Row& row, const StopOptions& options) {
             {"seconds_to_time", times}};
 }
 
-/// "0.95", or "-" where nothing was divided by nothing.
+/// Returns "0.95", or "-" if the ratio is not finite.
 std::string ratio_text(double ratio) {
     std::array<char, 16> text{};
     std::snprintf(text.data(), text.size(), "%.2f", ratio);

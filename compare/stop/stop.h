@@ -1,4 +1,4 @@
-// `compare stop`: do --error and --time end where they say?
+// `compare stop`: checks whether renders with --error and --time stop at those limits.
 #pragma once
 
 #include "common/program/render_program.h"
@@ -12,19 +12,20 @@ namespace duet::compare {
 
 struct StopOptions {
     std::vector<std::filesystem::path> scenes;
-    PictureSize size{0, 0}; ///< 0 × 0: the scene's shape, its longer side 96 pixels
+    PictureSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 96 pixels
     StopSettings settings;
     int reference_spp = 4096;
-    std::filesystem::path references; ///< the cache of compare bench; empty: default_reference_folder()
-    std::string stats;                ///< the figures as JSON, "-": standard output, empty: none
+    std::filesystem::path references; ///< cache of compare bench; empty: default_reference_folder()
+    std::string stats;                ///< file for the results as JSON; "-" for standard output; empty: none
     bool quiet = false;
 };
 
-/// By how much the median error may miss the one asked for, and the time the one asked for (or one pass).
+/// Relative tolerances of the median error, and of the time (or one pass, if that is longer).
 inline constexpr double kErrorTolerance = 0.2, kTimeTolerance = 0.05;
 
-/// Prints a row a scene. Returns 0; 1 where a scene without caustics misses the error by more than kErrorTolerance, or
-/// a time is missed by more than kTimeTolerance and one pass; 130 where a signal came.
+/// Prints one row per scene. Returns 0; 1 if a scene without caustics misses the error by more than
+/// kErrorTolerance, or a time is missed by more than kTimeTolerance and one pass; 130 after an interrupt
+/// signal.
 int stop(const StopOptions& options);
 
 } // namespace duet::compare

@@ -1,4 +1,4 @@
-// The arguments of `compare stop`.
+// Command-line arguments of `compare stop`.
 #include "common/program/option_checks.h"
 #include "compare/arguments.h"
 #include "compare/stop/stop.h"

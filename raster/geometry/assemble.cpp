@@ -8,7 +8,7 @@
 namespace duet::raster {
 namespace {
 
-/// What becomes of a triangle.
+/// Encodes the result of the culling tests for one triangle.
 enum Verdict : std::int32_t {
     kOutside,
     kDegenerate,
@@ -19,18 +19,18 @@ enum Verdict : std::int32_t {
     kClip,
 };
 
-/// Boxes below this side, in grid points, have edge functions that fit into 32 bits.
+/// Edge functions fit into 32 bits if the bounding box is narrower than this many grid points.
 constexpr std::int32_t kNarrow = 1 << 14;
 
 } // namespace
 
-/// Sixteen triangles side by side.
+/// Stores sixteen snapped triangles in structure-of-arrays layout.
 struct Assembler::Outlines {
-    std::uint32_t first = 0, count = 0; ///< triangles of the object
+    std::uint32_t first = 0, count = 0; ///< index of the first triangle of the object, and how many lanes are used
     std::array<StripOf<std::int32_t>, 3> x, y;
     StripOf<std::int32_t> any_outcode, common_outcode;
     StripOf<std::int32_t> verdict;
-    StripOf<std::int32_t> sample_x, sample_y; ///< the first pixel of the box
+    StripOf<std::int32_t> sample_x, sample_y; ///< first pixel of the bounding box
 };
 
 void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, const Run& run, bool culls_back_faces,
@@ -66,7 +66,7 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
 
 namespace {
 
-/// The corners of a triangle among its object's vertices.
+/// Returns the vertex indices of a triangle's corners. Without a mesh, the object consists of quads.
 std::array<std::uint32_t, 3> corners_of(const Mesh* mesh, std::uint32_t triangle) {
     if (mesh != nullptr) return mesh->triangles[triangle];
     const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
@@ -93,14 +93,14 @@ void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t co
         out.any_outcode[i] = static_cast<std::int32_t>(any);
         out.common_outcode[i] = static_cast<std::int32_t>(common);
     }
-    // Vertices of the sixteen after the next, while these are worked on.
+    // Prefetch the vertices of the packet after the next while this one is processed.
     constexpr std::uint32_t kAhead = 2 * kStrip;
     const std::uint32_t end = std::min<std::uint32_t>(first + kAhead + kStrip, run_.first + run_.count);
     for (std::uint32_t i = first + kAhead; i < end; ++i)
         for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
 }
 
-/// Decides sixteen triangles, all the tests side by side.
+/// Runs all culling tests for sixteen triangles with SIMD.
 void Assembler::judge(Outlines& out) const {
     const bool one_sample = plan_->samples.size() == 1 && !sabotaged(Guard::kPerspective);
     const PixelRect& region = plan_->grid.region;
@@ -113,7 +113,7 @@ void Assembler::judge(Outlines& out) const {
         const Ints y0 = min(min(ay, by), cy), y1 = max(max(ay, by), cy);
         const Ints width = x1 - x0, height = y1 - y0;
         const auto narrow = width < Ints(kNarrow) && height < Ints(kNarrow);
-        const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // of narrow ones
+        const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // valid only where `narrow`
         const auto front = object_->mirrored ? area > zero : area < zero;
 
         const Ints first_x = (x0 - Ints(most_.x) + round_up) >> kSubPixelBits,
@@ -131,7 +131,7 @@ void Assembler::judge(Outlines& out) const {
         if (skips.subpixel) verdict = xsimd::select(between, Ints(kSubpixel), verdict);
         if (culls_back_faces_) verdict = xsimd::select(front, verdict, Ints(kBackface));
         verdict = xsimd::select(area == zero, Ints(skips.degenerate ? kDegenerate : kDraw), verdict);
-        verdict = xsimd::select(narrow, verdict, Ints(kDraw)); // to be judged in 64 bits
+        verdict = xsimd::select(narrow, verdict, Ints(kDraw)); // wider boxes are tested in 64 bits
         verdict = xsimd::select((load(out.any_outcode, i) & Ints(kMustClip)) != zero, Ints(kClip), verdict);
         if (skips.frustum)
             verdict = xsimd::select((load(out.common_outcode, i) & Ints(kFrustum)) != zero, Ints(kOutside), verdict);
@@ -142,7 +142,7 @@ void Assembler::judge(Outlines& out) const {
 }
 
 void Assembler::sort_out(const Outlines& out) {
-    std::uint32_t chosen = (1u << out.count) - 1; // a bit each: those not culled
+    std::uint32_t chosen = (1u << out.count) - 1; // one bit per lane: triangles that are not culled
     const auto take_out = [&](Verdict verdict) {
         const std::uint32_t these = chosen & lanes_of_number(out.verdict, verdict);
         chosen &= ~these;
@@ -155,7 +155,8 @@ void Assembler::sort_out(const Outlines& out) {
     culled.subpixel += take_out(kSubpixel);
     if (mesh_ != nullptr)
         for (std::uint32_t left = chosen; left != 0; left &= left - 1)
-            for (const std::uint32_t corner : mesh_->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
+            for (const std::uint32_t corner :
+                 mesh_->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
                 prefetch(&mesh_->positions[corner]);
     for (std::uint32_t left = chosen; left != 0; left &= left - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left)), index = out.first + i;
@@ -183,11 +184,11 @@ void Assembler::clip_and_set_up(std::uint32_t index) {
             *triangle = set_up(whole, triangle->corners, triangle->id, true, plan_->viewport);
 }
 
-/// Adds a triangle that lacks all but its corners and number; null where it is culled.
+/// Appends a triangle with its corners and id only. Returns null if the triangle is culled.
 DrawTriangle* Assembler::add_outline(std::uint32_t index, std::array<FixedPoint, 3> p) {
     const std::int64_t area = doubled_area(p[0], p[1], p[2]);
     const PixelRect first = pixels_within(p, least_), last = pixels_within(p, most_);
-    const PixelRect touched{last.x0, last.y0, first.x1, first.y1}; // over all samples
+    const PixelRect touched{last.x0, last.y0, first.x1, first.y1}; // union over all samples
     if (area == 0 && plan_->skips.degenerate) {
         ++batch_->culled.degenerate;
     } else if (culls_back_faces_ && is_backface(area, object_->mirrored)) {

@@ -20,7 +20,7 @@ std::size_t Batch::memory_bytes() const {
            bytes(patch_segments) + bytes(fragments) + bytes(fragment_segments);
 }
 
-// A counting sort that touches the counters of those tiles only that have any item: the work grows with the items.
+// This is a counting sort that touches only the counters of tiles with items, so its cost is linear in the items.
 template <typename Item, typename TileOf, typename Place>
 void TileSorter::distribute(std::span<const Item> items, const TileOf& tile_of, std::vector<Segment>& segments,
                             const Place& place) {
@@ -37,14 +37,16 @@ void TileSorter::distribute(std::span<const Item> items, const TileOf& tile_of, 
     for (const Segment& segment : segments) counts_[segment.tile] = 0;
 }
 
-void TileSorter::sort(const std::vector<Touch>& touches, std::vector<Segment>& segments, std::vector<std::uint32_t>& order) {
+void TileSorter::sort(const std::vector<Touch>& touches, std::vector<Segment>& segments,
+                      std::vector<std::uint32_t>& order) {
     order.resize(touches.size());
     distribute(
         std::span<const Touch>(touches), [](const Touch& touch) { return touch.tile; }, segments,
         [&](std::uint32_t i, const Touch& touch) { order[i] = touch.item; });
 }
 
-void TileSorter::sort(Batch& batch, const std::vector<Touch>& triangles, const std::vector<Touch>& patches, std::size_t tiles) {
+void TileSorter::sort(Batch& batch, const std::vector<Touch>& triangles, const std::vector<Touch>& patches,
+                      std::size_t tiles) {
     if (counts_.size() < tiles) counts_.resize(tiles, 0);
     sort(triangles, batch.triangle_segments, batch.order);
     sort(patches, batch.patch_segments, batch.patch_order);

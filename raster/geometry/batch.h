@@ -1,4 +1,5 @@
-// What a run of triangles comes to: outlines to be drawn, and finished samples, sorted by tile.
+// Defines the output of assembly for a run of triangles: set-up triangles, coverage masks and fragments, sorted by
+// tile.
 #pragma once
 
 #include "raster/geometry/cull.h"
@@ -11,51 +12,54 @@
 
 namespace duet::raster {
 
-/// A covered sample of a triangle so small that it was not worth drawing tile by tile.
+/// Represents a covered sample of a triangle that is too small to be worth rasterizing tile by tile.
 struct Fragment {
     std::uint32_t id = 0;
     float nearness = 0;
-    std::uint16_t place : 15 = 0; ///< in its tile: place_in_tile
-    std::uint16_t inside : 1 = 0; ///< well inside the triangle (edge_margins)
+    std::uint16_t place : 15 = 0; ///< pixel index in the tile, see place_in_tile
+    std::uint16_t inside : 1 = 0; ///< well inside the triangle, see edge_margins
     std::uint16_t tile = 0;
 };
 static_assert(sizeof(Fragment) == 12 && TileGrid::kTileSize * TileGrid::kTileSize <= 1 << 15);
 
-/// Samples of a triangle so small that a box of 8 × 8 has them all.
+/// Stores the coverage mask of a triangle that fits into a box of 8 × 8 samples.
 struct Patch {
-    std::uint64_t samples = 0; ///< a bit for each of the box, row by row
-    NearnessPlane nearness;    ///< holds there; counted from the box's first sample
+    std::uint64_t samples = 0; ///< one bit per sample of the box, row by row
+    NearnessPlane nearness;    ///< valid at these samples; relative to the box's first sample
     std::uint32_t id = 0;
-    std::int32_t x = 0, y = 0; ///< the box's first pixel
+    std::int32_t x = 0, y = 0; ///< first pixel of the box
 };
 
-/// Where a tile keeps a pixel, both counted from its corner: by blocks of 8 × 8 pixels, row by row in each.
+/// Returns the index at which a tile stores a pixel. x and y are relative to the tile's corner. Pixels are stored
+/// in blocks of 8 × 8, row by row in each block.
 inline std::uint32_t place_in_tile(std::uint32_t x, std::uint32_t y) {
     return ((y >> 3) * (TileGrid::kTileSize / 8) + (x >> 3)) * 64 + (y & 7) * 8 + (x & 7);
 }
 
 inline constexpr std::size_t kBlockSamples = 64, kTileSamples = TileGrid::kTileSize * TileGrid::kTileSize;
-/// The way back: a place's pixel.
+/// Returns the x coordinate in the tile of a pixel index; the inverse of place_in_tile.
 inline int place_x(std::size_t place) {
     return static_cast<int>(place / kBlockSamples % (TileGrid::kTileSize / 8) * 8 + place % 8);
 }
+/// Returns the y coordinate in the tile of a pixel index.
 inline int place_y(std::size_t place) {
     return static_cast<int>(place / kBlockSamples / (TileGrid::kTileSize / 8) * 8 + place / 8 % 8);
 }
 
-/// Those items of a list that a tile has, one after the other.
+/// Stores the range of a list's items that belong to one tile.
 struct Segment {
     std::uint32_t tile = 0, first = 0, count = 0;
 };
 
+/// Stores the results of one run, each list sorted by tile.
 struct Batch {
     std::vector<DrawTriangle> triangles;
-    std::vector<std::uint32_t> order;         ///< indices of triangles, tile by tile
+    std::vector<std::uint32_t> order;         ///< indices of triangles, sorted by tile
     std::vector<Segment> triangle_segments;   ///< of `order`
     std::vector<Patch> patches;
-    std::vector<std::uint32_t> patch_order;   ///< and of patches
+    std::vector<std::uint32_t> patch_order;   ///< indices of patches, sorted by tile
     std::vector<Segment> patch_segments;      ///< of `patch_order`
-    std::vector<Fragment> fragments;          ///< tile by tile
+    std::vector<Fragment> fragments;          ///< sorted by tile
     std::vector<Segment> fragment_segments;   ///< of `fragments`
     CullCounts culled;
 
@@ -63,14 +67,14 @@ struct Batch {
     std::size_t memory_bytes() const;
 };
 
-/// Sorts a batch's items by tile, in their order within each. Keeps memory for the next.
+/// Sorts the items of a batch by tile. The sort is stable, and the memory is reused by later calls.
 class TileSorter {
 public:
-    /// An item, by its index in batch.triangles or batch.patches, may be seen in a tile.
+    /// Records that an item, given by its index in batch.triangles or batch.patches, overlaps a tile.
     struct Touch {
         std::uint32_t tile, item;
     };
-    /// `triangles` and `patches` in order.
+    /// `triangles` and `patches` are in the order of their items.
     void sort(Batch& batch, const std::vector<Touch>& triangles, const std::vector<Touch>& patches, std::size_t tiles);
 
 private:
@@ -79,7 +83,7 @@ private:
     void distribute(std::span<const Item> items, const TileOf& tile_of, std::vector<Segment>& segments,
                     const Place& place);
 
-    std::vector<std::uint32_t> counts_;    ///< a tile each; all 0 between calls
+    std::vector<std::uint32_t> counts_;    ///< one per tile; all 0 between calls
     std::vector<Fragment> unsorted_;
 };
 

@@ -1,4 +1,4 @@
-// Stage 5: which tiles of the picture a primitive may touch.
+// Implements stage 5, binning, which finds the tiles that each primitive may overlap.
 #pragma once
 
 #include "raster/geometry/batch.h"
@@ -11,11 +11,11 @@
 
 namespace duet::raster {
 
-/// For each tile a list of indices, all in one array.
+/// Stores a list of indices per tile, all in one array.
 class Bins {
 public:
     Bins() = default;
-    /// Puts item i into each tile that bounds[i] touches. Lists are in ascending order.
+    /// Inserts item i into each tile that bounds[i] overlaps. The lists are in ascending order.
     Bins(const TileGrid& grid, const std::vector<PixelRect>& bounds);
 
     std::span<const std::uint32_t> tile(std::size_t index) const {
@@ -30,16 +30,17 @@ private:
     std::vector<std::uint32_t> items_;
 };
 
+/// Bins the spheres by their bounds.
 Bins bin(const TileGrid& grid, const std::vector<DrawSphere>& spheres);
 
-/// For each tile the segments of the batches that belong to it, in the order of the batches: so what they refer to is in
-/// the order of submission, though batches were sorted side by side.
+/// Stores the segments of all batches that belong to each tile, in the order of the batches. Their items are
+/// therefore in submission order, although the batches were sorted in parallel.
 class TileLists {
 public:
     struct Item {
         std::uint32_t batch = 0, first = 0, count = 0;
     };
-    /// `segments`: which of a batch's lists.
+    /// `segments` selects the list of each batch.
     void gather(const std::vector<Batch>& batches, std::vector<Segment> Batch::*segments, std::size_t tiles);
 
     std::span<const Item> tile(std::size_t index) const {

@@ -1,4 +1,4 @@
-// Camera rays of samples side by side.
+// Computes camera rays, one per SIMD lane.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -6,15 +6,18 @@
 
 namespace duet::raster {
 
-/// Rays through places of the picture, number for number those of Pinhole::ray; what is traced of them in float, as doubles.
+/// Holds the rays through pixel positions x, y, bit-identical to those of Pinhole::ray. Values that Pinhole::ray
+/// rounds to float are rounded here too, but stored as doubles.
 struct CameraRays {
-    Vec3T<Doubles> origin, direction; ///< rounded to float
+    Vec3T<Doubles> origin, direction; ///< rounded to float precision
     Doubles t_min;                    ///< not rounded
-    Doubles per_depth;                ///< distance along the ray for each metre of depth
+    Doubles per_depth;                ///< distance along the ray per meter of depth
 
     CameraRays(const Pinhole& pinhole, const Doubles& x, const Doubles& y) {
         const auto linear = [&](Vec3d start, Vec3d dx, Vec3d dy) {
-            const auto along = [&](std::size_t axis) { return Doubles(start[axis]) + Doubles(dx[axis]) * x + Doubles(dy[axis]) * y; };
+            const auto along = [&](std::size_t axis) {
+                return Doubles(start[axis]) + Doubles(dx[axis]) * x + Doubles(dy[axis]) * y;
+            };
             return Vec3T<Doubles>{along(0), along(1), along(2)};
         };
         const Vec3T<Doubles> from = linear(pinhole.origin, pinhole.origin_dx, pinhole.origin_dy),
@@ -25,14 +28,18 @@ struct CameraRays {
         direction = {as_floats(way.x / per_depth), as_floats(way.y / per_depth), as_floats(way.z / per_depth)};
     }
 
-    /// One of them.
+    /// Returns the ray of one lane.
     Ray at(std::size_t lane, float time) const {
-        return {.origin = of(origin, lane), .direction = of(direction, lane), .t_min = static_cast<float>(t_min.get(lane)), .time = time};
+        return {.origin = of(origin, lane),
+                .direction = of(direction, lane),
+                .t_min = static_cast<float>(t_min.get(lane)),
+                .time = time};
     }
 
 private:
     static Vec3 of(const Vec3T<Doubles>& v, std::size_t lane) {
-        return {static_cast<float>(v.x.get(lane)), static_cast<float>(v.y.get(lane)), static_cast<float>(v.z.get(lane))};
+        return {static_cast<float>(v.x.get(lane)), static_cast<float>(v.y.get(lane)),
+                static_cast<float>(v.z.get(lane))};
     }
 };
 

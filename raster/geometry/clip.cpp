@@ -8,7 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// A half-space of homogeneous coordinates: inside where x·xw + y·yw + w·w + depth·depth + constant >= 0.
+/// Represents a half-space of homogeneous coordinates. A point is inside where x·xw + y·yw + w·w + depth·depth +
+/// constant >= 0.
 struct Plane {
     double x, y, w, depth, constant;
 
@@ -16,7 +17,8 @@ struct Plane {
 };
 
 PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner_distance, double outer_distance) {
-    const double t = inner_distance / (inner_distance - outer_distance); // the signs differ: no cancellation
+    // The signs differ, so there is no cancellation.
+    const double t = inner_distance / (inner_distance - outer_distance);
     const auto mix = [t](double from, double to) { return from + (to - from) * t; };
     return {mix(inner.xw, outer.xw), mix(inner.yw, outer.yw), mix(inner.w, outer.w), mix(inner.depth, outer.depth)};
 }
@@ -24,8 +26,8 @@ PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner
 ClippedPolygon clip(const ClippedPolygon& polygon, const Plane& plane) {
     ClippedPolygon result;
     const auto emit = [&](const PixelVertex& v) {
-        // A convex polygon gains one vertex a plane; rounding can make it cross a plane more than twice, where the
-        // ninth corner is within rounding of the plane and may be left out.
+        // A convex polygon gains one vertex per plane. Rounding can make it cross a plane more than twice. The
+        // ninth corner is then within rounding error of the plane and may be dropped.
         if (result.count < static_cast<int>(result.vertices.size()))
             result.vertices[static_cast<std::size_t>(result.count++)] = v;
     };
@@ -54,8 +56,8 @@ ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVerte
         if (sabotaged(&plane == planes ? Guard::kNearClip : Guard::kGuardClip)) continue;
         polygon = clip(polygon, plane);
         if (&plane != planes) continue;
-        // A corner cut on the near plane has just its depth; interpolated from ends far apart it could be anything
-        // near zero. Under perspective w is the depth.
+        // A corner on the near plane must have exactly that depth. Interpolated between distant ends it could be
+        // anything near zero. Under perspective, w equals the depth.
         for (PixelVertex& v : std::span(polygon.vertices).first(static_cast<std::size_t>(polygon.count))) {
             const bool perspective = v.w == v.depth;
             v.depth = std::max(v.depth, viewport.near);

@@ -1,4 +1,4 @@
-// Stage 3: polygons cut at the near plane and the guard band.
+// Implements stage 3, which clips triangles at the near plane and the guard band.
 #pragma once
 
 #include "raster/geometry/transform.h"
@@ -7,15 +7,17 @@
 
 namespace duet::raster {
 
-/// A convex polygon in homogeneous pixel coordinates. A triangle cut by five planes has at most eight corners.
+/// Represents a convex polygon in homogeneous pixel coordinates. A triangle clipped by five planes has at most eight
+/// corners.
 struct ClippedPolygon {
     std::array<PixelVertex, 8> vertices;
     int count = 0;
 };
 
-/// The part of a triangle at depth >= near and within the guard band; empty (count 0) where there is none. (Sutherland
-/// and Hodgman 1974, «Reentrant Polygon Clipping».) A cut edge's new vertex is computed from its inner to its outer
-/// end, whichever way the triangle runs: both triangles of a shared edge get the same vertex, bit for bit.
+/// Returns the part of a triangle at depth >= near and within the guard band; empty (count 0) if there is none.
+/// (Sutherland and Hodgman 1974, "Reentrant Polygon Clipping".) The new vertex on a clipped edge is always computed
+/// from the inner to the outer end, regardless of the winding. Both triangles of a shared edge thus get the same
+/// vertex, bit for bit.
 ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, const Viewport& viewport);
 
 } // namespace duet::raster

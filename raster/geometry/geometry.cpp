@@ -11,11 +11,11 @@
 namespace duet::raster {
 namespace {
 
-/// Triangles of a run: enough runs that threads are done at the same time, of so many triangles that a run's own work is
-/// none to speak of.
+/// The first two constants bound the number of triangles per run; the third is the target number of runs. There must
+/// be enough runs to balance the load between threads, and enough triangles per run to make its overhead negligible.
 constexpr std::uint32_t kMostInRun = 8192, kLeastInRun = 512, kRuns = 16;
 
-/// The objects whose bounds touch the frustum; the others' primitives are counted.
+/// Returns the objects whose bounds overlap the frustum, and counts the primitives of the others as culled.
 std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
                                       const PassView& view, CullCounts& culled) {
     std::vector<std::uint32_t> result;
@@ -28,7 +28,8 @@ std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vecto
     return result;
 }
 
-/// Runs of the objects' triangles and of the spheres, in the order of objects. Spheres get their numbers.
+/// Returns the runs of the objects' triangles and of the spheres, in the order of objects, and assigns the spheres'
+/// ids.
 std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
                             std::vector<DrawSphere>& spheres) {
     const auto triangles = [&](std::uint32_t object) {
@@ -60,7 +61,7 @@ std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>
     return runs;
 }
 
-/// Lends each of a loop's threads one of the assemblers.
+/// Provides a pool of assemblers for the threads of a parallel loop.
 class Lender {
 public:
     explicit Lender(std::vector<Assembler>& all) : all_(all) {}
@@ -132,7 +133,7 @@ std::size_t Geometry::memory_bytes() const {
 
 namespace {
 
-/// Which of each surface's two sides are drawn.
+/// Selects the sides of surfaces that are drawn.
 enum class Sides { kAsSettings, kBacks };
 
 void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
@@ -152,7 +153,7 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
-    const bool backs = sides == Sides::kBacks; // the fronts of what is turned inside out
+    const bool backs = sides == Sides::kBacks; // drawn as front faces of an inverted object
     for (DrawSphere& sphere : result.spheres) sphere.far_side = backs;
     const auto turn = [&] {
         for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
@@ -194,18 +195,20 @@ Objects common_to(const Objects& objects, const Objects& others) {
 
 } // namespace
 
-void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                           Geometry& result) {
-    process(data, without(data.polygonal, data.glass), without(data.spheres, data.glass), grid, view, settings, true, result);
+void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
+                           const Settings& settings, Geometry& result) {
+    process(data, without(data.polygonal, data.glass), without(data.spheres, data.glass), grid, view, settings, true,
+            result);
 }
 
 void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                    Geometry& result) {
-    process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings, false, result);
+    process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings,
+            false, result);
 }
 
-void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings, bool glass,
-                   Geometry& result) {
+void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                   bool glass, Geometry& result) {
     const auto closed = [&](const Objects& objects) {
         Objects kept = glass ? objects : without(objects, data.glass);
         std::erase_if(kept, [&](std::uint32_t object) { return !data.objects[object].closed; });
@@ -214,8 +217,8 @@ void process_backs(const PreparedData& data, const TileGrid& grid, const PassVie
     process(data, closed(data.polygonal), closed(data.spheres), grid, view, settings, true, result, Sides::kBacks);
 }
 
-void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                            bool patches, Geometry& result) {
+void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
+                            const Settings& settings, bool patches, Geometry& result) {
     process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, patches, result, Sides::kBacks);
 }
 

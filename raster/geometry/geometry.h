@@ -1,4 +1,4 @@
-// The front half of the pipeline: transform → cull → clip → set up → bin, for one pass.
+// Implements the geometry stages of the pipeline for one pass: transform → cull → clip → set up → bin.
 #pragma once
 
 #include "raster/geometry/assemble.h"
@@ -13,61 +13,66 @@ namespace duet::raster {
 
 class Screen; // raster/screen/screen.h
 
-/// One view of the scene: a point of the lens, a moment, and the samples that see it.
+/// Represents one view of the scene: a point on the lens, a time, and the sample positions in the pixel.
 struct PassView {
     Pinhole pinhole;
     float time = 0;
     Viewport viewport;
     const std::vector<SampleOffset>& samples;
-    const Screen* screen = nullptr; ///< its depths, where an effect asks for them
+    const Screen* screen = nullptr; ///< the depths that a screen-space effect reads; null if there is none
 };
 
-/// A pass's primitives, ready to be drawn tile by tile. Made anew for each pass in the same memory.
+/// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
+/// memory.
 struct Geometry {
     Triangles triangles;
-    std::vector<Batch> batches; ///< a run each
+    std::vector<Batch> batches; ///< one per run
     TileLists outlines, patches, fragments;
     std::vector<DrawSphere> spheres;
     Bins sphere_bins;
     CullCounts culled;
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
-    std::vector<Assembler> assemblers; ///< of threads at work, each taken by one at a time
+    std::vector<Assembler> assemblers; ///< assemblers not in use; each thread takes one
 
     std::size_t memory_bytes() const;
 };
 
-/// The same for any number of threads. Throws Error for more triangles in view than can be numbered (2^31).
+/// Processes all objects without alpha mask or alpha blending. The result is the same for any number of threads.
+/// Throws Error if there are more triangles in view than ids (2^31).
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result);
-/// The same without PreparedData::glass.
-void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                           Geometry& result);
-/// The same of PreparedData::glass alone, each surface as whole triangles.
+/// Processes the objects of process_geometry() except PreparedData::glass.
+void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
+                           const Settings& settings, Geometry& result);
+/// Processes only PreparedData::glass, without coverage masks (Patch).
 void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                    Geometry& result);
-/// The same of the back faces of closed objects, far sides of spheres among them, with and without PreparedData::glass.
-void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings, bool glass,
-                   Geometry& result);
-/// The same of the back faces of PreparedData::glass, spheres apart, alone; patches: not as whole triangles.
-void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                            bool patches, Geometry& result);
-/// The same of the surfaces that may be seen through.
+/// Processes only the back faces of closed objects, which include the far sides of spheres. PreparedData::glass is
+/// included if `glass` is true.
+void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
+                   bool glass, Geometry& result);
+/// Processes only the back faces of the meshes and quads of PreparedData::glass. `patches` allows coverage masks
+/// (Patch).
+void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
+                            const Settings& settings, bool patches, Geometry& result);
+/// Processes only the objects with alpha mask or alpha blending (PreparedData::open_polygonal and open_spheres).
 void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                     Geometry& result);
 
-/// Memory of geometries, kept from frame to frame: one for each rendering that runs at a time.
+/// Provides a pool of geometries whose memory is reused from frame to frame. There is one for each rendering that
+/// runs at the same time.
 class GeometryPool {
 public:
     std::unique_ptr<Geometry> take();
     void give_back(std::unique_ptr<Geometry> geometry);
-    std::size_t memory_bytes(); ///< of those that nobody has
+    std::size_t memory_bytes(); ///< of the geometries that are not in use
 
 private:
     std::mutex mutex_;
     std::vector<std::unique_ptr<Geometry>> free_;
 };
 
-/// A geometry of the pool, given back at the end.
+/// Holds a geometry taken from a pool and returned to it by the destructor.
 class GeometryLoan {
 public:
     explicit GeometryLoan(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}

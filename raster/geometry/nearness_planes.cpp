@@ -20,15 +20,16 @@ std::array<Vec3, 3> triangle_corners(const Shape& shape, const Mesh* mesh, std::
 
 } // namespace
 
-/// What set_up does for one triangle, side by side: the planes of nearness of up to sixteen unclipped triangles of the
-/// object, each counted from its own place in the picture.
+/// Computes the planes of reversed depth for up to sixteen unclipped triangles of the object with SIMD, as set_up
+/// does for one triangle. Each plane has its own pixel origin, which `origin_of` returns.
 template <typename IndexOf, typename OriginOf>
-void Assembler::find_planes(std::size_t count, const IndexOf& index_of, const OriginOf& origin_of, PlaneStrip& planes) const {
+void Assembler::find_planes(std::size_t count, const IndexOf& index_of, const OriginOf& origin_of,
+                            PlaneStrip& planes) const {
     const Viewport& viewport = plan_->viewport;
     const Mat4d& m = object_->to_pixel;
     const Shape& shape = triangles_->shape(run_);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
-    std::array<std::array<StripOf<double>, 3>, 3> p; // corner, axis
+    std::array<std::array<StripOf<double>, 3>, 3> p; // [corner][axis]
     StripOf<double> from_x, from_y;
     for (std::size_t i = 0; i < count; ++i) {
         const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, index_of(i));
@@ -63,7 +64,8 @@ void Assembler::find_planes(std::size_t count, const IndexOf& index_of, const Or
 void Assembler::set_up_outlines() {
     PlaneStrip planes;
     for (std::size_t first = 0; first < outlined_.size(); first += kStrip) {
-        const std::span<const Outlined> some = std::span(outlined_).subspan(first, std::min(kStrip, outlined_.size() - first));
+        const std::span<const Outlined> some =
+            std::span(outlined_).subspan(first, std::min(kStrip, outlined_.size() - first));
         const auto triangle = [&](std::size_t i) -> DrawTriangle& { return batch_->triangles[some[i].number]; };
         const auto origin_of = [&](std::size_t i) {
             const Origin from = origin(triangle(i).corners, plan_->viewport);
@@ -71,8 +73,8 @@ void Assembler::set_up_outlines() {
         };
         find_planes(some.size(), [&](std::size_t i) { return some[i].index; }, origin_of, planes);
         for (std::size_t i = 0; i < some.size(); ++i)
-            set_plane(triangle(i), {planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]}, planes.least_depth[i], false,
-                      plan_->viewport.near);
+            set_plane(triangle(i), {planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]}, planes.least_depth[i],
+                      false, plan_->viewport.near);
     }
 }
 
@@ -85,7 +87,7 @@ void Assembler::find_nearness() {
         for (std::size_t i = 0; i < some.size(); ++i) {
             const Small& small = some[i];
             const NearnessPlane plane{planes.plane[0][i], planes.plane[1][i], planes.plane[2][i]};
-            constexpr int kFew = 2; // cheaper one by one
+            constexpr int kFew = 2; // below this, fragments are cheaper than a mask
             const bool as_patch = plan_->patches && std::popcount(small.covered & small.well_inside) > kFew;
             if (as_patch) add_patch(small, plane);
             add_fragments(small, as_patch ? small.covered & ~small.well_inside : small.covered, plane);
@@ -93,7 +95,7 @@ void Assembler::find_nearness() {
     }
 }
 
-/// As Triangles::whole, without the way from number to mesh.
+/// Returns the same as Triangles::whole, but reuses the mesh that is already looked up.
 WholeTriangle Assembler::whole_triangle(std::uint32_t index) const {
     if (mesh_ == nullptr) return triangles_->whole(run_, index);
     const auto& corner = mesh_->triangles[index];
@@ -104,9 +106,12 @@ WholeTriangle Assembler::whole_triangle(std::uint32_t index) const {
 void Assembler::add_patch(const Small& small, const NearnessPlane& plane) {
     const auto number = static_cast<std::uint32_t>(batch_->patches.size());
     const std::uint64_t samples = small.covered & small.well_inside;
-    batch_->patches.push_back(
-        {.samples = samples, .nearness = plane, .id = run_.first_id + small.index - run_.first, .x = small.x, .y = small.y});
-    std::uint64_t columns = samples | samples >> 32; // all rows or-ed
+    batch_->patches.push_back({.samples = samples,
+                               .nearness = plane,
+                               .id = run_.first_id + small.index - run_.first,
+                               .x = small.x,
+                               .y = small.y});
+    std::uint64_t columns = samples | samples >> 32; // bitwise or of all rows
     columns |= columns >> 16;
     columns |= columns >> 8;
     const auto length = [](std::uint64_t bits) { return 64 - std::countl_zero(bits); };
@@ -116,7 +121,8 @@ void Assembler::add_patch(const Small& small, const NearnessPlane& plane) {
     });
 }
 
-/// Covered samples of a small triangle: by the plane of its nearness where they lie well inside, else one by one.
+/// Appends the covered samples of a small triangle as fragments. Samples well inside take their depth from the
+/// plane; the others are interpolated one by one.
 void Assembler::add_fragments(const Small& small, std::uint64_t samples, const NearnessPlane& plane) {
     if (samples == 0) return;
     constexpr std::uint32_t kSize = TileGrid::kTileSize;
@@ -124,7 +130,7 @@ void Assembler::add_fragments(const Small& small, std::uint64_t samples, const N
     const auto left = static_cast<std::uint32_t>(small.x - plan_->grid.region.x0),
                top = static_cast<std::uint32_t>(small.y - plan_->grid.region.y0);
     const auto columns = static_cast<std::uint32_t>(plan_->grid.columns());
-    std::optional<WholeTriangle> whole; // where it is needed
+    std::optional<WholeTriangle> whole; // computed on first use
     for (std::uint64_t bits = samples; bits != 0; bits &= bits - 1) {
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
         double nearness = (plane.constant + down * plane.y) + across * plane.x;
@@ -132,14 +138,17 @@ void Assembler::add_fragments(const Small& small, std::uint64_t samples, const N
         const bool inside = small.well_inside >> bit & 1;
         if (!inside) {
             if (!whole) whole = whole_triangle(small.index);
-            nearness = interpolate(*whole, least_.position(small.x + across, small.y + down)).nearness(plan_->viewport.near);
+            nearness =
+                interpolate(*whole, least_.position(small.x + across, small.y + down)).nearness(plan_->viewport.near);
         }
-        const std::uint32_t column = left + static_cast<std::uint32_t>(across), row = top + static_cast<std::uint32_t>(down);
-        batch_->fragments.push_back({.id = id,
-                                     .nearness = kept_nearness(nearness),
-                                     .place = static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize) & 0x7fff),
-                                     .inside = inside,
-                                     .tile = static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
+        const std::uint32_t column = left + static_cast<std::uint32_t>(across),
+                            row = top + static_cast<std::uint32_t>(down);
+        batch_->fragments.push_back(
+            {.id = id,
+             .nearness = kept_nearness(nearness),
+             .place = static_cast<std::uint16_t>(place_in_tile(column % kSize, row % kSize) & 0x7fff),
+             .inside = inside,
+             .tile = static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
     }
 }
 

@@ -1,4 +1,5 @@
-// A shape of triangles as shading reads it: a mesh, or quads, each of which is drawn as two triangles.
+// Defines a triangulated shape in the layout that shading reads: a mesh, or quads, each of which is drawn as two
+// triangles.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -10,28 +11,29 @@
 
 namespace duet::raster {
 
-/// What an interpolated barycentric triple means for Hit::u and v.
+/// Selects how interpolated barycentrics map to Hit::u and Hit::v.
 enum class Piece : std::uint8_t {
     kTriangle,   ///< corners a, b, c
     kQuadFirst,  ///< corner, +u, +u+v
     kQuadSecond, ///< corner, +u+v, +v
 };
 
-/// A vertex whole in half a line of the cache.
+/// Stores all attributes of a vertex in 32 bytes, half a cache line.
 struct alignas(32) PackedVertex {
     Vec3 p;
-    float u = 0; ///< with v: texture coordinates; 0 where the mesh has none
+    float u = 0; ///< texture coordinates (u, v); 0 where the mesh has none
     Vec3 n;      ///< (0, 0, 0) where the shape has none
     float v = 0;
 };
 
-/// Of a sphere all is empty. Moves with what it points to, and is not copied.
+/// Stores the packed vertices and triangles of a shape; empty for a sphere. It is movable but not copyable, because
+/// `triangles` may point into `halves`.
 struct PackedShape {
-    using Triangle = std::array<std::uint32_t, 3>; ///< numbers of its vertices
+    using Triangle = std::array<std::uint32_t, 3>; ///< vertex indices
 
     std::vector<PackedVertex> vertices;
-    std::vector<Triangle> halves;        ///< of quads, two each: corner, +u, +u+v; corner, +u+v, +v
-    std::span<const Triangle> triangles; ///< those, or the mesh's own
+    std::vector<Triangle> halves;        ///< two per quad: (corner, +u, +u+v) and (corner, +u+v, +v)
+    std::span<const Triangle> triangles; ///< `halves`, or the mesh's own triangles
     bool has_uvs = false;
 
     explicit PackedShape(const Shape& shape);
@@ -39,7 +41,7 @@ struct PackedShape {
     PackedShape& operator=(PackedShape&&) = default;
 
     bool quads() const { return !halves.empty(); }
-    /// Hit::primitive of a triangle.
+    /// Returns the Hit::primitive index of a triangle.
     std::size_t primitive(std::size_t triangle) const { return quads() ? triangle / 2 : triangle; }
     Piece piece(std::size_t triangle) const {
         return !quads() ? Piece::kTriangle : triangle % 2 == 0 ? Piece::kQuadFirst : Piece::kQuadSecond;

@@ -1,4 +1,5 @@
-// Interpolation's linear functions, for one triangle or for as many side by side as a batch has lanes.
+// Computes the linear functions of perspective-correct interpolation, for one triangle or for one triangle per SIMD
+// lane.
 #pragma once
 
 #include "raster/lanes.h"
@@ -9,19 +10,20 @@
 
 namespace duet::raster {
 
-/// Planes are the coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's e[1] and e[2],
-/// the sum of its three, and Σ(e·depth).
+/// Holds the screen-space planes of a triangle. Each is stored as the coefficients of x, y and 1, with the sign that
+/// makes it positive inside the triangle. They are Interpolation's e[1] and e[2], the sum of all three e, and
+/// Σ(e·depth).
 template <typename D> struct TrianglePlanes {
     std::array<D, 3> e1, e2, sum, depth_sum;
-    D determinant; ///< of the corners: positive where they run clockwise in the picture
+    D determinant; ///< of the corners; positive if they run clockwise in the image
 };
 
-/// From homogeneous pixel coordinates of the corners, counted from anywhere.
+/// Computes the planes from the corners' homogeneous pixel coordinates, relative to any origin.
 template <typename D>
 TrianglePlanes<D> triangle_planes(const std::array<D, 3>& x, const std::array<D, 3>& y, const std::array<D, 3>& w,
                                   const std::array<D, 3>& depth) {
     using xsimd::select, duet::select;
-    std::array<std::array<D, 3>, 3> e; // corner; coefficients of x, y and 1: cross products of the others
+    std::array<std::array<D, 3>, 3> e; // [corner][coefficient of x, y, 1]: cross products of the other two corners
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
         e[k] = {y[a] * w[b] - w[a] * y[b], w[a] * x[b] - x[a] * w[b], x[a] * y[b] - y[a] * x[b]};

@@ -8,8 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// Point i of the (0,2)-sequence that `stream` names, as 32-bit fractions (common/sampling/sobol.h keeps digits in
-/// reversed order). The index is scrambled as a number, which takes each aligned block of 2^k to another one.
+/// Represents point i of the (0,2)-sequence identified by `stream`, as 32-bit fractions. The functions of
+/// common/sampling/sobol.h work on reversed bits. Scrambling the index permutes the aligned blocks of 2^k points.
 struct Point {
     std::uint32_t x, y;
 };
@@ -22,7 +22,8 @@ Point point(std::uint32_t i, std::uint64_t seed, std::uint64_t stream) {
 }
 
 double fraction(std::uint32_t x) { return x * 0x1p-32; }
-/// To the nearest grid point, which keeps the mean of a uniform number: 0 and 256 are each half as likely as the rest.
+/// Rounds to the nearest grid point. The mean of a uniform variable is preserved: 0 and 256 are each half as likely
+/// as the other values.
 std::int32_t on_grid(std::uint32_t x) { return static_cast<std::int32_t>(std::lrint(fraction(x) * kSubPixels)); }
 
 } // namespace

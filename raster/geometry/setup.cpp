@@ -18,21 +18,22 @@ Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const P
     if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
 }
 
-// A sample may lie outside, where only the snapped outline covers it: by less than 1/256 pixel. It is mirrored at the
-// edge to a point as far inside, not just moved onto the edge: two faces that meet at a silhouette edge have the same
-// depth on it, but a common point inside of both tells which one is in front.
+// A sample that only the snapped triangle covers may lie outside, by less than 1/256 pixel. It is mirrored at the
+// edge to a point equally far inside, not just moved onto the edge: two faces that meet at a silhouette edge have
+// equal depths on it, but at a common point inside both, the depths show which one is in front.
 Vec2d Interpolation::mirrored_inside(Vec2d p) const {
     for (const Vec3d& edge : e) {
         const double value = edge.x * p.x + edge.y * p.y + edge.z, steepness = edge.x * edge.x + edge.y * edge.y;
-        constexpr double kReach = 1.0 / 128; // farther only for a sliver, whose edge says nothing
+        constexpr double kReach = 1.0 / 128; // farther only in a sliver, where the mirrored point is meaningless
         if (value < 0 && value * value < kReach * kReach / 4 * steepness)
             p = p - Vec2d(edge.x, edge.y) * (2 * value / steepness);
     }
     return p;
 }
 
-// Where that leads across another edge, because the sample lies at a corner or the triangle is thinner than snapping
-// moves its edges. (To set negative barycentrics to zero would not do: in a sliver it leads from one end to the other.)
+// This handles samples that mirroring moves across another edge, because they lie at a corner or because the
+// triangle is thinner than the displacement by snapping. Clamping negative barycentrics to zero would be wrong: in
+// a sliver, it moves the point from one end to the other.
 Vec2d Interpolation::nearest_on_outline(Vec2d p) const {
     const auto value = [](const Vec3d& edge, Vec2d q) { return edge.x * q.x + edge.y * q.y + edge.z; };
     Vec2d nearest = p;
@@ -49,14 +50,15 @@ Vec2d Interpolation::nearest_on_outline(Vec2d p) const {
         if (value(next, foot) >= 0 && value(last, foot) >= 0) offer(foot);
         const Vec3d meeting = cross(edge, next);
         const Vec2d corner(meeting.x / meeting.z, meeting.y / meeting.z);
-        if (value(last, corner) > 0) offer(corner); // else it lies behind the eye
+        if (value(last, corner) > 0) offer(corner); // else the corner lies behind the eye
     }
     return nearest;
 }
 
 namespace {
 
-/// Whether a sample lies beyond the diagonal of a quad, which is no edge of it, in the other half.
+/// Returns true if a sample lies in the other half of the quad, beyond the diagonal, which is not an edge of the
+/// quad.
 bool in_other_half(const Interpolated& at, Piece piece) {
     const auto beyond = [](double across, double other1, double other2) {
         return other1 >= 0 && other2 >= 0 && across + other1 >= 0 && across + other2 >= 0;
@@ -87,7 +89,7 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;
-    if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // seen exactly edge-on: any of its points will do
+    if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // exactly edge-on: use an arbitrary point of the triangle
     result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
     return result;
 }
@@ -104,8 +106,9 @@ Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPo
     return {whole.a, whole.b, whole.c, {from.x * kSubPixels, from.y * kSubPixels}};
 }
 
-// Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective) Σ eᵢ·(xᵢ, yᵢ, wᵢ) = det · (x, y, 1), so
-// the divisor is the determinant, whatever the pixel; with w = 1 (orthographic) the dividend is.
+// Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective), Σ eᵢ·(xᵢ, yᵢ, wᵢ)
+// = det · (x, y, 1), so the divisor is the determinant for every pixel. With w = 1 (orthographic), the dividend is
+// the determinant.
 DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
                     bool clipped, const Viewport& viewport) {
     const Origin from = origin(corners, viewport);
@@ -117,12 +120,14 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
     const auto& sum = viewport.orthographic ? all.depth_sum : all.sum;
     const double scale = (viewport.orthographic ? 1 : viewport.near) / std::abs(all.determinant);
     DrawTriangle result{.corners = corners, .id = id};
-    set_plane(result, {sum[0] * scale, sum[1] * scale, sum[2] * scale}, std::min({a.depth, b.depth, c.depth}), clipped, viewport.near);
+    set_plane(result, {sum[0] * scale, sum[1] * scale, sum[2] * scale}, std::min({a.depth, b.depth, c.depth}), clipped,
+              viewport.near);
     return result;
 }
 
 void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near) {
-    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant) && !sabotaged(Guard::kPerspective);
+    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant) &&
+                     !sabotaged(Guard::kPerspective);
     triangle.clipped = clipped;
     if (!clipped) triangle.nearest = static_cast<float>(near / least_depth) * (1 + 0x1p-22f);
     triangle.nearness = plane;

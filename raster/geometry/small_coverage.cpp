@@ -5,10 +5,10 @@
 namespace duet::raster {
 namespace {
 
-/// An edge's function at the first sample of a small box, and its steps to the next.
+/// Stores an edge function at the first sample of a small box, and its increments to the next column and row.
 struct SmallEdge {
     Ints at, step_x, step_y;
-    Ints length; ///< |x| + |y|
+    Ints length; ///< |dx| + |dy|
 
     SmallEdge(Ints from_x, Ints from_y, Ints to_x, Ints to_y, Ints sample_x, Ints sample_y) {
         const Ints dx = to_x - from_x, dy = to_y - from_y, zero(0);
@@ -21,16 +21,17 @@ struct SmallEdge {
     }
 };
 
-/// Samples along one axis from the first on, of the triangle that has most; corners and first samples in grid points.
+/// Returns the maximum over the lanes of the number of samples from the first one to the end of the triangle along
+/// one axis. Arguments are in grid points.
 std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const Ints& first) {
-    const Ints widths = max(max(a, b), c) - first; // of small boxes: exact as floats
+    const Ints widths = max(max(a, b), c) - first; // small, so exact as floats
     return (static_cast<std::int32_t>(highest(xsimd::to_float(widths))) >> kSubPixelBits) + 1;
 }
 
 } // namespace
 
-/// The samples of small boxes against their triangles' edges, sixteen triangles side by side: as many rows and columns of
-/// samples as the largest of their boxes has.
+/// Tests the samples of small boxes against the edges of sixteen triangles with SIMD. The loops cover as many rows
+/// and columns of samples as the largest box has.
 void Assembler::cover_candidates() {
     Candidates& c = candidates_;
     constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallRows / kWordRows;
@@ -40,7 +41,7 @@ void Assembler::cover_candidates() {
         const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
         Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
         const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-        const auto negative = area < zero; // to be wound the other way
+        const auto negative = area < zero; // winding is reversed for these
         const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
                    sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
         const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
@@ -82,7 +83,7 @@ void Assembler::cover_candidates() {
     c.count = 0;
 }
 
-/// Of the i-th candidate the samples in the box whose first row is `top`.
+/// Appends the samples of the i-th candidate in the box whose first row is `top`, clipped to the region.
 void Assembler::add_small(std::size_t i, std::int32_t top, std::uint64_t covered, std::uint64_t well_inside) {
     if (covered == 0) return;
     const Candidates& c = candidates_;

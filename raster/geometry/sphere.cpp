@@ -10,7 +10,8 @@
 namespace duet::raster {
 namespace {
 
-/// A linear function over the unit ball, g·n + offset with |n| <= 1: what a row of the matrix becomes for a sphere.
+/// Represents a linear function over the solid unit sphere, g·n + offset with |n| <= 1. A matrix row restricted to a
+/// sphere has this form.
 struct BallFunction {
     Vec3d g;
     double offset;
@@ -29,17 +30,18 @@ struct Interval {
     }
 };
 
-/// Extremes of x/w over the part of the ball with w >= near > 0. They lie where a plane x = s·w touches the ball, if
-/// that is beyond the near plane, or on the circle in which the near plane cuts it.
+/// Returns the extremes of x/w over the part of the sphere with w >= near > 0. They lie where a plane x = s·w is
+/// tangent to the sphere, if that point is beyond the near plane, or on the circle in which the near plane
+/// intersects the sphere.
 Interval perspective_extremes(BallFunction x, const BallFunction& w, double near) {
     Interval result;
     const double gw = length(w.g);
-    // Measured from the centre's own projection if it has one: then no two terms of the discriminant cancel.
+    // Measure relative to the projected center, if there is one: then no two terms of the discriminant cancel.
     const double shift = w.offset > gw ? x.offset / w.offset : 0;
     x.g = x.g - w.g * shift;
     x.offset -= w.offset * shift;
 
-    // |x.g − s·w.g| = |x.offset − s·w.offset| is a·s² − 2b·s + c = 0.
+    // The tangency condition |x.g − s·w.g| = |x.offset − s·w.offset| is a·s² − 2b·s + c = 0.
     const double a = (w.offset - gw) * (w.offset + gw), b = x.offset * w.offset - dot(x.g, w.g);
     const double c = x.offset * x.offset - length_squared(x.g);
     const double discriminant = b * b - a * c;
@@ -52,7 +54,7 @@ Interval perspective_extremes(BallFunction x, const BallFunction& w, double near
             if (dot(touch, w.g) + w.offset >= near * (1 - 1e-9)) result.add(s + shift);
         }
     }
-    const double height = (near - w.offset) / gw; // of the near plane over the ball's centre, in radii
+    const double height = (near - w.offset) / gw; // of the near plane above the center, in radii
     if (std::abs(height) <= 1) {
         const Vec3d up = w.g / gw;
         const double along = dot(x.g, up);
@@ -64,8 +66,8 @@ Interval perspective_extremes(BallFunction x, const BallFunction& w, double near
     return result;
 }
 
-/// First pixel and one past the last that may hold a sample within the interval, one pixel of margin for the rounding
-/// of float rays.
+/// Returns the first pixel and one past the last pixel that may hold a sample within the interval, with one pixel
+/// of margin for the rounding of float rays.
 std::pair<int, int> pixel_range(const Interval& extremes, int size) {
     const double low = std::clamp(extremes.low, -2.0, size + 2.0), high = std::clamp(extremes.high, -2.0, size + 2.0);
     return {std::clamp(static_cast<int>(std::floor(low)) - 1, 0, size),
@@ -98,10 +100,13 @@ Doubles DrawSphere::intersect(const CameraRays& rays) const {
         }
         return Doubles::load_aligned(found.data());
     }
-    const auto to_center = [&](float center, const Doubles& origin) { return Doubles(static_cast<double>(center)) - origin; };
+    const auto to_center = [&](float center, const Doubles& origin) {
+        return Doubles(static_cast<double>(center)) - origin;
+    };
     const Vec3T<Doubles> to{to_center(sphere.center.x, rays.origin.x), to_center(sphere.center.y, rays.origin.y),
                             to_center(sphere.center.z, rays.origin.z)};
-    const SphereTest<Doubles> test(to, SphereLine<Doubles>(rays.direction), Doubles(static_cast<double>(sphere.radius)));
+    const SphereTest<Doubles> test(to, SphereLine<Doubles>(rays.direction),
+                                   Doubles(static_cast<double>(sphere.radius)));
     const auto met = test.discriminant >= Doubles(0.0);
     if (!xsimd::any(met)) return none;
     const auto roots = test.roots();

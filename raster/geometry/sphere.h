@@ -1,4 +1,4 @@
-// Spheres, drawn exactly: bounded in the picture, then their equation solved at each sample.
+// Spheres are drawn exactly: they are bounded in the image and then intersected with the camera ray of each sample.
 #pragma once
 
 #include "raster/geometry/camera_rays.h"
@@ -11,32 +11,33 @@
 
 namespace duet::raster {
 
-/// A sphere, or under an instance's transform an ellipsoid, that may be seen.
+/// Represents a potentially visible sphere, or ellipsoid under an instance's transform.
 struct DrawSphere {
     std::uint32_t object = 0;
-    std::uint32_t id = 0; ///< its number among the pass's triangles
-    PixelRect bounds; ///< pixels that may see it, within the picture
-    Sphere sphere;    ///< in its object's space
+    std::uint32_t id = 0; ///< id among the pass's triangles
+    PixelRect bounds; ///< pixels it may cover, within the image
+    Sphere sphere;    ///< in object space
     bool identity = true;
-    bool far_side = false; ///< where a ray leaves it is drawn, not where that enters
+    bool far_side = false; ///< draw the ray's exit point instead of its entry point
     Mat4 to_world, to_object;
 
-    /// Where a camera ray meets it: intersect_sphere in its object's space, as the ray tracer does it.
+    /// Returns the ray parameter of the hit, by intersect_sphere in object space as in the ray tracer; none on a
+    /// miss.
     std::optional<float> intersect(const Ray& ray) const;
-    /// The same of rays side by side, all at the pass's moment: each t, infinity where there is none.
+    /// Intersects one ray per SIMD lane, all at the pass's time. Returns each t, infinity on a miss.
     Doubles intersect(const CameraRays& rays) const;
-    /// Where the ray passes its centre, as the sphere's own space measures it.
+    /// Returns the ray parameter t of the point closest to the sphere's center, measured in object space.
     float nearest(const Ray& ray) const;
 };
 
-/// The pixels that may see the part beyond the near plane of an affinely mapped sphere: conservative by a pixel, empty
-/// where it can't be seen. `to_pixel` takes the sphere's space to homogeneous pixels. Exact extremes of the projected
-/// ellipsoid by the dual quadric (Sigg et al. 2006, «GPU-Based Ray-Casting of Quadratic Surfaces», §3.1), cut at the
-/// near plane as Mara and McGuire (2013, «2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere») do for
-/// spheres.
+/// Returns the pixels that may see the part of an affinely transformed sphere beyond the near plane. The bound is
+/// conservative by a pixel and empty if the sphere is invisible. `to_pixel` maps the sphere's space to homogeneous
+/// pixel coordinates. The extremes of the projected ellipsoid are exact, by the dual quadric (Sigg et al. 2006,
+/// "GPU-Based Ray-Casting of Quadratic Surfaces", §3.1), clipped at the near plane as Mara and McGuire (2013, "2D
+/// Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere") do for spheres.
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport);
 
-/// The spheres of the listed objects that touch the picture, in order of objects.
+/// Returns the listed objects' spheres that overlap the image, in the order of objects.
 std::vector<DrawSphere> set_up_spheres(const Scene& scene, const std::vector<std::uint32_t>& objects,
                                        const Pinhole& pinhole, float time, const Viewport& viewport);
 

@@ -1,4 +1,4 @@
-// The picture cut into tiles.
+// Defines the division of the image into tiles.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace duet::raster {
 
-/// Half-open ranges of pixels.
+/// Represents a rectangle of pixels by half-open ranges.
 struct PixelRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -19,10 +19,10 @@ inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// Squares over a region of the picture, row by row; those at the right and lower edges may be smaller.
+/// Represents square tiles over a region of the image, row by row. Those at the right and lower edges may be smaller.
 struct TileGrid {
-    /// Depths and triangle numbers of a tile fit into the second cache. Those that fit into the first are slower: more triangles
-    /// lie in several, and what is prepared for a tile serves fewer.
+    /// The depths and triangle ids of a tile fit into the L2 cache. Smaller tiles that fit into L1 are slower: more
+    /// triangles overlap several tiles, and the work per tile is shared by fewer samples.
     static constexpr int kTileSize = 128;
     PixelRect region;
 
@@ -34,7 +34,7 @@ struct TileGrid {
         const int y = region.y0 + static_cast<int>(index) / columns() * kTileSize;
         return intersect({x, y, x + kTileSize, y + kTileSize}, region);
     }
-    /// Calls visit(index) for each tile that the rectangle touches, row by row.
+    /// Calls visit(index) for each tile that the rectangle overlaps, row by row.
     template <typename Visit> void for_each(const PixelRect& bounds, const Visit& visit) const {
         const PixelRect r = intersect(bounds, region);
         if (r.empty()) return;

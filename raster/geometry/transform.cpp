@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-/// A run of one object's vertices: the unit of parallel work.
+/// Represents a range of one object's vertices, the unit of parallel work.
 struct Chunk {
     std::size_t object, first, last;
 };
@@ -26,7 +26,7 @@ Vec3 vertex_position(const Shape& shape, std::size_t index) {
     return primitive_corners(shape, static_cast<std::uint32_t>(index / 4)).p[index % 4];
 }
 
-/// The same for a number and a batch.
+/// Represents a homogeneous pixel position. T is a number or a SIMD batch.
 template <typename T> struct HomogeneousPoint {
     T xw, yw, depth, w;
 };
@@ -35,7 +35,8 @@ template <typename T> HomogeneousPoint<T> to_pixel(const Mat4d& m, T x, T y, T z
     return {row(0), row(1), row(2), row(3)};
 }
 
-/// Sums of Outcode bits as numbers. Each test is a half-space of homogeneous coordinates, right also where w <= 0.
+/// Returns the Outcode bits as a number. Each test is a half-space of homogeneous coordinates, which is correct for
+/// w <= 0 too.
 template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewport& viewport) {
     using xsimd::select, duet::select;
     const double right = viewport.width, bottom = viewport.height;
@@ -48,24 +49,25 @@ template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewp
            bit(!(v.depth >= T(viewport.near)), kNear) + bit(!within, kGuard);
 }
 
-/// Sixteen vertices, axis by axis.
+/// Stores sixteen vertex positions, one array per axis.
 using VertexStrip = std::array<StripOf<float>, 3>;
-/// The same, in the picture.
+/// Stores sixteen snapped vertices with their outcodes.
 struct SnappedStrip {
     StripOf<std::int32_t> x, y, outcode;
 };
 
-/// Those from `first` on; where there are fewer than sixteen, up to `end`, the last one again.
+/// Loads sixteen vertices from `first` on. If fewer are left before `end`, the last one is repeated.
 void gather(const Shape& shape, std::size_t first, std::size_t end, VertexStrip& p) {
     const std::size_t last = std::min(kStrip, end - first) - 1;
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
         static_assert(sizeof(Vec3) == 3 * sizeof(float));
-        constexpr std::size_t kAhead = 16 * kStrip; // gathering does not tell the machine that it goes on and on
+        constexpr std::size_t kAhead = 16 * kStrip; // the hardware prefetcher does not follow gather instructions
         if (first + kAhead + kStrip <= end)
             for (std::size_t i = 0; i < kStrip; i += 5) prefetch(&mesh->positions[first + kAhead + i]);
         for (std::size_t i = 0; i < kStrip; i += Ints::size) {
             const Ints place = min(load(kLanes, i), Ints(static_cast<std::int32_t>(last))) * Ints(3);
-            for (std::size_t axis = 0; axis < 3; ++axis) store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, place));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, place));
         }
         return;
     }
@@ -80,8 +82,8 @@ void transform_strip(const VertexStrip& p, const Mat4d& m, const Viewport& viewp
         const HomogeneousPoint<Doubles> v =
             to_pixel(m, load_doubles(p[0].at(i)), load_doubles(p[1].at(i)), load_doubles(p[2].at(i)));
         const Doubles code = outcode_number(v, viewport);
-        // What must be clipped is not snapped: it may be anywhere, and its w zero.
-        const auto usable = code < Doubles(kNear); // the bits from kNear on are those of kMustClip
+        // A vertex that must be clipped is not snapped: its position is unbounded and its w may be zero.
+        const auto usable = code < Doubles(kNear); // all bits from kNear on belong to kMustClip
         const auto snapped = [&](Doubles coordinate) {
             return xsimd::select(usable, xsimd::nearbyint(coordinate / v.w * Doubles(kSubPixels)), Doubles(0.0));
         };
@@ -92,7 +94,7 @@ void transform_strip(const VertexStrip& p, const Mat4d& m, const Viewport& viewp
 }
 static_assert(kNear == 16 && kGuard == 32 && (kLeft | kRight | kTop | kBottom) < kNear);
 
-/// Returns the outcodes or-ed.
+/// Transforms a chunk and returns the bitwise or of its outcodes.
 unsigned transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& chunk, TransformedObject& out) {
     VertexStrip p;
     SnappedStrip snapped;

@@ -20,7 +20,7 @@ WholeTriangle Triangles::whole(const Run& run, std::uint32_t index) const {
                 pixel_vertex(m, mesh->positions[corner[2]]), Piece::kTriangle};
     }
     const Corners corners = primitive_corners(of, index / 2);
-    const std::size_t half = index % 2; // corner, +u, +u+v; corner, +u+v, +v
+    const std::size_t half = index % 2; // halves are (corner, +u, +u+v) and (corner, +u+v, +v)
     return {pixel_vertex(m, corners.p[0]), pixel_vertex(m, corners.p[1 + half]), pixel_vertex(m, corners.p[2 + half]),
             half == 0 ? Piece::kQuadFirst : Piece::kQuadSecond};
 }

@@ -1,4 +1,4 @@
-// The triangles of a pass by number: what a tile keeps of the one that a sample sees.
+// Gives access to the triangles of a pass by id. A tile stores for each sample the id of the visible triangle.
 #pragma once
 
 #include "raster/geometry/setup.h"
@@ -10,46 +10,48 @@
 
 namespace duet::raster {
 
-/// No triangle.
+/// This id stands for no triangle.
 inline constexpr std::uint32_t kNoTriangle = 0x7fffffff;
 
-/// Some of an object's triangles, with numbers one after the other: the unit of parallel work. A quad's two halves are
-/// triangles; a sphere is a run of one.
+/// Represents a range of an object's triangles with consecutive ids, the unit of parallel work. A quad's two halves
+/// are two triangles. A sphere is a run of one.
 struct Run {
-    std::uint32_t object = 0; ///< index into Triangles::objects; of a sphere: into its list
-    std::uint32_t first = 0;  ///< triangle of the object
+    std::uint32_t object = 0; ///< index into Triangles::objects; of a sphere: index into the list of spheres
+    std::uint32_t first = 0;  ///< first triangle, as an index into the object's
     std::uint32_t count = 0;
-    std::uint32_t first_id = 0; ///< number of that triangle
+    std::uint32_t first_id = 0; ///< id of the first triangle
     bool sphere = false;
 };
 
-/// The triangles of which outlines are drawn.
+/// Gives access to the unclipped, unsnapped triangles by id.
 class WholeTriangles {
 public:
     virtual ~WholeTriangles() = default;
     virtual WholeTriangle whole(std::uint32_t id) const = 0;
 };
 
-/// Numbers are in the order of (object, primitive), so that the lower number is the one that wins a tie.
+/// Ids are in the order of (object, primitive), so that the lower id wins a depth tie.
 struct Triangles : WholeTriangles {
     const PreparedData* prepared = nullptr;
     const Scene* scene = nullptr; ///< PreparedData::scene
-    std::vector<TransformedObject> objects; ///< of triangles and quads
+    std::vector<TransformedObject> objects; ///< meshes and quads
     std::vector<Run> runs;
 
-    /// The run that holds a number; `hint` is one to try first.
+    /// Returns the run that contains `id`. `hint` is tested first.
     const Run& run_of(std::uint32_t id, const Run& hint) const;
     const Run& run_of(std::uint32_t id) const { return run_of(id, runs.front()); }
     const Shape& shape(const Run& run) const { return scene->shapes[scene->objects[objects[run.object].object].shape]; }
-    const PackedShape& packed(const Run& run) const { return prepared->shapes[scene->objects[objects[run.object].object].shape]; }
+    const PackedShape& packed(const Run& run) const {
+        return prepared->shapes[scene->objects[objects[run.object].object].shape];
+    }
 
-    /// `index`: of the object's triangles, as Run::first counts them.
+    /// `index` counts the triangles of the object, as Run::first does.
     WholeTriangle whole(const Run& run, std::uint32_t index) const;
     WholeTriangle whole(std::uint32_t id) const override {
         const Run& run = run_of(id);
         return whole(run, run.first + id - run.first_id);
     }
-    /// Numbers of all that a run's object is of.
+    /// Stores the half-open range of the ids of an object's triangles.
     struct Numbers {
         std::uint32_t first, end;
     };

@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-/// The object that a number is of.
+/// Returns the object of a primitive id.
 std::uint32_t object_of(const Geometry& geometry, std::uint32_t id) {
     const Run& run = geometry.triangles.run_of(id);
     return run.sphere ? geometry.spheres[run.object].object : geometry.triangles.objects[run.object].object;
@@ -36,13 +36,14 @@ void SeenPicture::add(const DepthTile& tile, const Geometry& geometry, StripShad
         }
 }
 
-void SeenPicture::add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset,
-                             std::size_t tile_index, const HitTile& tile, const Program& normals) {
+void SeenPicture::add_layers(const PreparedData& data, const Geometry& layers, const PassView& view,
+                             SampleOffset offset, std::size_t tile_index, const HitTile& tile, const Program& normals) {
     HitLists lists(layers, view, offset, tile_index, tile);
     const auto mostly = [](int, int, float left) { return left < 0.5f; };
     lists.for_each_stop(data.scene, mostly, [&](int x, int y, const Hit& hit) {
         const Rgb n = normals.shade_hit(data, view, hit, offset.position(x, y));
-        nearness(x, y) = static_cast<float>(view.pinhole.near * tile.distance_per_depth(x, y) / static_cast<double>(hit.t));
+        nearness(x, y) =
+            static_cast<float>(view.pinhole.near * tile.distance_per_depth(x, y) / static_cast<double>(hit.t));
         normal(x, y) = Vec3(n.r, n.g, n.b);
         object(x, y) = hit.object;
     });
@@ -50,10 +51,10 @@ void SeenPicture::add_layers(const PreparedData& data, const Geometry& layers, c
 
 namespace {
 
-/// From 0 at `low` to 1 at `high`.
+/// Returns a linear ramp from 0 at `low` to 1 at `high`.
 float ramp(float x, float low, float high) { return std::clamp((x - low) / (high - low), 0.0f, 1.0f); }
 
-/// Pixels beyond the border repeat those on it.
+/// Gives access to the neighborhood of a pixel. Beyond the image border, the pixels on the border are repeated.
 struct Around {
     int width, height, x, y;
 
@@ -62,7 +63,8 @@ struct Around {
     }
 };
 
-/// Sobel's two operators, by which a straight edge between two even sides yields the difference between them: |∇| / 4.
+/// Returns the magnitude of both Sobel operators, scaled by 1/4. A straight edge between two uniform regions yields
+/// their difference.
 float sobel(const Image<Vec3>& image, const Around& around) {
     Vec3 across, down;
     for (int k = -1; k <= 1; ++k) {
@@ -73,7 +75,7 @@ float sobel(const Image<Vec3>& image, const Around& around) {
     return std::sqrt(dot(across, across) + dot(down, down));
 }
 
-/// The larger of both second differences.
+/// Returns the larger of the horizontal and the vertical second difference.
 float second_difference(const ImageFloat& image, const Around& around) {
     const float twice = 2 * around.at(image, 0, 0);
     return std::max(std::abs(around.at(image, -1, 0) + around.at(image, 1, 0) - twice),
@@ -89,7 +91,7 @@ float ink(const SeenPicture& seen, int x, int y) {
         if (around.at(seen.object, dx, dy) != own) return 1;
     if (own == kNoObject) return 0;
     const float step = second_difference(seen.nearness, around) / seen.nearness(x, y);
-    const float crease = 2 * sobel(seen.normal, around); // the normals are halved
+    const float crease = 2 * sobel(seen.normal, around); // the stored normals are halved
     return std::max(ramp(step, 0.02f, 0.04f), ramp(crease, 0.5f, 0.8f));
 }
 

@@ -1,4 +1,4 @@
-// Ink lines where what is seen changes: an image-space stage over what each sample sees.
+// Computes edge lines where the visible surface changes, in image space.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -12,29 +12,32 @@
 
 namespace duet::raster {
 
-/// What one sample a pixel sees.
+/// Stores the G-buffer of edge detection, with one sample per pixel.
 struct SeenPicture {
-    ImageFloat nearness;         ///< near / depth; 0: nothing
-    Image<Vec3> normal;          ///< shading normal, halved and moved to [0, 1]
-    Image<std::uint32_t> object; ///< kNoObject: nothing
+    ImageFloat nearness;         ///< reversed depth, near / depth; 0 on a miss
+    Image<Vec3> normal;          ///< shading normal n, stored as (n + 1)/2
+    Image<std::uint32_t> object; ///< kNoObject on a miss
 
     SeenPicture(int width, int height) : nearness(width, height), normal(width, height), object(width, height) {}
-    /// A tile's part. `normals`: smooth_normal_program's, for that tile.
+    /// Adds a tile. `normals` must come from smooth_normal_program() and be made for that tile.
     void add(const DepthTile& tile, const Geometry& geometry, StripShader& normals);
-    /// And before it surfaces with holes and veils, of process_layers: the nearest beyond which less than half of the light is
-    /// seen. `tile`: of what is behind them; `offset`: its samples'.
-    void add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset, std::size_t tile_index,
-                    const HitTile& tile, const Program& normals);
+    /// Adds the alpha-masked and alpha-blended surfaces of process_layers in front of a tile. Each pixel stores the
+    /// nearest surface at which the transmittance falls below one half. `tile` holds the surfaces behind them, and
+    /// `offset` is that of its samples.
+    void add_layers(const PreparedData& data, const Geometry& layers, const PassView& view, SampleOffset offset,
+                    std::size_t tile_index, const HitTile& tile, const Program& normals);
 };
 
-/// How much ink a pixel takes, in [0, 1], by the strongest of three: another object beside it; a step in depth; a crease.
+/// Returns the edge strength of a pixel, in [0, 1]: the maximum of three criteria, which are a different object in
+/// a neighboring pixel, a depth discontinuity, and a crease.
 ///
-/// Steps are found by the second difference of nearness, which is linear in the picture over any plane, however it leans
-/// (where depth's first difference draws over every floor seen at a low angle): from 2 % of its own on, at 4 % in full.
-/// Creases by Sobel's operator on the normal's three components, scaled to the change across an edge: from 0.5 on (about
-/// 29°), at 0.8 (47°) in full. (Saito and Takahashi 1990, «Comprehensible Rendering of 3-D Shapes», have Sobel's operator
-/// on depth for profiles and second differences for inner edges; Decaudin 1996, «Cartoon-Looking Rendering of 3D-Scenes»,
-/// adds the normals.)
+/// Depth discontinuities are detected by the second difference of reversed depth, which is linear in the image over
+/// any plane at any inclination. (The first difference of depth would mark every floor at a grazing angle.) The
+/// strength rises from 0 at 2 % of the reversed depth to 1 at 4 %. Creases are detected by the Sobel operator on
+/// the three components of the normal, scaled to the change across an edge. The strength rises from 0 at 0.5 (about
+/// 29°) to 1 at 0.8 (47°). (Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes", apply the Sobel
+/// operator to depth for profiles and second differences for inner edges; Decaudin 1996, "Cartoon-Looking Rendering
+/// of 3D-Scenes", adds the normals.)
 float ink(const SeenPicture& seen, int x, int y);
 
 } // namespace duet::raster

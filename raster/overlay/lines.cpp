@@ -9,10 +9,10 @@
 namespace duet::raster {
 namespace {
 
-/// Rounded down, of a positive divisor.
+/// Returns a / b rounded down, for b > 0.
 std::int64_t floor_divided(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-/// Along u, the major axis: mark(column, row) by u and v.
+/// Rasterizes a line along its major axis u. It calls mark(column, row) once per column, in (u, v) order.
 template <typename Mark>
 void walk(std::int64_t u0, std::int64_t v0, std::int64_t u1, std::int64_t v1, int columns, const Mark& mark) {
     if (u0 > u1) std::swap(u0, u1), std::swap(v0, v1);
@@ -20,8 +20,9 @@ void walk(std::int64_t u0, std::int64_t v0, std::int64_t u1, std::int64_t v1, in
     const std::int64_t first = std::max<std::int64_t>(floor_divided(u0 + kSubPixels - 1, kSubPixels), 0),
                        end = std::min<std::int64_t>(floor_divided(u1 + kSubPixels - 1, kSubPixels), columns);
     if (first >= end) return;
-    // Row r is nearest where v lies in (r − ½, r + ½]: r = ceil(v − ½), with v = v0 + (u − u0)·dv/du in 1/256 pixel. So
-    // r = −floor((128 − v)/256); the numerator goes down by dv·256 a column, and is kept as a row and a remainder.
+    // Row r is nearest where v is in (r − ½, r + ½]: r = ceil(v − ½), with v = v0 + (u − u0)·dv/du in 1/256
+    // pixel. Therefore r = −floor((128 − v)/256). The numerator decreases by dv·256 per column and is stored as
+    // a row and a remainder.
     const std::int64_t divisor = kSubPixels * du;
     std::int64_t numerator = (kSubPixels / 2 - v0) * du - (first * kSubPixels - u0) * dv;
     std::int64_t row = -floor_divided(numerator, divisor);
@@ -29,7 +30,7 @@ void walk(std::int64_t u0, std::int64_t v0, std::int64_t u1, std::int64_t v1, in
     for (std::int64_t column = first; column < end; ++column) {
         mark(static_cast<int>(column), row);
         rest -= kSubPixels * dv;
-        if (rest < 0) ++row, rest += divisor; // |dv| <= du: one row at most
+        if (rest < 0) ++row, rest += divisor; // |dv| <= du: at most one row
         if (rest >= divisor) --row, rest -= divisor;
     }
 }
@@ -42,10 +43,10 @@ PixelVertex between(const PixelVertex& a, const PixelVertex& b, double t) {
 } // namespace
 
 void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8_t>& marks) {
-    // Counted from samples, so that a sample's pixel is a whole number.
+    // Coordinates relative to the samples give integer sample positions.
     const std::int64_t ax = a.x - offset.x, ay = a.y - offset.y, bx = b.x - offset.x, by = b.y - offset.y;
     const auto set = [&](int x, std::int64_t y) {
-        // Threads may mark the same pixel, with the same value.
+        // Threads may mark the same pixel concurrently, with the same value.
         if (y >= 0 && y < marks.height())
             std::atomic_ref(marks(x, static_cast<int>(y))).store(1, std::memory_order_relaxed);
     };
@@ -59,11 +60,12 @@ void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8
         walk(ay, ax, by, bx, marks.height(), set_steep);
 }
 
-// Liang and Barsky 1984, «A New Concept and Method for Line Clipping», in homogeneous pixels: each border is a linear
-// function of the place along the line, and says from or up to where.
+// The algorithm is that of Liang and Barsky 1984, "A New Concept and Method for Line Clipping", in homogeneous
+// pixel coordinates: each clip plane is a linear function of the line parameter and gives a lower or upper bound of
+// it.
 bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewport, FixedPoint& from, FixedPoint& to) {
     double t0 = 0, t1 = 1;
-    const auto keep = [&](double at_a, double at_b) { // where it is not negative
+    const auto keep = [&](double at_a, double at_b) { // clips to where the function is nonnegative
         if (at_a < 0 && at_b < 0) return false;
         const double t = at_a / (at_a - at_b);
         if (at_a < 0) t0 = std::max(t0, t);
@@ -80,7 +82,8 @@ bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewp
     return true;
 }
 
-void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads, Image<std::uint8_t>& marks) {
+void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads,
+                Image<std::uint8_t>& marks) {
     std::vector<std::uint32_t> all = data.polygonal;
     all.insert(all.end(), data.open_polygonal.begin(), data.open_polygonal.end());
     for (const std::uint32_t index : all) {
@@ -100,7 +103,8 @@ void draw_lines(const PreparedData& data, const PassView& view, SampleOffset off
                 for (std::size_t k = 0; k < number; ++k) v[k] = pixel_vertex(placed, corners.p[k]);
                 for (std::size_t k = 0; k < number; ++k) {
                     FixedPoint from, to;
-                    if (clip_line(v[k], v[(k + 1) % number], view.viewport, from, to)) draw_line(from, to, offset, marks);
+                    if (clip_line(v[k], v[(k + 1) % number], view.viewport, from, to))
+                        draw_line(from, to, offset, marks);
                 }
             }
         });

@@ -1,4 +1,4 @@
-// Lines of single pixels: every edge of triangles and quads, through whatever is before it.
+// Draws one-pixel lines along all edges of triangles and quads, without hidden-line removal.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -7,18 +7,21 @@
 
 namespace duet::raster {
 
-/// Marks the pixels of the line between two points of the sub-pixel grid, for samples of one place in their pixels. Of a
-/// line that runs along x rather than along y (or as much): in each column of samples from its left end on and before its
-/// right end, the pixel whose sample is nearest to it; of two the one with the lower number. So a line that goes on as
-/// another marks no column twice. The midpoint algorithm (Bresenham 1965, «Algorithm for Computer Control of a Digital Plotter»;
-/// tinyrenderer, lesson 1) with ends that need not be pixels' centres, exact in integers for coordinates below 2^25.
+/// Marks the pixels of the line between two points on the sub-pixel grid, for samples at `offset` in their pixels.
+/// For a line that runs mainly along x (or at 45°), it marks in each column of samples from the left end
+/// (inclusive) to the right end (exclusive) the pixel whose sample is nearest to the line; of two equally near
+/// ones, the one with the lower index. Consecutive segments thus mark no column twice. It is the midpoint algorithm
+/// (Bresenham 1965, "Algorithm for Computer Control of a Digital Plotter"; tinyrenderer, lesson 1) for end points
+/// that need not be pixel centers. It is exact in integers for coordinates below 2^25.
 void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8_t>& marks);
 
-/// The part of a line before the near plane and within a pixel of the picture, snapped; false where there is none.
+/// Clips a line to the near plane and to the image with a border of one pixel, and snaps its ends. Returns false if
+/// nothing is left.
 bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewport, FixedPoint& from, FixedPoint& to);
 
-/// Marks all edges of the scene's triangles and quads (whose diagonals are none) for a sample's place. Spheres have none.
-/// The same for any number of threads.
-void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads, Image<std::uint8_t>& marks);
+/// Marks all edges of the scene's triangles and quads for samples at `offset`. Quads' diagonals are not edges, and
+/// spheres have none. The result is the same for any number of threads.
+void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads,
+                Image<std::uint8_t>& marks);
 
 } // namespace duet::raster

@@ -1,4 +1,4 @@
-// Stage 10: what is drawn over a finished picture: lines, and ink at edges.
+// Implements stage 10, which draws lines and edges over a finished image.
 #pragma once
 
 #include "raster/overlay/edges.h"
@@ -6,10 +6,10 @@
 
 namespace duet::raster {
 
-/// Whether these settings ink edges.
+/// Returns true if these settings draw edges.
 bool draws_edges(const Settings& settings);
 
-/// Of each pass, how much of each pixel is covered. Refers to what it is made of.
+/// Accumulates over all passes how much of each pixel lines or edges cover. The references must outlive it.
 class Overlay {
 public:
     Overlay(const PreparedData& data, const Settings& settings, const View& view)
@@ -17,7 +17,7 @@ public:
 
     void add_lines(const PassView& view);
     void add_edges(const SeenPicture& seen);
-    /// White lines on black; ink on paper; or ink on the picture.
+    /// Draws the result: white lines on black, black edges on white, or black edges over the image.
     void put(ImageRgb& picture) const;
 
 private:

@@ -10,15 +10,16 @@
 namespace duet::raster {
 namespace {
 
-/// How far from a change of code the polynomial's word is taken: three times its error.
+/// The polynomial's result is not trusted within this distance of a rounding boundary, in codes. It is three times
+/// the polynomial's error.
 constexpr double kDoubt = 0x1p-11;
 
-/// Codes are counted in units of 2^-16, and moved up by half a code and kDoubt: so the code is what a number is but for its lower
-/// sixteen bits, and doubtful where those are less than twice kDoubt.
+/// Fixed-point codes are in units of 2^-16 and biased by half a code plus kDoubt. The 8-bit code is thus the value
+/// without its lower sixteen bits, and it is in doubt if those are less than twice kDoubt.
 constexpr double kCode = 1 << 16, kMoved = (0.5 + kDoubt) * kCode;
 constexpr std::int32_t kNoDoubt = 0xffff & ~static_cast<std::int32_t>(2 * kDoubt * kCode - 1);
 
-/// 255 · 1.055 · 2^(e/2.4) codes, of e from -15 on; of 0 the last.
+/// The table holds 255 · 1.055 · 2^(e/2.4) as fixed-point codes. Entry i is for e = i − 15.
 const StripOf<float> kScales = [] {
     StripOf<float> scales;
     for (std::size_t i = 0; i < kStrip; ++i)
@@ -26,11 +27,11 @@ const StripOf<float> kScales = [] {
     return scales;
 }();
 
-/// sRGB is a straight line up to here.
+/// The sRGB transfer function is linear up to this value.
 constexpr float kStraight = 0.0031308f;
 
-/// The moved code of x, to within 1.6e-4 of a code, for x in (kStraight, 1]: x = m·2^e, m in [1, 2), and x^(5/12) is a polynomial in m
-/// (Chebyshev interpolation) times a power of two that a table has.
+/// Returns the biased fixed-point code of x, to within 1.6e-4 of a code, for x in (kStraight, 1]. With x = m·2^e
+/// and m in [1, 2), x^(5/12) is a polynomial in m (Chebyshev interpolation) times a power of two from a table.
 Floats curved_code(const Floats& x) {
     constexpr std::array<float, 7> kPolynomial{0.3518701494f,  1.057500362f, -0.6761592627f,  0.3797715604f,
                                                -0.1397501379f, 0.029459171f, -0.002691525733f};
@@ -40,23 +41,24 @@ Floats curved_code(const Floats& x) {
     for (std::size_t i = kPolynomial.size() - 1; i-- > 0;) power = fused(power, m, Floats(kPolynomial[i]));
     return fused(power, look_up(kScales, bits >> 23), Floats(static_cast<float>(kMoved - kCode * 255 * 0.055)));
 }
-/// The same of any number.
+/// Returns the biased fixed-point code of any number.
 Floats moved_code(const Floats& value) {
-    // Written so that NaN becomes 0.
+    // The order of operands turns NaN into 0.
     const Floats zero(0.0f), x = min(xsimd::select(value > zero, value, zero), Floats(1.0f));
-    const Floats straight = fused(x, Floats(static_cast<float>(kCode * 255 * 12.92)), Floats(static_cast<float>(kMoved)));
+    const Floats straight =
+        fused(x, Floats(static_cast<float>(kCode * 255 * 12.92)), Floats(static_cast<float>(kMoved)));
     return xsimd::select(x <= Floats(kStraight), straight, curved_code(x));
 }
 
-/// A bit for each lane with a number that the curve is not for, which few have.
+/// Returns one bit per lane with a channel outside the range of curved_code(), which is rare.
 std::uint32_t not_curved(const RgbT<Floats>& c) {
-    // As whole numbers: so NaN is too large, and what is negative too small.
+    // Compared as integers, NaN is too large, and negative values are too small.
     const auto bits = [](const Floats& x) { return xsimd::bitwise_cast<Ints>(x); };
     const Ints least = min(min(bits(c.r), bits(c.g)), bits(c.b)), most = max(max(bits(c.r), bits(c.g)), bits(c.b));
     return lane_bits(least <= bits(Floats(kStraight))) | lane_bits(most > bits(Floats(1.0f)));
 }
 
-// A moved code to the place that a channel has in memory: the bytes r, g, b, a.
+// Moves a code from its fixed-point position to a channel's byte in memory (order r, g, b, a).
 constexpr bool kLittle = std::endian::native == std::endian::little;
 template <int kChannel> Ints in_place(const Ints& code) {
     constexpr int kShift = 8 * (kLittle ? kChannel : 3 - kChannel);
@@ -68,7 +70,7 @@ template <int kChannel> Ints in_place(const Ints& code) {
 }
 constexpr auto kOpaque = static_cast<std::int32_t>(0xffu << (kLittle ? 24 : 0));
 
-/// Pixels of moved codes; a bit in `doubtful` for each that the polynomial can't tell.
+/// Packs biased fixed-point codes into pixels. `doubtful` gets one bit per pixel that the polynomial can't decide.
 Ints packed(const RgbT<Floats>& moved, std::uint32_t& doubtful) {
     const Ints r = xsimd::to_int(moved.r), g = xsimd::to_int(moved.g), b = xsimd::to_int(moved.b);
     const auto in_doubt = [](const Ints& code) { return lane_bits((code & Ints(kNoDoubt)) == Ints(0)); };
@@ -76,22 +78,24 @@ Ints packed(const RgbT<Floats>& moved, std::uint32_t& doubtful) {
     return in_place<0>(r) | in_place<1>(g) | in_place<2>(b) | Ints(kOpaque);
 }
 
-RgbT<Floats> batch(const StripColors& colors, std::size_t i) { return {load(colors.r, i), load(colors.g, i), load(colors.b, i)}; }
+RgbT<Floats> batch(const StripColors& colors, std::size_t i) {
+    return {load(colors.r, i), load(colors.g, i), load(colors.b, i)};
+}
 
-/// Pixels of the samples from the i-th on, as many as there are lanes; of those that see nothing: `behind`.
+/// Stores the pixels of one batch of samples from the i-th on. Samples whose bit in `seen` is 0 get `behind`.
 void put(const Ints& pixels, const Ints& behind, std::uint32_t seen, std::size_t i, StripCodes& codes) {
     alignas(64) std::array<std::int32_t, Ints::size> words;
     xsimd::select(xsimd::bool_cast(lanes_from<float>(seen >> i)), pixels, behind).store_aligned(words.data());
     std::memcpy(static_cast<void*>(codes.at(i)), words.data(), sizeof(words));
 }
 
-/// What encode() leaves to be done of a strip: a bit for each sample that the polynomial can't tell, or that has a number which the
-/// curve is not for.
+/// Holds the samples that encode() leaves undecided, one bit each: those in doubt, and those outside the range of
+/// curved_code().
 struct Left {
     std::uint32_t doubtful, other;
 };
 
-/// A strip as if the curve were all there is.
+/// Encodes a packet as if all values were in the range of curved_code().
 Left encode(const StripColors& colors, std::uint32_t seen, const Ints& behind, StripCodes& codes) {
     Left left{0, 0};
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
@@ -104,7 +108,7 @@ Left encode(const StripColors& colors, std::uint32_t seen, const Ints& behind, S
     return {left.doubtful & seen, left.other & seen};
 }
 
-/// The same of any numbers. Returns a bit for each sample that is doubtful.
+/// Encodes a packet of any values. Returns one bit per sample in doubt.
 std::uint32_t encode_any(const StripColors& colors, std::uint32_t seen, const Ints& behind, StripCodes& codes) {
     std::uint32_t all_doubtful = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
@@ -126,18 +130,21 @@ void encode_one_by_one(const StripColors& colors, std::uint32_t samples, StripCo
 
 } // namespace
 
-void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background, StripCodes* const* codes) {
+void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background,
+                   StripCodes* const* codes) {
     const Ints behind(std::bit_cast<std::int32_t>(background));
-    constexpr std::size_t kTogether = 64; // the polynomial's numbers stay in registers
+    constexpr std::size_t kTogether = 64; // few enough to keep the polynomial's coefficients in registers
     std::array<Left, kTogether> left;
     for (std::size_t first = 0; first < colors.size(); first += kTogether) {
         const std::size_t count = std::min(kTogether, colors.size() - first);
-        for (std::size_t s = 0; s < count; ++s) left[s] = encode(colors[first + s], seen[first + s], behind, *codes[first + s]);
+        for (std::size_t s = 0; s < count; ++s)
+            left[s] = encode(colors[first + s], seen[first + s], behind, *codes[first + s]);
         for (std::size_t s = 0; s < count; ++s) {
             if ((left[s].doubtful | left[s].other) == 0) continue;
             const StripColors& of = colors[first + s];
             StripCodes& to = *codes[first + s];
-            encode_one_by_one(of, left[s].other == 0 ? left[s].doubtful : encode_any(of, seen[first + s], behind, to), to);
+            encode_one_by_one(of, left[s].other == 0 ? left[s].doubtful : encode_any(of, seen[first + s], behind, to),
+                              to);
         }
     }
 }

@@ -1,4 +1,4 @@
-// Strips of pixels to 8-bit sRGB.
+// Converts packets of linear colors to 8-bit sRGB.
 #pragma once
 
 #include "raster/lanes.h"
@@ -9,14 +9,16 @@
 
 namespace duet::raster {
 
-/// Sixteen colours, linear.
+/// Stores sixteen linear colors.
 using StripColors = RgbT<StripOf<float>>;
 
-/// Codes, sixteen of them, in one row of the cache.
+/// Stores sixteen sRGB pixels, in one cache line.
 using StripCodes = StripOf<Rgba8>;
 
-/// Of each strip its codes as SrgbEncoder gives them, for every float; opaque. The background's where the strip's `seen` has no bit
-/// for a sample. As many of both as there are colours; any number at a time: many are faster than one by one.
-void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background, StripCodes* const* codes);
+/// Encodes packets. codes[k] receives the pixels of colors[k], opaque and bit-identical to SrgbEncoder for every
+/// float. Samples whose bit in seen[k] is 0 receive `background`. `seen` and `codes` have as many entries as
+/// `colors`. Encoding many packets in one call is faster than one by one.
+void encode_strips(std::span<const StripColors> colors, const std::uint32_t* seen, Rgba8 background,
+                   StripCodes* const* codes);
 
 } // namespace duet::raster

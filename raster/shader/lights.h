@@ -1,4 +1,5 @@
-// The scene's lights as shading models take them: each from one direction, for one point or for a batch.
+// Converts the scene's lights to what shading models use: one incident direction per light, for one point or a SIMD
+// batch.
 #pragma once
 
 #include "raster/light/direct.h"
@@ -7,12 +8,12 @@
 namespace duet::raster {
 
 template <typename T> struct IncidentT {
-    Vec3T<T> wi;        ///< unit, to the light
-    RgbT<T> irradiance; ///< on a surface that faces it; nothing occludes it
+    Vec3T<T> wi;        ///< unit, towards the light
+    RgbT<T> irradiance; ///< on a surface facing the light, without occlusion
 };
 
-/// Light at a point of the world, of any but a sun. A surface light counts as a distant one of the same irradiance in its centre's
-/// direction.
+/// Returns the incident light at a world-space point, for any light but a sun. An area light counts as a distant
+/// light of equal irradiance in the direction of its center.
 template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     const auto from = [&](Vec3 position, Rgb intensity) -> IncidentT<T> {
         const Vec3T<T> way = spread<T>(position) - p;
@@ -23,7 +24,7 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
         IncidentT<T> result = from(spot->position, spot->intensity);
         const T cosine = -dot(result.wi, spread<T>(spot->direction));
-        const float range = spot->cos_inner - spot->cos_outer; // 0: a hard edge
+        const float range = spot->cos_inner - spot->cos_outer; // 0 gives a hard edge
         const T s = clamp((cosine - T(spot->cos_outer)) / T(max(range, 1e-6f)), T(0), T(1));
         result.irradiance *= s * s * (T(3) - T(2) * s);
         return result;
@@ -45,10 +46,13 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     }
 }
 
-template <typename T> IncidentT<T> incident(const SunLight& sun) { return {-spread<T>(sun.direction), spread<T>(sun.irradiance)}; }
+/// Returns the incident light of a sun, which is the same everywhere.
+template <typename T> IncidentT<T> incident(const SunLight& sun) {
+    return {-spread<T>(sun.direction), spread<T>(sun.irradiance)};
+}
 
-/// use(IncidentT<T>) for each light, at the point of the world that place() returns; suns, which shine everywhere alike,
-/// don't ask for it.
+/// Calls use(IncidentT<T>) for each light, at the world-space point returned by place(). place() is not called for
+/// suns, whose light is the same everywhere.
 template <bool kSuns, typename Place, typename Use>
 void for_each_incident(Lights<kSuns> lights, const Place& place, const Use& use) {
     using T = decltype(place().x);

@@ -1,4 +1,4 @@
-// Vectors that are linear in the pixel, such as a camera's rays: for the strips of a tile, by adding.
+// Evaluates vectors that are linear in the pixel, such as camera rays, by addition for the packets of a tile.
 #pragma once
 
 #include "raster/geometry/samples.h"
@@ -9,12 +9,15 @@
 
 namespace duet::raster {
 
-/// What a column of blocks has of such a vector, and what a row of strips and the samples' places in their pixels add: rounded
-/// once a tile, to floats whose errors are of their last place. So no strip has to wait for its place to become a number.
+/// Holds the vector at packet positions of a tile as the sum of a term per column of blocks and a term per row of
+/// packets. The latter includes the samples' offset in the pixel. Terms are rounded to float once per tile. No packet
+/// needs to convert its position to float, which would be on the critical path.
 class LinearInTile {
 public:
-    /// start + dx·x + dy·y, for the pixels (x, y) of a tile, TileGrid::kTileSize or less of them each way.
-    LinearInTile(Vec3d start, Vec3d dx, Vec3d dy, const PixelRect& tile) : step_x_(dx), step_y_(dy), x0_(tile.x0), y0_(tile.y0) {
+    /// Represents start + dx·x + dy·y for the pixels (x, y) of a tile, at most TileGrid::kTileSize in each
+    /// direction.
+    LinearInTile(Vec3d start, Vec3d dx, Vec3d dy, const PixelRect& tile)
+        : step_x_(dx), step_y_(dy), x0_(tile.x0), y0_(tile.y0) {
         const Vec3 first(start + dx * static_cast<double>(tile.x0) + dy * static_cast<double>(tile.y0));
         for (std::size_t k = 0; k < columns_.size(); ++k)
             for (std::size_t i = 0; i < kStrip; i += Floats::size) {
@@ -25,19 +28,20 @@ public:
         set_rows();
     }
 
-    /// So the samples of the strips that follow lie in their pixels.
+    /// Sets the samples' offset in their pixels for the following calls of at().
     void use(SampleOffset offset) {
         if (offset == offset_) return;
         offset_ = offset;
         set_rows();
     }
-    /// Of the strip that begins at pixel (x, y): its samples from the i-th on, as many as there are lanes.
+    /// Returns the vectors of the packet that starts at pixel (x, y), one batch of samples from the i-th on.
     Vec3T<Floats> at(int x, int y, std::size_t i) const {
         const auto& column = columns_[static_cast<std::size_t>(x - x0_) / kStripWidth];
         const Vec3& row = rows_[static_cast<std::size_t>(y - y0_) / kStripHeight];
-        return {load(column[0], i) + Floats(row.x), load(column[1], i) + Floats(row.y), load(column[2], i) + Floats(row.z)};
+        return {load(column[0], i) + Floats(row.x), load(column[1], i) + Floats(row.y),
+                load(column[2], i) + Floats(row.z)};
     }
-    /// What as many pixels to the right and down add.
+    /// Returns the increment for the given number of pixels to the right and down.
     template <typename T> Vec3T<T> moved(T x, T y) const {
         const auto along = [&](std::size_t axis) { return fused(T(step_x_[axis]), x, T(step_y_[axis]) * y); };
         return {along(0), along(1), along(2)};
@@ -45,15 +49,17 @@ public:
 
 private:
     void set_rows() {
-        const Vec3 shift = moved(static_cast<float>(offset_.x) / kSubPixels, static_cast<float>(offset_.y) / kSubPixels);
-        for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = step_y_ * static_cast<float>(k * kStripHeight) + shift;
+        const Vec3 shift =
+            moved(static_cast<float>(offset_.x) / kSubPixels, static_cast<float>(offset_.y) / kSubPixels);
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            rows_[k] = step_y_ * static_cast<float>(k * kStripHeight) + shift;
     }
 
     static constexpr std::size_t kStripHeight = DepthTile::kStripRows;
     Vec3 step_x_, step_y_;
     int x0_, y0_;
     std::array<std::array<StripOf<float>, 3>, TileGrid::kTileSize / kStripWidth> columns_;
-    std::array<Vec3, TileGrid::kTileSize / kStripHeight> rows_; ///< their samples' places in their pixels, too
+    std::array<Vec3, TileGrid::kTileSize / kStripHeight> rows_; ///< includes the samples' offset in the pixel
     SampleOffset offset_{0, 0};
 };
 

@@ -6,12 +6,15 @@
 namespace duet::raster {
 
 ObjectView::ObjectView(const PreparedData& data_, const PassView& pass_, std::uint32_t object_)
-    : data(data_), pass(pass_), object(object_), color(data_.objects[object_].one_color), eye(Vec3(pass_.pinhole.origin)),
-      forward(Vec3(pass_.pinhole.forward)), orthographic(pass_.viewport.orthographic) {
+    : data(data_), pass(pass_), object(object_), color(data_.objects[object_].one_color),
+      eye(Vec3(pass_.pinhole.origin)), forward(Vec3(pass_.pinhole.forward)), orthographic(pass_.viewport.orthographic) {
     const Object& placed = data.scene.objects[object];
     const Mesh* mesh = std::get_if<Mesh>(&data.scene.shapes[placed.shape]);
-    smooth = std::holds_alternative<Sphere>(data.scene.shapes[placed.shape]) || (mesh != nullptr && !mesh->normals.empty());
-    const auto any_material = [&](const auto& is) { return std::any_of(placed.materials.begin(), placed.materials.end(), is); };
+    smooth =
+        std::holds_alternative<Sphere>(data.scene.shapes[placed.shape]) || (mesh != nullptr && !mesh->normals.empty());
+    const auto any_material = [&](const auto& is) {
+        return std::any_of(placed.materials.begin(), placed.materials.end(), is);
+    };
     bent = any_material([&](std::uint32_t material) { return data.scene.maps[material].bends_normals(); });
     emits = any_material([&](std::uint32_t material) { return emitter(data.scene.materials[material]) != nullptr; });
     identity = placed.identity;

@@ -9,11 +9,12 @@ Vec3 to_object_normal(const ObjectView& object, Vec3 n) {
     return object.identity ? n : transform_normal(object.to_world, n);
 }
 
-/// Changes of the point of a plane that a camera ray meets, as the ray goes to the next pixel.
+/// Stores screen-space derivatives of the point where camera rays meet a plane, per pixel.
 struct PointSteps {
     Vec3d dx, dy;
 };
-/// With o + t·d = p, all linear in the pixel but t, and n·p constant: t' = −n·(o' + t·d') / n·d.
+/// From o + t·d = p, where o and d are linear in the pixel and n·p is constant, follows t' = −n·(o' + t·d') /
+/// n·d.
 PointSteps point_steps(const Pinhole& pinhole, Vec2d pixel, double t, Vec3d n) {
     const Vec3d d = pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y;
     const auto step = [&](Vec3d origin_step, Vec3d direction_step) {
@@ -23,9 +24,11 @@ PointSteps point_steps(const Pinhole& pinhole, Vec2d pixel, double t, Vec3d n) {
     return {step(pinhole.origin_dx, pinhole.direction_dx), step(pinhole.origin_dy, pinhole.direction_dy)};
 }
 
-/// Barycentrics of the second and third corner change by a vector in the triangle's plane so: it times these.
+/// Sets the weights' derivatives. They are the barycentrics of the point's derivative, a vector in the triangle's
+/// plane.
 void set_steps(HitCorners& at, const PassView& view, Vec2d pixel, const ObjectView& object) {
-    const std::array<Vec3d, 3> p{Vec3d(object.point(at.p[0])), Vec3d(object.point(at.p[1])), Vec3d(object.point(at.p[2]))};
+    const std::array<Vec3d, 3> p{Vec3d(object.point(at.p[0])), Vec3d(object.point(at.p[1])),
+                                 Vec3d(object.point(at.p[2]))};
     const Vec3d ab = p[1] - p[0], ac = p[2] - p[0], n = cross(ab, ac);
     const PointSteps steps = point_steps(view.pinhole, pixel, at.depth, n);
     const auto weigh = [&](Vec3d step, std::array<float, 3>& weights) {
@@ -40,21 +43,22 @@ void set_weights(HitCorners& at, double b1, double b2) {
     at.weights = {static_cast<float>(1 - b1 - b2), static_cast<float>(b1), static_cast<float>(b2)};
 }
 
-/// The half of a quad that is hit, as the rasterizer draws it: corner, +u, +u+v, or corner, +u+v, +v.
+/// Sets the corners of the hit half of a quad, split as the rasterizer does: (corner, +u, +u+v) or (corner, +u+v,
+/// +v).
 void set_quad(HitCorners& at, const Shape& shape, const Hit& hit) {
     const Corners corners = primitive_corners(shape, hit.primitive);
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
     const std::size_t half = u >= v ? 0 : 1;
     constexpr std::array<Vec2, 4> kCorners{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
     const std::array<std::size_t, 3> used{0, 1 + half, 2 + half};
-    const std::size_t diagonal = half == 0 ? 1 : 2; // the corner that it is opposite to
+    const std::size_t diagonal = half == 0 ? 1 : 2; // the corner opposite to the diagonal
     for (std::size_t k = 0; k < 3; ++k) {
         at.p[k] = corners.p[used[k]];
         at.uv[k] = kCorners[used[k]];
         at.edges[k] = {};
         at.edges[k][k] = at.edges[k][diagonal] = 1;
     }
-    at.middle = (corners.p[0] + corners.p[2]) * 0.5f; // the whole quad's
+    at.middle = (corners.p[0] + corners.p[2]) * 0.5f; // centroid of the whole quad
     if (half == 0)
         set_weights(at, u - v, v);
     else
@@ -73,7 +77,8 @@ void set_triangle(HitCorners& at, const Mesh& mesh, const Hit& hit) {
     set_weights(at, static_cast<double>(hit.u), static_cast<double>(hit.v));
 }
 
-void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object) {
+void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel,
+                const ObjectView& object) {
     const Vec3d p(at.surface.p), n(at.surface.ng);
     const auto point = [&](Vec2d place) {
         const Rayd ray = view.pinhole.ray(place);
@@ -84,7 +89,8 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
     const std::array<SurfacePoint, 3> points{at.surface, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
     for (std::size_t k = 0; k < 3; ++k) {
         at.p[k] = points[k].p_object;
-        at.n[k] = normalize(to_object_normal(object, points[k].ns)); // as the sphere has it, however the object is stretched
+        // This is the sphere's own normal, even if the object is scaled non-uniformly.
+        at.n[k] = normalize(to_object_normal(object, points[k].ns));
         at.uv[k] = points[k].uv;
         at.edges[k] = Vec3(1, 1, 1);
     }
@@ -98,7 +104,8 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
 
 namespace {
 
-SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel) {
+SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit,
+                            int samples_per_pixel) {
     const RayFootprint footprint =
         scene.needs.footprints ? PixelFootprint(view.pinhole, samples_per_pixel).at(ray, hit.t) : RayFootprint{};
     return surface_point(scene, ray, hit, &footprint);
@@ -123,7 +130,8 @@ Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d
     return emitted(scene.materials[surface.material], scene.textures, surface, -ray.direction);
 }
 
-HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel) {
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object,
+                       int samples_per_pixel) {
     const Scene& scene = object.data.scene;
     HitCorners at;
     const Rayd exact = view.pinhole.ray(pixel);

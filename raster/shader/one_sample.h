@@ -1,4 +1,4 @@
-// A shader at one hit, whatever it is of: triangle, quad or sphere. The naive way, to which batches are held.
+// Shades one hit on a triangle, quad or sphere. This is the scalar reference that the batched code must match.
 #pragma once
 
 #include "raster/shader/shader.h"
@@ -6,30 +6,33 @@
 
 namespace duet::raster {
 
-/// The corners of what is hit, and the weights that make the hit of them; with their derivatives by the sample's place.
-/// Of a sphere three of its points: where it is hit, and where the rays through the next pixels to the right and below
-/// would, if they met its tangent plane.
+/// Stores the corners of the hit triangle and the weights that interpolate them to the hit, with the weights'
+/// screen-space derivatives. For a sphere the corners are three of its points: the hit, and those of the rays through
+/// the next pixels to the right and below, intersected with the tangent plane.
 struct HitCorners {
-    std::array<Vec3, 3> p, n; ///< in the object's space
+    std::array<Vec3, 3> p, n; ///< in object space
     std::array<Vec2, 3> uv;
     std::array<Vec3, 3> edges; ///< VertexInput::edges
-    Vec3 ng, middle;           ///< VertexInput's
+    Vec3 ng, middle;           ///< as in VertexInput
     std::array<float, 3> weights{}, dx{}, dy{};
     SurfacePoint surface;
-    Vec3 ns; ///< shading normal in the world, unit, on the side that is seen
-    double depth = 0; ///< camera-space −z
+    Vec3 ns; ///< world-space shading normal, unit, on the visible side
+    double depth = 0; ///< camera-space −z, meters
 };
-HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object, int samples_per_pixel);
-/// The base colour where a camera ray hits, textures filtered over what the sample stands for.
+/// Returns the corners of a hit of the ray through `pixel`.
+HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object,
+                       int samples_per_pixel);
+/// Returns the base color at a camera ray's hit. Textures are filtered over the sample's footprint.
 Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel);
 
-/// The shading normal there, likewise, on the side that is seen.
+/// Returns the world-space shading normal at a hit, unit, on the visible side. Normal maps are filtered over the
+/// sample's footprint.
 Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
-/// And the radiance of its own towards the viewer.
+/// Returns the radiance emitted at a hit towards the viewer. Textures are filtered over the sample's footprint.
 Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
-/// The colour of a hit of the ray through `pixel`. `nearness`: known, or null.
+/// Returns the color of a hit of the ray through `pixel`. `nearness` is the reversed depth if it is known, or null.
 template <Shader S>
 Rgb shade_one(const PreparedData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
               int samples_per_pixel, const float* nearness = nullptr) {

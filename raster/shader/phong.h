@@ -1,4 +1,4 @@
-// Phong's model: diffuse light, and a highlight about the mirror direction.
+// Implements the Phong reflection model: a diffuse term and a specular highlight around the mirror direction.
 #pragma once
 
 #include "common/vec/float_bits.h"
@@ -6,16 +6,17 @@
 
 namespace duet::raster {
 
-/// The BRDF's two parts: base colour / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ about the mirror
-/// direction, which no direction makes more of than it receives (Phong 1975, «Illumination for Computer Generated
-/// Pictures»; normalized as in Lafortune and Willems 1994, «Using the Modified Phong Reflectance Model for Physically
-/// Based Rendering»). m = 32 = 2⁵: five squarings.
+/// The BRDF has two terms: base color / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ around the mirror
+/// direction. The lobe reflects at most the incident energy for every direction (Phong 1975, "Illumination for
+/// Computer Generated Pictures"; normalized as in Lafortune and Willems 1994, "Using the Modified Phong Reflectance
+/// Model for Physically Based Rendering"). m = 32 = 2⁵ takes five squarings.
 inline constexpr int kPhongSquarings = 5;
 inline constexpr float kPhongDiffuse = kInvPi;
 inline constexpr float kPhongSpecular = 0.04f * ((1 << kPhongSquarings) + 2) * kInvPi / 2;
 
-/// What becomes of light from wi: the cosine at which it arrives, and what of the highlight's middle wo has, of which
-/// kPhongSpecular by solid angle is sent on. wi is unit; light from behind (n·wi <= 0) gives none.
+/// Computes the factors of reflection from wi to wo: the incident cosine, clamped to 0, and the lobe cosᵐ of the
+/// angle between wo and the mirror direction. kPhongSpecular scales the lobe to a BRDF. wi must be unit. Light from
+/// behind (n·wi <= 0) has cosine 0.
 template <typename T> struct PhongFactors {
     T cosine, lobe;
 
@@ -23,17 +24,19 @@ template <typename T> struct PhongFactors {
         const T arriving = dot(n.v, wi) * n.scale;
         cosine = max(arriving, T(0));
         const T leaving = dot(n.v, wo.v);
-        // The mirror direction's cosine with wo; three products that need not wait for each other.
+        // The lobe needs the cosine between the mirror direction and wo. Its three products do not depend on each
+        // other.
         lobe = max(fused(arriving, (leaving + leaving) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
     }
-    bool behind() const { return none_of_lanes(cosine > T(0)); } ///< gives no light at all
+    bool behind() const { return none_of_lanes(cosine > T(0)); } ///< no lane receives light
 };
 
-/// Radiance of a surface of a base colour under all lights, `ambient` being the radiance from all around; place() is its
-/// point in the world.
+/// Returns the radiance of a surface under all lights. `base` is the base color, `ambient` the radiance from all
+/// directions, and place() returns the world-space point.
 template <typename T, bool kSuns, typename Place>
-RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& place, const Direction<T>& n, const Direction<T>& wo) {
+RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& place, const Direction<T>& n,
+              const Direction<T>& wo) {
     RgbT<T> sum = base * spread<T>(ambient);
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
     for_each_incident(lights, place, [&](const IncidentT<T>& light) {
@@ -47,11 +50,13 @@ RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Place& plac
     return sum;
 }
 
-/// The same in two parts, before the base colour is known: for who works it out elsewhere than the sample.
+/// Stores the light at a point in two terms that do not depend on the base color, for shaders that compute it at the
+/// vertices.
 template <typename T> struct PhongLight {
-    RgbT<T> irradiance; ///< W/m², cosine and all
+    RgbT<T> irradiance; ///< W/m², includes the cosine
     RgbT<T> highlights; ///< radiance
 };
+/// Returns the light at the world-space point that place() returns.
 template <typename T, typename Place>
 PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direction<T>& n, const Direction<T>& wo) {
     PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
@@ -64,17 +69,18 @@ PhongLight<T> phong_light(Lights<false> lights, const Place& place, const Direct
     });
     return sum;
 }
-/// Light interpolated: at a triangle's edge a weight may round to less than none, light may not.
+/// Clamps interpolated light at 0, because a weight at a triangle's edge may round to a negative value.
 template <typename T> PhongLight<T> not_negative(const PhongLight<T>& light) {
     const auto each = [](const RgbT<T>& c) { return RgbT<T>(max(c.r, T(0)), max(c.g, T(0)), max(c.b, T(0))); };
     return {each(light.irradiance), each(light.highlights)};
 }
+/// Returns the radiance of a surface with base color `base` under the given light.
 template <typename T> RgbT<T> phong(const PhongLight<T>& light, Rgb ambient, RgbT<T> base) {
     return base * (light.irradiance * T(kPhongDiffuse) + spread<T>(ambient)) + light.highlights;
 }
 
-/// What shaders have in common that work light out in their vertex function, at point p for normal n, both in the world:
-/// it is interpolated, and the base colour is each sample's own.
+/// Provides the common part of shaders that compute light in their vertex function, at world-space point p with
+/// normal n. The light is interpolated, and the base color is evaluated per sample.
 struct LightAtVertices {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> using Varyings = PhongLight<T>;

@@ -1,5 +1,5 @@
-// A shader of raster/shader/shader.h becomes a Program: strips of samples in batches, object by object, and one hit by the same
-// functions.
+// Turns a shader of raster/shader/shader.h into a Program, which shades packets of samples in SIMD batches, object
+// by object, and single hits with the same functions.
 #pragma once
 
 #include "raster/shader/linear_in_tile.h"
@@ -14,15 +14,20 @@
 #include <vector>
 
 namespace duet::raster {
+/// Shades the packets of one tile with shader S.
 
 template <Shader S> class ShadedStrips final : public StripShader {
 public:
-    ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile, const S& shader)
+    ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile,
+                 const S& shader)
         : data_(data), geometry_(geometry), view_(view), shader_(shader), surface_(data, geometry, view),
           solver_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
-          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile), eye_(view.pinhole.origin),
-          only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); })) {
-        if (view.viewport.orthographic) eyes_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
+          ways_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
+          eye_(view.pinhole.origin), only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) {
+              return std::holds_alternative<SunLight>(light);
+          })) {
+        if (view.viewport.orthographic)
+            eyes_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
     }
 
     using StripShader::shade;
@@ -36,7 +41,7 @@ private:
     using Many = VaryingsOf<S, Floats>;
     using Solved = SolvedStrip<S, float>;
 
-    /// Those samples of a strip that see one of the objects that are seen in it.
+    /// Holds those samples of a packet that see one of several objects.
     struct Part {
         StripOf<std::int32_t> ids;
         StripPlace place;
@@ -59,14 +64,16 @@ private:
         });
     }
 
+    /// Returns true if the specialization for one color, unperturbed normals and suns only (kPlain) applies.
     bool plain(const ObjectView& object) const { return only_suns_ && object.even(); }
-    /// What all samples of a strip have in common two have so: the object, and where in their pixels they lie.
+    /// Returns true if two packets can be shaded by the same loop, because their samples share the object and the
+    /// offset.
     static bool alike(const StripPlace* places, std::span<const Solved> strips, std::size_t a, std::size_t b) {
         return strips[a].object_view == strips[b].object_view && strips[a].directions == strips[b].directions &&
                places[a].offsets == nullptr && places[b].offsets == nullptr && places[a].offset == places[b].offset;
     }
 
-    /// One strip, or several that are alike.
+    /// Shades one packet, or several for which alike() holds.
     void shade_solved(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) {
         const Solved& strip = strips.front();
         const SampleOffset offset = places->offsets != nullptr ? SampleOffset{0, 0} : places->offset;
@@ -77,7 +84,7 @@ private:
         shade_as<false>(places, strips, colors);
     }
 
-    /// Spheres at once, triangles in parts.
+    /// Shades a packet that sees several objects: spheres immediately, triangles later by shade_parts().
     void shade_objects(const StripPlace& place, const StripSamples& samples, StripColors& colors) {
         for (std::uint32_t left = samples.seen; left != 0;) {
             const Run& run = solver_.run_of(samples.id(static_cast<std::size_t>(std::countr_zero(left))));
@@ -101,7 +108,8 @@ private:
         part.colors = &colors;
         const Ints none(static_cast<std::int32_t>(kNoTriangle));
         for (std::size_t i = 0; i < kStrip; i += Ints::size)
-            store(part.ids, i, xsimd::select(xsimd::bool_cast(lanes_from<float>(lanes >> i)), load(among.ids, i), none));
+            store(part.ids, i,
+                  xsimd::select(xsimd::bool_cast(lanes_from<float>(lanes >> i)), load(among.ids, i), none));
     }
 
     void shade_sphere(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, const DrawSphere& sphere,
@@ -110,13 +118,14 @@ private:
         if (!sphere_view_ || sphere_view_->object != sphere.object) sphere_view_.emplace(data_, view_, sphere.object);
         Solved strip;
         strip.samples = &samples;
-        solve_sphere(SphereStrip(view_, place, sphere, wants_derivatives<S>()), sphere.sphere, shader_, *sphere_view_, strip);
+        solve_sphere(SphereStrip(view_, place, sphere, wants_derivatives<S>()), sphere.sphere, shader_, *sphere_view_,
+                     strip);
         StripColors own;
         shade_solved(&place, std::span(&strip, 1), &own);
         copy(lanes, own, colors);
     }
 
-    /// Each sees one object, so no more parts come of them.
+    /// Shades the collected parts. Each sees one object, so no further parts result.
     void shade_parts() {
         places_of_parts_.clear();
         for (const Part& part : parts_) {
@@ -137,19 +146,22 @@ private:
         }
     }
 
-    template <bool kPlain> void shade_as(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) const {
+    template <bool kPlain>
+    void shade_as(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) const {
         if constexpr (wants_directions<S>())
             if (strips.front().directions) return shade_together<kPlain, true>(places, strips, colors);
         shade_together<kPlain, false>(places, strips, colors);
     }
 
-    /// (Nothing that is read here is a colour: so what strips have in common is worked out once.)
+    /// `colors` is __restrict, so what packets share is loaded only once.
     template <bool kPlain, bool kFacing>
-    void shade_together(const StripPlace* places, std::span<const Solved> strips, StripColors* __restrict colors) const {
+    void shade_together(const StripPlace* places, std::span<const Solved> strips,
+                        StripColors* __restrict colors) const {
         const ObjectView& object = *strips.front().object_view;
         for (std::size_t s = 0; s < strips.size(); ++s)
             for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-                const RgbT<Floats> c = shader_.template fragment<Floats>(fragment<kPlain, kFacing>(places[s], strips[s], object, i));
+                const RgbT<Floats> c =
+                    shader_.template fragment<Floats>(fragment<kPlain, kFacing>(places[s], strips[s], object, i));
                 store(colors[s].r, i, c.r);
                 store(colors[s].g, i, c.g);
                 store(colors[s].b, i, c.b);
@@ -157,14 +169,15 @@ private:
     }
 
     template <bool kPlain, bool kFacing>
-    FragmentOf<S, Floats, kPlain, kFacing> fragment(const StripPlace& place, const Solved& strip, const ObjectView& object,
-                                                    std::size_t i) const {
+    FragmentOf<S, Floats, kPlain, kFacing> fragment(const StripPlace& place, const Solved& strip,
+                                                    const ObjectView& object, std::size_t i) const {
         const Floats near(static_cast<float>(view_.pinhole.near));
         const Floats nearness = place.nearness != nullptr ? Floats::load_aligned(place.nearness + i)
                                                           : min(near / load(strip.depth, i), Floats(1.0f));
         assert(!kFacing || place.nearness != nullptr);
-        // A strip of directions has no depths. (Where nothing is seen nearness is 0.)
-        const Floats depth = kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
+        // A packet solved for directions has no depths. (The reversed depth is 0 where nothing is visible.)
+        const Floats depth =
+            kFacing ? near / xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)) : load(strip.depth, i);
         return {derivatives(strip, i),
                 seen_side<kFacing>(strip, i),
                 varyings_at(strip.at, i),
@@ -180,18 +193,22 @@ private:
     static Vec3T<Floats> vector(const LinearInTile& of, const StripPlace& place, std::size_t i) {
         const Vec3T<Floats> here = of.at(place.x, place.y, i);
         if (place.offsets == nullptr) return here;
-        return here + of.moved(in_pixel(*place.offsets, i, &SampleOffset::x), in_pixel(*place.offsets, i, &SampleOffset::y));
+        return here +
+               of.moved(in_pixel(*place.offsets, i, &SampleOffset::x), in_pixel(*place.offsets, i, &SampleOffset::y));
     }
-    static Floats in_pixel(const std::array<SampleOffset, kStrip>& offsets, std::size_t first, std::int32_t SampleOffset::*axis) {
+    static Floats in_pixel(const std::array<SampleOffset, kStrip>& offsets, std::size_t first,
+                           std::int32_t SampleOffset::*axis) {
         StripOf<float> own;
-        for (std::size_t i = 0; i < Floats::size; ++i) own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
+        for (std::size_t i = 0; i < Floats::size; ++i)
+            own[i] = static_cast<float>(offsets[first + i].*axis) / kSubPixels;
         return load(own, 0);
     }
     template <std::size_t N> static Many varyings_at(const std::array<StripOf<float>, N>& from, std::size_t i) {
         Many result;
-        for (std::size_t c = 0; c < N; ++c) { // one by one, as compilers keep them in registers
+        for (std::size_t c = 0; c < N; ++c) { // one by one, so that compilers keep them in registers
             const Floats number = load(from[c], i);
-            std::memcpy(reinterpret_cast<char*>(&result) + c * sizeof(number), static_cast<const void*>(&number), sizeof(number));
+            std::memcpy(reinterpret_cast<char*>(&result) + c * sizeof(number), static_cast<const void*>(&number),
+                        sizeof(number));
         }
         return result;
     }
@@ -212,20 +229,20 @@ private:
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
-    StripSurface surface_; ///< of the strip at hand
+    StripSurface surface_; ///< of the current packet
     StripSolver<S, float> solver_;
-    LinearInTile ways_;                ///< of camera rays
-    Vec3 eye_;                         ///< and where they begin: all of them there,
-    std::optional<LinearInTile> eyes_; ///< or each at a place of its own
+    LinearInTile ways_;                ///< directions of camera rays
+    Vec3 eye_;                         ///< common origin of all camera rays
+    std::optional<LinearInTile> eyes_; ///< or an origin per pixel in an orthographic view
     std::vector<Part> parts_;
-    std::vector<StripPlace> places_of_parts_; ///< and what shade_strips() needs of them
+    std::vector<StripPlace> places_of_parts_; ///< arguments of shade_strips() for the parts
     std::vector<StripColors> colors_of_parts_;
     std::vector<std::uint32_t> seen_of_parts_;
-    std::optional<ObjectView> sphere_view_; ///< of the last sphere
-    bool only_suns_;                   ///< are the scene's lights
+    std::optional<ObjectView> sphere_view_; ///< view of the last sphere shaded
+    bool only_suns_;                   ///< true if all lights of the scene are suns
 };
 
-/// A shader, kept by value.
+/// Implements a Program that owns a copy of its shader.
 template <Shader S> class ProgramOf final : public Program {
 public:
     explicit ProgramOf(S shader) : shader_(std::move(shader)) {}

@@ -1,4 +1,4 @@
-// What a strip's samples see, and how each looks up the numbers of its own triangle's set-up.
+// Reads the ids of a packet and finds the triangle setup of each sample.
 #pragma once
 
 #include "raster/shader/set_ups.h"
@@ -8,29 +8,29 @@
 
 namespace duet::raster {
 
-/// A strip whose samples see triangles of one object, and where the set-ups of its triangles are kept.
+/// Holds a packet whose samples see triangles of one object, and the cache slots of their triangle setups.
 template <VertexShader S, typename D> struct ReadStrip : StripSamples {
     using Sixteen = SetUp<S, D>;
 
-    StripOf<std::int32_t> kept;  ///< SetUps::keep
-    StripOf<std::int32_t> lanes; ///< of each sample: among its pair's thirty-two
-    /// Two times sixteen set-ups, and a bit for each sample whose own is among them.
+    StripOf<std::int32_t> kept;  ///< cache slot per sample, see SetUps::keep
+    StripOf<std::int32_t> lanes; ///< index of each sample's setup among the 32 of its pair
+    /// Stores two groups of sixteen setups, with one bit per sample whose setup is among them.
     struct Pair {
         const Sixteen *first, *second;
         std::uint32_t samples;
     };
     std::array<Pair, kStrip / 2> pairs;
     std::size_t pair_count = 0;
-    bool one = false; ///< triangle is all that they see
+    bool one = false; ///< all samples see the same triangle
 
-    /// Once all are set up.
+    /// Groups the setups into pairs. It must be called after SetUps::finish().
     void find_pairs(const SetUps<S, D>& set_ups);
-    /// SetUp::easy of all that they see.
+    /// Returns true if SetUp::easy holds for all visible triangles.
     bool all_easy() const;
-    /// use(own), where own.get is as below.
+    /// Calls use(own), where own.get() looks up a value of each sample's setup (see below).
     template <typename Use> void with_own(const Use& use) const {
         const Pair& pair = pairs[0];
-        if (Floats::size < kStrip && one) // where looking up takes more than one step
+        if (Floats::size < kStrip && one) // where a lookup takes more than one step
             use(OfOne{*pair.first, static_cast<std::size_t>(lanes[0])});
         else if (pair_count == 1 && pair.first == pair.second)
             use(OfSixteen{*pair.first, lanes});
@@ -41,9 +41,9 @@ template <VertexShader S, typename D> struct ReadStrip : StripSamples {
     }
 
 private:
-    /// get(i, of): of each sample from the i-th on, as many as there are lanes, its own number; of() says which, of sixteen
-    /// set-ups. OfOne: all samples see one triangle. OfSixteen, OfPair: one or two times sixteen set-ups have all that they see.
-    /// OfPairs: any.
+    /// get(i, of) returns for one batch of samples from the i-th on a value of each sample's setup. of() selects
+    /// the array in a group of sixteen setups. OfOne: all samples see one triangle. OfSixteen, OfPair: all setups
+    /// are in one or two groups of sixteen. OfPairs: the general case.
     struct OfOne {
         const Sixteen& sixteen;
         std::size_t lane;
@@ -68,7 +68,9 @@ private:
     struct OfPairs {
         const ReadStrip& strip;
         template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
-            const auto of_pair = [&](const auto& pair) { return look_up(of(*pair.first), of(*pair.second), strip.lanes, i); };
+            const auto of_pair = [&](const auto& pair) {
+                return look_up(of(*pair.first), of(*pair.second), strip.lanes, i);
+            };
             xsimd::batch<T> value = of_pair(strip.pairs[0]);
             for (std::size_t k = 1; k < strip.pair_count; ++k)
                 value = xsimd::select(lanes_from<T>(strip.pairs[k].samples >> i), of_pair(strip.pairs[k]), value);
@@ -113,7 +115,7 @@ template <VertexShader S, typename D> bool ReadStrip<S, D>::all_easy() const {
     for (std::size_t k = 0; k < pair_count; ++k) {
         const auto& pair = pairs[k];
         const std::uint32_t of_pair = pair.first->easy | pair.second->easy << kStrip;
-        if (of_pair == ~std::uint32_t{0}) { // as mostly
+        if (of_pair == ~std::uint32_t{0}) { // the common case
             easy |= pair.samples;
             continue;
         }

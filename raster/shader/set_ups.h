@@ -1,5 +1,6 @@
-// What follows from a triangle for all the samples of a tile that see it: worked out sixteen triangles side by side, and
-// kept so, for strips beside each other see much the same triangles.
+// Implements the triangle setup cache. A setup holds what all samples of a tile that see a triangle share. Setups are
+// computed for sixteen triangles at a time with SIMD and cached, because adjacent packets see mostly the same
+// triangles.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -16,30 +17,32 @@
 
 namespace duet::raster {
 
-/// Of sixteen triangles. Planes are the coefficients of x, y and 1, all with the sign that is positive inside: Interpolation's
-/// e[1] and e[2], the sum of its three, and Σ(e·depth). They are of D, float or double: pixels are counted from an origin
-/// beside the triangle's first corner, so that what cancels is of the triangle's size.
+/// Stores the setups of sixteen triangles. A plane is stored as the coefficients of x, y and 1, with the sign that
+/// makes it positive inside the triangle: Interpolation's e[1] and e[2], the sum of its three e, and Σ(e·depth). D
+/// is float or double. Pixel coordinates are relative to an origin beside the triangle's first corner, so that terms
+/// that cancel have the size of the triangle.
 template <VertexShader S, typename D> struct SetUp {
     using Plane = std::array<StripOf<D>, 3>;
     using Numbers = std::array<StripOf<float>, kVaryings<S>>;
     static constexpr bool kDirections = wants_directions<S>() && std::is_same_v<D, float>;
-    /// What a plane is at most, M = steepest·(|x| + |y|) + greatest, over Σe: the triangle's length over its height in pixels, or
-    /// its farthest depth in the tile over the sample's, and some. Beyond this the planes are too coarse.
+    /// This is the upper bound of M/Σe, where M = steepest·(|x| + |y|) + greatest bounds the terms of a plane.
+    /// M/Σe is about the triangle's length over its height in pixels, or its farthest depth in the tile over the
+    /// sample's depth. Beyond this bound, the planes are too inaccurate.
     static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
 
-    StripOf<D> x, y; ///< the origin, counted from the tile's corner: a pixel of the tile
+    StripOf<D> x, y; ///< the origin, a pixel relative to the tile's corner
     Plane e1, e2, sum, depth_sum;
-    StripOf<D> steepest, greatest; ///< of e1, e2 and sum: no |coefficient| of x and y, and none of 1, is more
-    Numbers n, n1, n2;             ///< the first corner's varyings, and their changes along the barycentrics
-    std::array<StripOf<float>, 3> ng; ///< VertexInput::ng
-    /// Of shaders of directions: Σ(e·varying), a plane each, counted from the tile's corner.
+    StripOf<D> steepest, greatest; ///< maxima over e1, e2 and sum: of |coefficient| of x and y, and of 1
+    Numbers n, n1, n2;             ///< varyings at the first corner, and their derivatives along the two barycentrics
+    std::array<StripOf<float>, 3> ng; ///< as VertexInput::ng
+    /// These are the planes Σ(e·varying) relative to the tile's corner, only for shaders with kDirections.
     std::array<std::array<StripOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
-    /// A bit for each triangle where those may take the place of varyings: M/Σe is at most kSteepest wherever it is seen in the
-    /// tile, and its corners' normals are all on the side that is seen.
+    /// A triangle's bit is set if `directions` may replace its varyings: M/Σe is at most kSteepest everywhere in the
+    /// tile, and all corner normals are on the visible side.
     std::uint32_t easy;
 };
 
-/// Set-ups of triangles of meshes and quads under one view of a tile; S's vertex function is asked for what is interpolated.
+/// Caches the setups of mesh and quad triangles, for one view of a tile. S's vertex function computes the varyings.
 template <VertexShader S, typename D> class SetUps {
 public:
     using Sixteen = SetUp<S, D>;
@@ -49,18 +52,21 @@ public:
         forget();
     }
 
-    /// The object whose triangles are asked for from now on; its first triangle's number.
+    /// Selects the object whose triangles are requested from now on. `first_id` is the id of its first triangle.
     void use(const TransformedObject& object, const PackedShape& shape, std::size_t first_id);
-    /// The object in use; stays where it is.
+    /// Returns the view of the selected object. The reference stays valid.
     const ObjectView& object() const { return *view_of_object_; }
 
-    /// Whether a strip's triangles can still be kept.
+    /// Returns true if there is room for another packet's triangles.
     bool has_room() const { return count_ + 2 * kStrip <= kRoom; }
+    /// Removes all setups.
     void forget();
-    /// Of each sample's triangle where its set-up is kept, which may be made by finish() only; where there is room.
+    /// Stores the cache slot of each sample's triangle in `kept`. The setup is valid after finish(). Requires
+    /// has_room().
     void keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept);
+    /// Computes the setups that were added since the last call.
     void finish();
-    /// Those kept from place 16·i on.
+    /// Returns the setups in slots 16·i to 16·i + 15.
     const Sixteen& sixteen(std::size_t i) const { return kept_[i]; }
 
 private:
@@ -69,14 +75,17 @@ private:
     void fill_up();
     void begin_sixteen();
     void prefetch_triangle(std::int32_t id) const { prefetch(&triangle(id)); }
-    const PackedShape::Triangle& triangle(std::int32_t id) const { return shape_->triangles[static_cast<std::size_t>(id) - first_id_]; }
+    const PackedShape::Triangle& triangle(std::int32_t id) const {
+        return shape_->triangles[static_cast<std::size_t>(id) - first_id_];
+    }
     void prefetch_vertices(const StripOf<std::int32_t>& ids) const;
     void set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const;
     using Corners = std::array<std::array<StripOf<float>, 8>, 3>;
     void gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const;
     std::uint32_t second_halves(const StripOf<std::int32_t>& ids) const;
     std::uint32_t set_up_planes(const Corners& corners, Sixteen& to) const;
-    void set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves, Sixteen& to) const;
+    void set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves,
+                         Sixteen& to) const;
     void set_up_directions(std::size_t i, Sixteen& to) const;
     std::uint32_t facing(std::size_t i, const Corners& corners, const Sixteen& of) const;
 
@@ -93,27 +102,30 @@ private:
     static constexpr float kLeastCosine = 0.125f;
     static constexpr std::size_t kRoom = 1024, kMost = kRoom / kStrip, kPlaces = kRoom;
     static constexpr std::uint64_t kNoPlace = std::uint64_t{kNoTriangle} << 32;
-    /// A triangle's number, and where it is kept, by the number's lower bits: whose place another took is set up once more.
+    /// This direct-mapped table holds (id, slot), indexed by the lower bits of the id. A triangle whose entry was
+    /// overwritten is set up again.
     std::array<std::uint64_t, kPlaces> places_;
-    /// The last that were asked for, by the lower six bits of their numbers: sixteen samples are looked up side by side.
+    /// This table holds the most recently requested triangles, indexed by the lower six bits of their ids. It is
+    /// small enough to be looked up for sixteen samples with SIMD.
     struct Recent {
         StripOf<std::int32_t> ids, kept;
     };
     std::array<Recent, 4> recent_;
     std::unique_ptr<Sixteen[]> kept_ = std::make_unique_for_overwrite<Sixteen[]>(kMost);
-    std::array<StripOf<std::int32_t>, kMost> wanted_; ///< numbers of those kept, and of those to be
-    std::size_t count_ = 0, finished_ = 0;            ///< of either, and of those that are set up
+    std::array<StripOf<std::int32_t>, kMost> wanted_; ///< ids by slot
+    std::size_t count_ = 0, finished_ = 0;            ///< slots in use, and slots with finished setups
 };
 
 template <VertexShader S, typename D>
 void SetUps<S, D>::use(const TransformedObject& object, const PackedShape& shape, std::size_t first_id) {
     if (object_ == &object) return;
     finish();
-    begin_sixteen(); // each are of one object
+    begin_sixteen(); // a group of sixteen belongs to one object
     object_ = &object;
     shape_ = &shape;
     first_id_ = first_id;
-    view_of_object_ = &views_of_objects_.try_emplace(object.object, *triangles_.prepared, view_, object.object).first->second;
+    view_of_object_ =
+        &views_of_objects_.try_emplace(object.object, *triangles_.prepared, view_, object.object).first->second;
 }
 
 template <VertexShader S, typename D> void SetUps<S, D>::forget() {
@@ -140,7 +152,7 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
     }
     constexpr std::uint32_t kAll = (1u << kStrip) - 1;
     std::uint32_t left = kAll & ~found;
-    constexpr int kMany = 8; // new ones: cheaper all at once than one by one
+    constexpr int kMany = 8; // with more new triangles, adding the whole packet is cheaper
     if (left != 0 && std::popcount(first_of_each(ids) & left) > kMany) return keep_each(ids, kept);
     while (left != 0) {
         const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(left))];
@@ -152,19 +164,21 @@ void SetUps<S, D>::keep(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>&
     for (std::size_t b = 0; b < kBatches; ++b) store(kept, b * Ints::size, places[b]);
 }
 
-/// Sixteen of them as they are, and never found again.
+/// Adds the triangles of all sixteen samples without removing duplicates. They are not entered into the tables.
 template <VertexShader S, typename D>
 void SetUps<S, D>::keep_each(const StripOf<std::int32_t>& ids, StripOf<std::int32_t>& kept) {
     begin_sixteen();
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) store(kept, i, Ints(static_cast<std::int32_t>(count_)) + load(kLanes, i));
+    for (std::size_t i = 0; i < kStrip; i += Ints::size)
+        store(kept, i, Ints(static_cast<std::int32_t>(count_)) + load(kLanes, i));
     wanted_[count_ / kStrip] = ids;
     for (const std::int32_t id : ids.v) prefetch_triangle(id);
     count_ += kStrip;
 }
 
-/// The rest of the last sixteen is one of them.
+/// Fills the last group of sixteen with copies of its last triangle.
 template <VertexShader S, typename D> void SetUps<S, D>::fill_up() {
-    for (std::size_t i = count_; i % kStrip != 0; ++i) wanted_[i / kStrip][i % kStrip] = wanted_[i / kStrip][i % kStrip - 1];
+    for (std::size_t i = count_; i % kStrip != 0; ++i)
+        wanted_[i / kStrip][i % kStrip] = wanted_[i / kStrip][i % kStrip - 1];
 }
 
 template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
@@ -174,7 +188,7 @@ template <VertexShader S, typename D> void SetUps<S, D>::begin_sixteen() {
     count_ = next;
 }
 
-/// Without a branch: which of them are kept is anyone's guess.
+/// The function has no branch, because whether a triangle is cached is unpredictable.
 template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(std::int32_t id) {
     std::uint64_t& place = places_[static_cast<std::size_t>(id) % kPlaces];
     const auto number = static_cast<std::uint32_t>(id);
@@ -190,30 +204,37 @@ template <VertexShader S, typename D> std::int32_t SetUps<S, D>::find_or_keep(st
     return static_cast<std::int32_t>(kept);
 }
 
-/// A bit for each that is a quad's second half.
-template <VertexShader S, typename D> std::uint32_t SetUps<S, D>::second_halves(const StripOf<std::int32_t>& ids) const {
+/// Returns one bit per triangle that is the second half of a quad.
+template <VertexShader S, typename D>
+std::uint32_t SetUps<S, D>::second_halves(const StripOf<std::int32_t>& ids) const {
     std::uint32_t halves = 0;
     if (!shape_->quads()) return halves;
     const Ints first(static_cast<std::int32_t>(first_id_)), one(1);
-    for (std::size_t i = 0; i < kStrip; i += Ints::size) halves |= lane_bits(((load(ids, i) ^ first) & one) == one) << i;
+    for (std::size_t i = 0; i < kStrip; i += Ints::size)
+        halves |= lane_bits(((load(ids, i) ^ first) & one) == one) << i;
     return halves;
 }
 
-/// The vertex function's numbers of the triangles from the i-th on, a batch of them; `side`: 1 in front, -1 behind.
+/// Computes the varyings of one batch of triangles from the i-th on. `side` is 1 for front faces and -1 for back
+/// faces.
 template <VertexShader S, typename D>
-void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves, Sixteen& to) const {
+void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves,
+                                   Sixteen& to) const {
     const auto vector = [&](std::size_t k, std::size_t first) {
-        return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i), load(corners[k][first + 2], i)};
+        return Vec3T<Floats>{load(corners[k][first], i), load(corners[k][first + 1], i),
+                             load(corners[k][first + 2], i)};
     };
     const std::array<Vec3T<Floats>, 3> p{vector(0, 0), vector(1, 0), vector(2, 0)};
-    // By its largest component, so that no square of it vanishes, however small the triangle.
+    // Divide by the largest component, so that squares do not underflow for tiny triangles.
     const Vec3T<Floats> across = cross(p[1] - p[0], p[2] - p[0]);
     const Floats largest = max(max(abs(across.x), abs(across.y)), abs(across.z));
     const Vec3T<Floats> ng = across * (side / max(largest, Floats(std::numeric_limits<float>::min())));
-    // A quad's diagonal, opposite to the second corner of its first half and the third of the other, is no edge.
+    // A quad's diagonal is not an edge. It is opposite to the second corner of the first half and to the third of
+    // the second.
     const auto second = lanes_from<float>(second_halves >> i);
     const bool quads = shape_->quads();
-    const Vec3T<Floats> middle = quads ? (p[0] + select(second, p[1], p[2])) * Floats(0.5f) : (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
+    const Vec3T<Floats> middle =
+        quads ? (p[0] + select(second, p[1], p[2])) * Floats(0.5f) : (p[0] + p[1] + p[2]) * Floats(1.0f / 3);
     const Floats zero(0.0f), one(1.0f), no_edge1 = quads ? xsimd::select(second, zero, one) : zero,
                  no_edge2 = quads ? xsimd::select(second, one, zero) : zero;
     std::array<std::array<Floats, kVaryings<S>>, 3> v;
@@ -234,8 +255,8 @@ void SetUps<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Floats
     store(to.ng[2], i, ng.z);
 }
 
-/// Of the triangles from the i-th on, a batch of them, once their planes and varyings are known: e0·n0 + e1·n1 + e2·n2, with
-/// Σe − e1 − e2 for e0.
+/// Computes the planes e0·n0 + e1·n1 + e2·n2, with Σe − e1 − e2 for e0, for one batch of triangles from the
+/// i-th on. It requires their planes and varyings.
 template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::size_t i, Sixteen& to) const {
     if constexpr (Sixteen::kDirections)
         for (std::size_t c = 0; c < kVaryings<S>; ++c) {
@@ -246,27 +267,31 @@ template <VertexShader S, typename D> void SetUps<S, D>::set_up_directions(std::
             const Floats by_x = coefficient(0), by_y = coefficient(1);
             store(to.directions[c][0], i, by_x);
             store(to.directions[c][1], i, by_y);
-            store(to.directions[c][2], i, fused_minus(by_x, load(to.x, i), fused_minus(by_y, load(to.y, i), coefficient(2))));
+            store(to.directions[c][2], i,
+                  fused_minus(by_x, load(to.x, i), fused_minus(by_y, load(to.y, i), coefficient(2))));
         }
 }
 
-/// A bit for each triangle, likewise, all of whose corners' normals are on the side that is seen, and no farther from ng than
-/// leaves of what is interpolated kLeastCosine: its direction errs by at most 40ε·kSteepest / kLeastCosine, 2^-8 (mostly by less
-/// than 2^-12, as steepness and leaning seldom meet).
+/// Returns one bit per triangle of the batch from the i-th on, set if the cosine between ng and each corner's
+/// normal exceeds kLeastCosine. The interpolated normal then has at least this length, so its direction has an
+/// error of at most 40ε·kSteepest / kLeastCosine, 2^-8 (mostly less than 2^-12, because steep planes and inclined
+/// normals seldom coincide).
 template <VertexShader S, typename D>
 std::uint32_t SetUps<S, D>::facing(std::size_t i, const Corners& corners, const Sixteen& of) const {
-    const Vec3T<Floats> ng = view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
+    const Vec3T<Floats> ng =
+        view_of_object_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
     const Floats of_ng = inverse_sqrt(dot(ng, ng));
     std::uint32_t all = (1u << Floats::size) - 1;
     for (const auto& corner : corners) {
-        const Vec3T<Floats> n = view_of_object_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
+        const Vec3T<Floats> n =
+            view_of_object_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
         const Floats cosine = dot(n, ng) * inverse_sqrt(dot(n, n)) * of_ng;
         all &= lane_bits(cosine > Floats(kLeastCosine));
     }
     return all << i;
 }
 
-/// Of each of three corners eight numbers: position and u, normal and v.
+/// Loads eight values for each of three corners: position and u, normal and v.
 template <VertexShader S, typename D>
 void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& corners) const {
     const PackedVertex* all = shape_->vertices.data();
@@ -274,7 +299,7 @@ void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& co
     for (std::size_t i = 0; i < kStrip; ++i) triangles[i] = triangle(ids[i]);
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kStrip; i += Quads::size)
-            for (std::size_t first = 0; first < 8; first += 4) { // number of four in the vertex
+            for (std::size_t first = 0; first < 8; first += 4) { // offset in the vertex of four floats
                 const auto [x, y, z, w] = load_columns<Quads::size>(
                     [&](std::size_t lane) { return &all[triangles[i + lane][k]].p.x + first; });
                 x.store_aligned(corners[k][first].at(i));
@@ -284,13 +309,14 @@ void SetUps<S, D>::gather_vertices(const StripOf<std::int32_t>& ids, Corners& co
             }
 }
 
-/// Returns a bit for each triangle that runs counter-clockwise in the picture. Worked out in doubles, whatever D is; scaled so
-/// that no coefficient of e1, e2 and sum is more than 1.
+/// Returns one bit per triangle that runs counter-clockwise in the image. The planes are computed in double for
+/// every D, and scaled so that no coefficient of e1, e2 and sum exceeds 1.
 template <VertexShader S, typename D>
 std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) const {
     const Mat4d& m = object_->to_pixel;
     const auto entry = [&](std::size_t r, std::size_t c) { return Doubles(m[r][c]); };
-    const Doubles left(static_cast<double>(origin_x_)), top(static_cast<double>(origin_y_)), zero(0.0), size(TileGrid::kTileSize);
+    const Doubles left(static_cast<double>(origin_x_)), top(static_cast<double>(origin_y_)), zero(0.0),
+        size(TileGrid::kTileSize);
     std::uint32_t front = 0;
     for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
         std::array<Doubles, 3> x, y, w, d;
@@ -320,10 +346,10 @@ std::uint32_t SetUps<S, D>::set_up_planes(const Corners& corners, Sixteen& to) c
             steepest = max(steepest, max(abs((*plane)[0]), abs((*plane)[1])));
             greatest = max(greatest, abs((*plane)[2]));
         }
-        // Under perspective Σ(e·depth) is the same everywhere, and its coefficients of x and y are noise.
+        // Under perspective Σ(e·depth) is constant, and its coefficients of x and y are rounding noise.
         if (view_.viewport.orthographic) move(planes.depth_sum);
-        // Σe is least where the triangle is farthest: eₖ there, of that corner, which is the determinant over w. What M is at
-        // most, counted from the tile's corner: of the plane's way to there and back.
+        // Σe is smallest at the farthest corner k, where it is eₖ = determinant / w. `most` bounds M in the tile,
+        // with the origin at the tile's corner. It includes the error of moving the plane's origin there and back.
         const Doubles farthest = max(max(w[0], w[1]), w[2]), most = fused(steepest, Doubles(4.0) * size, greatest);
         to.easy |= lane_bits(abs(planes.determinant) * Doubles(double{Sixteen::kSteepest}) >= most * farthest) << i;
         const Doubles scale = Doubles(1.0) / max(steepest, greatest);
@@ -347,7 +373,7 @@ template <VertexShader S, typename D> void SetUps<S, D>::prefetch_vertices(const
         for (const std::uint32_t corner : triangle(id)) prefetch(&all[corner]);
 }
 
-/// All the waiting for memory at once.
+/// Prefetches all vertices first, so that the cache misses overlap.
 template <VertexShader S, typename D> void SetUps<S, D>::finish() {
     if (finished_ == count_) return;
     fill_up();
@@ -357,19 +383,21 @@ template <VertexShader S, typename D> void SetUps<S, D>::finish() {
     finished_ = count_;
 }
 
-/// Of triangles of the object in use.
+/// Computes the setups of sixteen triangles of the selected object.
 template <VertexShader S, typename D> void SetUps<S, D>::set_up(const StripOf<std::int32_t>& ids, Sixteen& to) const {
     Corners corners;
     gather_vertices(ids, corners);
     to.easy = 0;
-    // Counter-clockwise in the picture, whose y points down, is the front, of an object that is not mirrored.
+    // A front face runs counter-clockwise in the image (y points down) unless the object is mirrored.
     std::uint32_t front = set_up_planes(corners, to);
     if (object_->mirrored) front = ~front;
     const std::uint32_t halves = second_halves(ids);
     std::uint32_t facing_ones = 0;
     for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), halves, to);
-        if (Sixteen::kDirections && view_of_object_->smooth && view_of_object_->even()) facing_ones |= facing(i, corners, to);
+        set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), halves,
+                        to);
+        if (Sixteen::kDirections && view_of_object_->smooth && view_of_object_->even())
+            facing_ones |= facing(i, corners, to);
     }
     to.easy &= facing_ones;
     if (to.easy != 0)

@@ -1,4 +1,4 @@
-// Where on its triangle each of sixteen samples lies, side by side: barycentrics, depth, and a shader's varyings.
+// Computes barycentrics, depth and a shader's varyings for a packet of sixteen samples with SIMD.
 #pragma once
 
 #include "raster/shader/read_strip.h"
@@ -9,39 +9,44 @@
 
 namespace duet::raster {
 
-/// Where the samples of a strip lie on the triangles, or the sphere, of the one object that they see.
+/// Holds the solution of a packet whose samples see triangles of one object, or a sphere.
 template <VertexShader S, typename D> struct SolvedStrip {
     static constexpr std::size_t kCount = kVaryings<S>;
     static constexpr bool kDerivatives = wants_derivatives<S>();
 
     const StripSamples* samples = nullptr;
-    const ObjectView* object_view = nullptr; ///< null where the triangles of one object are not all that is seen
+    const ObjectView* object_view = nullptr; ///< null if the packet does not see triangles of exactly one object
     std::array<StripOf<float>, kCount> at;                        ///< varyings
-    std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< and their derivatives by the sample's place
-    std::array<StripOf<float>, 3> ng;                             ///< VertexInput::ng
-    StripOf<float> b1, b2; ///< barycentrics of the second and third corner: of D double as a Hit has them
-    StripOf<D> depth;      ///< camera-space −z
-    std::array<StripOf<float>, 2> b1_steps, b2_steps; ///< if asked for: derivatives of b1 and b2, along the row and the column
-    /// A bit for each sample that lies in the unsnapped triangle for certain, where the solution holds as it is. (Not of directions.)
+    std::array<StripOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< screen-space derivatives of the varyings
+    std::array<StripOf<float>, 3> ng;                             ///< as VertexInput::ng
+    StripOf<float> b1, b2; ///< barycentrics of the second and third corner; with D = double as in a Hit
+    StripOf<D> depth;      ///< camera-space −z, meters
+    /// Derivatives of b1 and b2 along the row and the column, if requested.
+    std::array<StripOf<float>, 2> b1_steps, b2_steps;
+    /// A sample's bit is set if it is certainly inside the unsnapped triangle, where the solution is accurate. No
+    /// bits are set for directions.
     std::uint32_t inside = 0;
-    /// Of `at` the direction is all that is known, nothing else but the samples is, and all normals are on the side that is
-    /// seen (SetUp::easy).
+    /// Only the direction of `at` is known, nothing else but `samples` is set, and all normals are on the visible
+    /// side (SetUp::easy).
     bool directions = false;
 };
 
-/// Solves for the samples that see triangles, where they are one object's; S's vertex function is asked for what is interpolated.
-/// D says how exactly: in double, or in float, to within 2^-13 of a barycentric and of a depth, and mostly within 2^-20 (kSteepest).
+/// Solves for the samples of a packet if all see triangles of one object. S's vertex function computes the
+/// varyings. D is the precision: double, or float with errors below 2^-13, mostly below 2^-20, in barycentrics and
+/// depth (kSteepest).
 template <VertexShader S, typename D> class StripSolver {
 public:
     using Solved = SolvedStrip<S, D>;
 
-    /// Pixels are counted from the tile's corner. `steps`: find the barycentrics' derivatives, too.
+    /// `tile` is the rectangle of the tile that all packets lie in. `steps` requests the derivatives of the
+    /// barycentrics.
     StripSolver(const Triangles& triangles, const PassView& view, const PixelRect& tile, const S& shader, bool steps)
         : triangles_(triangles), view_(view), reader_(triangles), set_ups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), steps_(steps) {}
 
-    /// use(first, strips), a few at a time: those from places[first] on, solved where they see triangles of one object, are there
-    /// until use() returns. `mend`: solve otherwise where the solution does not hold as it is.
+    /// Calls use(first, strips) for a few packets at a time. `strips` holds the solutions of places[first] and
+    /// those that follow, and is valid until use() returns. `mend` recomputes the samples with inaccurate solutions
+    /// one by one.
     template <typename Use> void solve(std::span<const StripPlace> places, bool mend, const Use& use);
     const Run& run_of(std::uint32_t id) const { return reader_.run_of(id); }
 
@@ -53,17 +58,19 @@ private:
     using Ds = xsimd::batch<D>;
     static constexpr std::size_t kParts = Floats::size / Ds::size;
 
-    /// A plane's value at (x, y) from its origin is found to within 3ε·M, where ε is half a unit in the last place and
-    /// M = steepest·(|x| + |y|) + greatest: each coefficient is rounded once, and each of the two fused steps. What is left of
-    /// the sum for the third barycentric adds up three of these errors, and two roundings of less than 4ε·M: 17ε·M in all.
+    /// The value of a plane at (x, y) relative to its origin has an error of at most 3ε·M, where ε is half a unit
+    /// in the last place and M = steepest·(|x| + |y|) + greatest: each coefficient is rounded once, and so are both
+    /// fused steps. The third barycentric, Σe minus the other two, accumulates three of these errors and two
+    /// roundings of less than 4ε·M: 17ε·M in all.
     static constexpr D kError = 16 * std::numeric_limits<D>::epsilon(); // 32ε
-    /// Barycentrics are e/Σe: to within 6ε·M/Σe, and two roundings. So much may M/Σe be.
+    /// The upper bound of M/Σe limits the error of the barycentrics e/Σe, which is 6ε·M/Σe and two roundings.
     static constexpr D kSteepest = Sixteen::kSteepest;
 
     void set_grid(SampleOffset offset);
     std::size_t read(std::span<const StripPlace> places);
     void solve_one(const StripPlace& place, const ReadStrip& samples, Solved& strip, bool mend);
-    template <typename Positions> void solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const;
+    template <typename Positions>
+    void solve_at(const ReadStrip& samples, const Positions& positions, Solved& strip) const;
     template <typename Own, typename Positions>
     void solve_lanes(const Own& own, const Positions& positions, Solved& strip) const;
     bool may_solve_directions(const StripPlace& place, const ReadStrip& samples) const;
@@ -79,20 +86,22 @@ private:
     int origin_x_, origin_y_;
     bool steps_;
     SampleOffset grid_offset_{0, 0};
-    StripOf<D> grid_xs_ = kColumns<D>, grid_ys_ = kRows<D>; ///< of samples at that offset, from their strip's first pixel
-    static constexpr std::size_t kMost = 64, ///< strips whose triangles are set up side by side
-        kTogether = 8; ///< solved: enough for one's work to overlap with the next's, few enough for the first cache
+    /// Samples at that offset, relative to their packet's first pixel.
+    StripOf<D> grid_xs_ = kColumns<D>, grid_ys_ = kRows<D>;
+    /// kMost packets have their triangles set up together. kTogether packets are solved together: enough for their work
+    /// to overlap, few enough to fit into the L1 cache.
+    static constexpr std::size_t kMost = 64, kTogether = 8;
     std::array<ReadStrip, kMost> read_;
     std::array<Solved, kTogether> solved_;
 };
 
-/// What has nothing to interpolate: for who wants barycentrics and depths alone.
+/// This vertex shader is empty, for users that need only barycentrics and depths.
 struct NoVaryings {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {};
     template <typename T> Varyings<T> vertex(const VertexInput<T>&) const { return {}; }
 };
-/// What interpolates the vertices' normals alone, to be made unit.
+/// Interpolates only the vertex normals, which the fragment function normalizes.
 struct NormalVaryings {
     static constexpr bool kTextureCoordinates = false, kDirections = true;
     template <typename T> struct Varyings {
@@ -107,17 +116,19 @@ template <typename Strips> Vec3T<Floats> vector(const Strips& v, std::size_t fir
     return {load(v[first], i), load(v[first + 1], i), load(v[first + 2], i)};
 }
 
-/// The numbers of a tile's pixels as D: looked up faster than converted, which all that a strip waits for would wait for.
+/// The table holds the pixel indices of a tile, converted to D. A table lookup is faster than the conversion, which
+/// would be on the critical path.
 template <typename D> inline const std::array<D, TileGrid::kTileSize> kPixels = [] {
     std::array<D, TileGrid::kTileSize> numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<D>(i);
     return numbers;
 }();
 
-/// Where samples lie, from the tile's corner: on a grid, or each at its own place. Exact, in floats, too.
+/// Computes the positions of samples relative to the tile's corner: on a regular grid (OnGrid) or one by one
+/// (Scattered). They are exact, even as floats.
 template <typename D> struct OnGrid {
-    std::size_t column, row; ///< the first pixel's
-    const StripOf<D>&xs, &ys; ///< the samples, from its corner
+    std::size_t column, row; ///< of the first pixel
+    const StripOf<D>&xs, &ys; ///< samples relative to the first pixel
     xsimd::batch<D> x(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[column]) + load(xs, i); }
     xsimd::batch<D> y(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[row]) + load(ys, i); }
 };
@@ -132,8 +143,8 @@ inline Floats joined(const std::array<Doubles, 2>& parts) { return narrowed(part
 
 } // namespace strips
 
-/// Barycentrics are bᵢ = eᵢ / Σe, depth is Σ(e·depth) / Σe: see Interpolation. The derivative of such a quotient by x is
-/// (eᵢ' − bᵢ·(Σe)') / Σe.
+/// The barycentrics are bᵢ = eᵢ / Σe, and the depth is Σ(e·depth) / Σe (see Interpolation). The derivative of
+/// such a quotient by x is (eᵢ' − bᵢ·(Σe)') / Σe.
 template <VertexShader S, typename D>
 template <typename Own, typename Positions>
 void StripSolver<S, D>::solve_lanes(const Own& own, const Positions& positions, Solved& strip) const {
@@ -155,13 +166,17 @@ void StripSolver<S, D>::solve_lanes(const Own& own, const Positions& positions, 
             };
             const Ds x = positions.x(k) - number(&Sixteen::x), y = positions.y(k) - number(&Sixteen::y);
             const auto value = [&](const std::array<Ds, 3>& p) { return fused(p[0], x, fused(p[1], y, p[2])); };
-            const std::array<Ds, 3> plane1 = plane(&Sixteen::e1), plane2 = plane(&Sixteen::e2), of_sum = plane(&Sixteen::sum);
+            const std::array<Ds, 3> plane1 = plane(&Sixteen::e1), plane2 = plane(&Sixteen::e2),
+                                    of_sum = plane(&Sixteen::sum);
             const Ds e1 = value(plane1), e2 = value(plane2), sum = value(of_sum), inverse = Ds(D(1)) / sum;
-            const Ds size = fused(number(&Sixteen::steepest), abs(x) + abs(y), number(&Sixteen::greatest)), error = size * Ds(kError);
-            inside |= lane_bits(e1 >= error && e2 >= error && sum - e1 - e2 >= error && sum * Ds(kSteepest) >= size) << k;
+            const Ds size = fused(number(&Sixteen::steepest), abs(x) + abs(y), number(&Sixteen::greatest)),
+                     error = size * Ds(kError);
+            inside |= lane_bits(e1 >= error && e2 >= error && sum - e1 - e2 >= error && sum * Ds(kSteepest) >= size)
+                      << k;
             first_b[part] = e1 * inverse;
             second_b[part] = e2 * inverse;
-            const Ds depth_sum = view_.viewport.orthographic ? value(plane(&Sixteen::depth_sum)) : coefficient(&Sixteen::depth_sum, 2);
+            const Ds depth_sum =
+                view_.viewport.orthographic ? value(plane(&Sixteen::depth_sum)) : coefficient(&Sixteen::depth_sum, 2);
             store(strip.depth, k, depth_sum * inverse);
             if (!kDerivatives && !steps_) continue;
             for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -180,7 +195,7 @@ void StripSolver<S, D>::solve_lanes(const Own& own, const Positions& positions, 
     strip.inside = inside;
 }
 
-/// Of the samples from the i-th on, as many as there are lanes, by their barycentrics.
+/// Interpolates the varyings of one batch of samples from the i-th on by their barycentrics.
 template <VertexShader S, typename D>
 template <typename Own>
 void StripSolver<S, D>::interpolate_varyings(const Own& own, std::size_t i, Solved& strip) {
@@ -188,7 +203,8 @@ void StripSolver<S, D>::interpolate_varyings(const Own& own, std::size_t i, Solv
         return own.template get<float>(i, [&](const Sixteen& s) -> const StripOf<float>& { return (s.*which)[c]; });
     };
     for (std::size_t axis = 0; axis < 3; ++axis)
-        store(strip.ng[axis], i, own.template get<float>(i, [&](const Sixteen& s) -> const StripOf<float>& { return s.ng[axis]; }));
+        store(strip.ng[axis], i,
+              own.template get<float>(i, [&](const Sixteen& s) -> const StripOf<float>& { return s.ng[axis]; }));
     const Floats u = load(strip.b1, i), v = load(strip.b2, i);
     for (std::size_t c = 0; c < kCount; ++c) {
         const Floats along_u = number(&Sixteen::n1, c), along_v = number(&Sixteen::n2, c);
@@ -200,7 +216,7 @@ void StripSolver<S, D>::interpolate_varyings(const Own& own, std::size_t i, Solv
     }
 }
 
-/// Varyings times Σe are linear in the picture, which leaves their direction as it is.
+/// Computes the varyings times Σe, which are linear in the image. The factor does not change their direction.
 template <VertexShader S, typename D>
 template <typename Own, typename Positions>
 void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positions, Solved& strip) {
@@ -209,14 +225,16 @@ void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positi
             const Floats x = positions.x(i), y = positions.y(i);
             for (std::size_t c = 0; c < kCount; ++c) {
                 const auto coefficient = [&](std::size_t k) {
-                    return own.template get<float>(i, [c, k](const Sixteen& s) -> const StripOf<float>& { return s.directions[c][k]; });
+                    return own.template get<float>(
+                        i, [c, k](const Sixteen& s) -> const StripOf<float>& { return s.directions[c][k]; });
                 };
                 store(strip.at[c], i, fused(coefficient(0), x, fused(coefficient(1), y, coefficient(2))));
             }
         }
 }
 
-/// Whether that is all there is to it: the samples lie where they seem to, and nothing of them is looked up.
+/// Returns true if directions suffice: all samples are certainly inside their triangles, and no attribute depends
+/// on the position on the triangle.
 template <VertexShader S, typename D>
 bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
     return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && samples.all_easy() &&
@@ -261,7 +279,8 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
     strip.directions = may_solve_directions(place, samples);
     if (place.offsets == nullptr) {
         if (place.offset != grid_offset_) set_grid(place.offset);
-        const auto column = static_cast<std::size_t>(place.x - origin_x_), row = static_cast<std::size_t>(place.y - origin_y_);
+        const auto column = static_cast<std::size_t>(place.x - origin_x_),
+                   row = static_cast<std::size_t>(place.y - origin_y_);
         solve_at(samples, strips::OnGrid<D>{column, row, grid_xs_, grid_ys_}, strip);
     } else {
         strips::Scattered<D> positions;
@@ -277,7 +296,7 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
     if (mend) mend_strip(place, samples, strip);
 }
 
-/// The strips that follow have their samples there in their pixels.
+/// Sets the samples' offset in their pixels for the following packets.
 template <VertexShader S, typename D> void StripSolver<S, D>::set_grid(SampleOffset offset) {
     grid_offset_ = offset;
     const Vec2d first = offset.position(0, 0);
@@ -287,7 +306,8 @@ template <VertexShader S, typename D> void StripSolver<S, D>::set_grid(SampleOff
     }
 }
 
-/// Reads as many as there is room for, and sets up what they see, side by side across strips. Returns how many.
+/// Reads as many packets as there is room for, and sets up their triangles together with SIMD. Returns the number
+/// of packets.
 template <VertexShader S, typename D> std::size_t StripSolver<S, D>::read(std::span<const StripPlace> places) {
     if (!set_ups_.has_room()) set_ups_.forget();
     std::size_t count = 0;

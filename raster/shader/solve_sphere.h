@@ -1,4 +1,4 @@
-// A shader's varyings where samples see a sphere, side by side.
+// Computes a shader's varyings for samples on a sphere with SIMD.
 #pragma once
 
 #include "raster/shader/solve.h"
@@ -8,10 +8,11 @@
 
 namespace duet::raster {
 
-/// A sphere has no corners: the vertex function is asked at each sample, and for derivatives at its neighbours on the tangent
-/// plane, as in hit_corners(). Barycentrics there are none.
+/// A sphere has no corners. The vertex function is evaluated at each sample, and for derivatives at its neighbors
+/// on the tangent plane, as in hit_corners(). Barycentrics are not set.
 template <VertexShader S>
-void solve_sphere(const SphereStrip& at, const Sphere& sphere, const S& shader, const ObjectView& object, SolvedStrip<S, float>& strip) {
+void solve_sphere(const SphereStrip& at, const Sphere& sphere, const S& shader, const ObjectView& object,
+                  SolvedStrip<S, float>& strip) {
     strip.object_view = &object;
     strip.directions = false;
     strip.depth = at.depth;

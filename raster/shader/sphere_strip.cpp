@@ -7,26 +7,32 @@ namespace {
 
 using Vector = Vec3T<Doubles>;
 
-/// Camera rays as seen from a sphere's centre. A step's camera-space −z is 1, so that what is found along them are depths.
+/// Represents camera rays relative to a sphere's center. The camera-space −z of a direction is 1, so ray parameters
+/// are depths.
 struct CameraLines {
-    Vec3d origin, origin_dx, origin_dy, direction, direction_dx, direction_dy; ///< as Pinhole's
+    Vec3d origin, origin_dx, origin_dy, direction, direction_dx, direction_dy; ///< as in Pinhole
 
     CameraLines(const Pinhole& pinhole, const DrawSphere& sphere)
-        : origin(pinhole.origin), origin_dx(pinhole.origin_dx), origin_dy(pinhole.origin_dy), direction(pinhole.direction),
-          direction_dx(pinhole.direction_dx), direction_dy(pinhole.direction_dy) {
+        : origin(pinhole.origin), origin_dx(pinhole.origin_dx), origin_dy(pinhole.origin_dy),
+          direction(pinhole.direction), direction_dx(pinhole.direction_dx), direction_dy(pinhole.direction_dy) {
         if (!sphere.identity) {
             const Mat4d inverse(sphere.to_object);
             origin = transform_point_back(Mat4d(sphere.to_world), inverse, origin);
-            for (Vec3d* v : {&origin_dx, &origin_dy, &direction, &direction_dx, &direction_dy}) *v = transform_vector(inverse, *v);
+            for (Vec3d* v : {&origin_dx, &origin_dy, &direction, &direction_dx, &direction_dy})
+                *v = transform_vector(inverse, *v);
         }
         origin = origin - Vec3d(sphere.sphere.center);
     }
     static Vector linear(Vec3d start, Vec3d dx, Vec3d dy, const Doubles& x, const Doubles& y) {
-        const auto along = [&](std::size_t axis) { return Doubles(start[axis]) + Doubles(dx[axis]) * x + Doubles(dy[axis]) * y; };
+        const auto along = [&](std::size_t axis) {
+            return Doubles(start[axis]) + Doubles(dx[axis]) * x + Doubles(dy[axis]) * y;
+        };
         return {along(0), along(1), along(2)};
     }
     Vector origins(const Doubles& x, const Doubles& y) const { return linear(origin, origin_dx, origin_dy, x, y); }
-    Vector directions(const Doubles& x, const Doubles& y) const { return linear(direction, direction_dx, direction_dy, x, y); }
+    Vector directions(const Doubles& x, const Doubles& y) const {
+        return linear(direction, direction_dx, direction_dy, x, y);
+    }
 };
 
 Vector normalized(const Vector& v) { return v * (Doubles(1.0) / xsimd::sqrt(dot(v, v))); }
@@ -50,9 +56,10 @@ SphereStrip::SphereStrip(const PassView& view, const StripPlace& place, const Dr
         const Doubles x = load(xs, i), y = load(ys, i);
         const Vector o = lines.origins(x, y), d = lines.directions(x, y);
         SphereTest<Doubles> test(o * Doubles(-1.0), SphereLine<Doubles>(d), Doubles(radius));
-        test.discriminant = max(test.discriminant, zero); // a line that misses by a rounding: where it passes nearest
+        test.discriminant = max(test.discriminant, zero); // a ray that misses by rounding hits the closest point
         const auto roots = test.roots();
-        const Doubles t = sphere.far_side ? roots.far : xsimd::select(roots.near > Doubles(view.pinhole.near), roots.near, roots.far);
+        const Doubles t =
+            sphere.far_side ? roots.far : xsimd::select(roots.near > Doubles(view.pinhole.near), roots.near, roots.far);
         const Vector here = normalized(o + d * t);
         store(n, i, here);
         store_rounded(side, i, xsimd::select(dot(here, d) > zero, Doubles(-1.0), one));

@@ -1,4 +1,4 @@
-// Where on its sphere each of sixteen samples lies, side by side.
+// Computes the positions of sixteen samples on a sphere with SIMD.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -7,15 +7,17 @@
 
 namespace duet::raster {
 
-/// As find_hit() and surface_point() have it for one sample. In the sphere's own space; samples that see something else have any.
+/// Computes the same results as find_hit() and surface_point() for one sample, in object space. Values of samples
+/// that see something else are unspecified.
 struct SphereStrip {
     using Vectors = std::array<StripOf<float>, 3>;
 
-    Vectors n; ///< of the sphere, unit, where each sample sees it
-    /// If asked for: below the points where the rays through the next pixels, to the right and down, meet its tangent plane.
+    Vectors n; ///< unit normal of the sphere at each sample
+    /// These are the normals below the points where the rays through the next pixels to the right and down meet the
+    /// tangent plane. They are set only if requested.
     Vectors n_right, n_down;
-    StripOf<float> side;  ///< 1 where it is seen from outside, -1 from inside
-    StripOf<float> depth; ///< camera-space −z
+    StripOf<float> side;  ///< 1 if seen from outside, -1 from inside
+    StripOf<float> depth; ///< camera-space −z, meters
 
     SphereStrip(const PassView& view, const StripPlace& place, const DrawSphere& sphere, bool steps);
 };

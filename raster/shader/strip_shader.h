@@ -1,4 +1,4 @@
-// What shades a picture, whatever it is: strips of samples in, colours out.
+// Defines the interface of shading, which takes packets of samples and returns colors.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -12,12 +12,13 @@
 
 namespace duet::raster {
 
-/// Shades the strips of one tile, in any order.
+/// Shades the packets of one tile, in any order.
 class StripShader {
 public:
     virtual ~StripShader() = default;
-    /// Of each strip the colours of those samples that see something, and a bit for each of them; the others have any.
-    /// Any number at a time: several are shaded faster than one by one.
+    /// Shades packets. colors[k] receives the colors of the samples of places[k], and seen[k] one bit per sample
+    /// with a visible surface; the colors of the others are unspecified. Shading many packets in one call is faster
+    /// than one by one.
     virtual void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) = 0;
     std::uint32_t shade(const StripPlace& place, StripColors& colors) {
         std::uint32_t seen = 0;
@@ -26,13 +27,13 @@ public:
     }
 };
 
-/// A shader, ready for any tile.
+/// Holds a shader that can shade any tile.
 class Program {
 public:
     virtual ~Program() = default;
-    virtual std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry, const PassView& view,
-                                                  const PixelRect& tile) const = 0;
-    /// One hit of the ray through `pixel`.
+    virtual std::unique_ptr<StripShader> for_tile(const PreparedData& data, const Geometry& geometry,
+                                                  const PassView& view, const PixelRect& tile) const = 0;
+    /// Returns the color of one hit of the ray through `pixel`.
     virtual Rgb shade_hit(const PreparedData& data, const PassView& view, const Hit& hit, Vec2d pixel) const = 0;
 };
 

@@ -7,22 +7,22 @@
 namespace duet::raster {
 namespace {
 
-/// Texture coordinates over a triangle, of one sample or a batch: as surface_point() has them, in float, as the barycentrics
-/// are that they follow from.
+/// Interpolates texture coordinates over a triangle, for one sample or a batch. They match surface_point(), but in
+/// float, like the barycentrics.
 template <typename T> struct TriangleUv {
     Vec2T<T> first{T(0), T(0)}, along_u{T(1), T(0)}, along_v{T(0), T(1)};
 
     Vec2T<T> at(const T& u, const T& v) const {
         return {fused(along_u.x, u, fused(along_v.x, v, first.x)), fused(along_u.y, u, fused(along_v.y, v, first.y))};
     }
-    /// How far they go where the barycentrics go so far.
+    /// Returns the change of the texture coordinates for a change of the barycentrics.
     Vec2T<T> step(const T& du, const T& dv) const {
         return {fused(along_u.x, du, T(along_v.x * dv)), fused(along_u.y, du, T(along_v.y * dv))};
     }
 };
 
 struct UvTriangle : TriangleUv<float> {
-    bool has_area = true; ///< in the texture
+    bool has_area = true; ///< in texture space
 
     UvTriangle(const PackedShape& shape, std::size_t triangle) {
         if (!shape.has_uvs) return;
@@ -36,7 +36,8 @@ struct UvTriangle : TriangleUv<float> {
     }
 };
 
-/// Those of the triangles of samples side by side, and a bit for each that has an area in the texture.
+/// Holds the texture coordinates of one triangle per lane, and one bit per lane whose triangle has an area in texture
+/// space.
 struct UvTriangles : TriangleUv<Floats> {
     std::uint32_t with_area = 0;
 
@@ -52,7 +53,7 @@ struct UvTriangles : TriangleUv<Floats> {
 
 } // namespace
 
-/// As PixelFootprint's.
+/// Returns the scale of footprints for the sampling rate, as PixelFootprint does.
 float StripSurface::step_scale() const { return static_cast<float>(1 / std::sqrt(samples_per_pixel(*place_, view_))); }
 
 Vec3 StripSurface::bent_normal(std::size_t sample) const {
@@ -69,8 +70,8 @@ Rgb StripSurface::emitted(std::size_t sample) const {
                         samples_per_pixel(*place_, view_));
 }
 
-/// As surface_point() and set_footprint() have it, but for what base colours don't depend on. (The steps of texture
-/// coordinates follow from those of the barycentrics, which have been found for all samples side by side.)
+/// Does the same as surface_point() and set_footprint(), without what base colors don't depend on. (The derivatives
+/// of the texture coordinates follow from those of the barycentrics, which are already computed with SIMD.)
 Rgb StripSurface::base_color(std::size_t sample) const {
     if (!(samples_->seen >> sample & 1)) return {};
     if (samples_->shape == nullptr) {
@@ -101,18 +102,20 @@ Rgb StripSurface::base_color(std::size_t sample) const {
     return duet::base_color(data_.scene.materials[point.material], data_.scene.textures, point);
 }
 
-/// The same side by side, of an object that one texture colours.
+/// Returns the base colors of one batch of samples, with SIMD if a single texture determines the object's color.
 RgbT<Floats> StripSurface::base_colors(std::size_t first) const {
     if (samples_->shape == nullptr) return ColorSource::base_colors(first);
     const std::optional<RgbSlot>& slot = data_.objects[samples_->object->object].one_texture;
     if (!slot) return ColorSource::base_colors(first);
-    const auto& texture = std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
-    const RgbT<Floats> c = spread<Floats>(slot->value) * data_.texels[texture.image].look_up(texture, texture_places(first));
-    const Floats zero(0.0f), one(1.0f); // as evaluate_reflectance()
+    const auto& texture =
+        std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
+    const RgbT<Floats> c =
+        spread<Floats>(slot->value) * data_.texels[texture.image].look_up(texture, texture_places(first));
+    const Floats zero(0.0f), one(1.0f); // as in evaluate_reflectance()
     return {clamp(c.r, zero, one), clamp(c.g, zero, one), clamp(c.b, zero, one)};
 }
 
-/// Triangle by triangle: samples side by side mostly see the same.
+/// Computes the coordinates triangle by triangle, because adjacent samples mostly see the same triangle.
 TexturePlaces StripSurface::texture_places(std::size_t first) const {
     constexpr std::uint32_t kAll = (1u << Floats::size) - 1;
     TexturePlaces places;
@@ -128,7 +131,8 @@ TexturePlaces StripSurface::texture_places(std::size_t first) const {
     const auto has_area = lanes_from<float>(uv.with_area);
     const Floats zero(0.0f), scale(step_scale());
     const auto step = [&](std::size_t axis) {
-        const Vec2T<Floats> whole = uv.step(load((*at_.b1_steps)[axis], first), load((*at_.b2_steps)[axis], first)) * scale;
+        const Vec2T<Floats> whole =
+            uv.step(load((*at_.b1_steps)[axis], first), load((*at_.b2_steps)[axis], first)) * scale;
         return Vec2T<Floats>(xsimd::select(has_area, whole.x, zero), xsimd::select(has_area, whole.y, zero));
     };
     places.duv_dx = step(0);

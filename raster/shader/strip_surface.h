@@ -1,4 +1,5 @@
-// What a strip's fragments ask of textures and maps: base colours, side by side where one texture says them, and normals.
+// Evaluates base colors and mapped normals of a packet's fragments. Base colors of objects with a single texture
+// use SIMD.
 #pragma once
 
 #include "raster/shader/shader.h"
@@ -7,19 +8,21 @@
 
 namespace duet::raster {
 
-/// Where a strip's samples lie on their triangles: SolvedStrip's.
+/// Refers to the barycentrics of a packet's samples, as in SolvedStrip.
 struct StripBarycentrics {
     const StripOf<float>*b1 = nullptr, *b2 = nullptr;
     const std::array<StripOf<float>, 2>*b1_steps = nullptr, *b2_steps = nullptr;
 };
 
-/// The surface that the samples of a strip see: triangles of one object, or a sphere. Goes from strip to strip.
+/// Represents the surface visible in a packet: triangles of one object, or a sphere. One instance is reused for
+/// successive packets.
 class StripSurface final : public ColorSource {
 public:
     StripSurface(const PreparedData& data, const Geometry& geometry, const PassView& view)
         : data_(data), geometry_(geometry), view_(view) {}
 
-    /// All three must outlive the questions. Of a sphere barycentrics may be any.
+    /// Selects a packet. All three arguments must outlive the following calls. The barycentrics are not used for a
+    /// sphere.
     void move_to(const StripPlace& place, const StripSamples& samples, const StripBarycentrics& at) {
         place_ = &place;
         samples_ = &samples;

@@ -7,11 +7,12 @@
 namespace duet::raster {
 
 Texels::Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller) {
-    if (smaller.size() >= kStrip) throw Error(message(smaller.size() + 1, " sizes of an image: expected at most ", kStrip));
+    if (smaller.size() >= kStrip)
+        throw Error(message(smaller.size() + 1, " sizes of an image: expected at most ", kStrip));
     const auto add = [&](const ImageRgb& one) {
         const auto level = static_cast<std::size_t>(levels_++);
         numbers_[level] = &one.pixels().data()->r;
-        widths_[level] = static_cast<float>(one.width()); // whole numbers below 2^24
+        widths_[level] = static_cast<float>(one.width()); // integers below 2^24
         heights_[level] = static_cast<float>(one.height());
     };
     add(image);
@@ -25,18 +26,18 @@ std::vector<Texels> texels_of(const TextureSet& textures) {
     return result;
 }
 
-/// The four texels around each lane's place. Which they are is worked out side by side; but as lanes' texels lie far apart,
-/// each is loaded for itself, its three channels into one register.
+/// Loads the 2 × 2 texels around each lane's position. Their addresses are computed with SIMD. Because the texels of
+/// different lanes are far apart, each is loaded separately, with its three channels in one register.
 class Texels::Quartets {
 public:
-    /// In one of the sizes each: 0 is the largest, what lies beyond the last is that.
+    /// Selects a mipmap level per lane. Level 0 is the largest; levels beyond the last are clamped.
     Quartets(const Texels& of, const Ints& level) {
         const Ints known = min(level, Ints(of.levels_ - 1));
         width_ = raster::look_up(of.widths_, known);
         height_ = raster::look_up(of.heights_, known);
         raster::look_up(of.numbers_, known, numbers_);
     }
-    /// Places in [0, 1). (v rises from the bottom, rows are stored from the top.)
+    /// Sets the positions, in [0, 1). (v points up, but rows are stored from the top.)
     void move_to(const Vec2T<Floats>& place) {
         const TexelPair<Floats> x(place.x, width_), y(place.y, height_);
         const Ints left = truncated(x.first) * Ints(3), right = truncated(x.second) * Ints(3);
@@ -51,31 +52,37 @@ public:
     }
     Quads color(std::size_t lane) const {
         const auto texel = [&](const Places& places) { return load_three(at(lane, places)); };
-        return bilinear(texel(lower_left_), texel(lower_right_), texel(upper_left_), texel(upper_right_), Quads(weight_x_[lane]),
-                        Quads(weight_y_[lane]));
+        return bilinear(texel(lower_left_), texel(lower_right_), texel(upper_left_), texel(upper_right_),
+                        Quads(weight_x_[lane]), Quads(weight_y_[lane]));
     }
 
 private:
     using Places = std::array<std::int32_t, Floats::size>;
-    const float* at(std::size_t lane, const Places& places) const { return numbers_[lane] + static_cast<std::uint32_t>(places[lane]); }
+    const float* at(std::size_t lane, const Places& places) const {
+        return numbers_[lane] + static_cast<std::uint32_t>(places[lane]);
+    }
 
     Floats width_, height_;
-    alignas(64) Places lower_left_, lower_right_, upper_left_, upper_right_; ///< among the numbers, below 2^32
+    alignas(64) Places lower_left_, lower_right_, upper_left_, upper_right_; ///< offsets in floats, below 2^32
     alignas(64) std::array<float, Floats::size> weight_x_, weight_y_;
     alignas(64) std::array<const float*, Floats::size> numbers_;
 };
 
 RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& places) const {
-    const auto scaled = [](const Vec2T<Floats>& v, float x, float y) { return Vec2T<Floats>(v.x * Floats(x), v.y * Floats(y)); };
+    const auto scaled = [](const Vec2T<Floats>& v, float x, float y) {
+        return Vec2T<Floats>(v.x * Floats(x), v.y * Floats(y));
+    };
     const auto in_period = [](const Vec2T<Floats>& v) { return Vec2T<Floats>(fraction(v.x), fraction(v.y)); };
     const float width = widths_[0], height = heights_[0], scale_x = texture.scale.x, scale_y = texture.scale.y;
     const auto in_texels = [&](const Vec2T<Floats>& duv) { return scaled(duv, scale_x * width, scale_y * height); };
-    const ProbeLineT<Floats> probes = probe_line(in_texels(places.duv_dx), in_texels(places.duv_dy), max_probes(texture.filter));
-    const Vec2T<Floats> middle = in_period(scaled(places.uv, scale_x, scale_y)), step = scaled(probes.step, 1 / width, 1 / height);
+    const ProbeLineT<Floats> probes =
+        probe_line(in_texels(places.duv_dx), in_texels(places.duv_dy), max_probes(texture.filter));
+    const Vec2T<Floats> middle = in_period(scaled(places.uv, scale_x, scale_y)),
+                        step = scaled(probes.step, 1 / width, 1 / height);
 
     const Ints level = truncated(probes.level);
     Quartets fine(*this, level), coarse(*this, level + Ints(1));
-    const std::uint32_t between = lane_bits(probes.blend > Floats(0.0f)) & places.lanes; // two sizes
+    const std::uint32_t between = lane_bits(probes.blend > Floats(0.0f)) & places.lanes; // lanes that blend two levels
     const Lanes<Floats> blend(probes.blend);
 
     std::array<Quads, Floats::size> sums;
@@ -83,7 +90,8 @@ RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& p
     for (float i = 0;; ++i) {
         std::uint32_t left = lane_bits(Floats(i) < probes.count) & places.lanes;
         if (left == 0) break;
-        const Vec2T<Floats> place = in_period(middle + step * Floats(Floats(i) - Floats(0.5f) * (probes.count - Floats(1.0f))));
+        const Vec2T<Floats> place =
+            in_period(middle + step * Floats(Floats(i) - Floats(0.5f) * (probes.count - Floats(1.0f))));
         fine.move_to(place);
         if ((left & between) != 0) coarse.move_to(place);
         for (; left != 0; left &= left - 1) {
@@ -93,7 +101,8 @@ RgbT<Floats> Texels::look_up(const ImageTexture& texture, const TexturePlaces& p
             sums[lane] = sums[lane] + color;
         }
     }
-    const auto columns = load_columns<Floats::size>([&](std::size_t lane) { return reinterpret_cast<const float*>(&sums[lane]); });
+    const auto columns =
+        load_columns<Floats::size>([&](std::size_t lane) { return reinterpret_cast<const float*>(&sums[lane]); });
     return RgbT<Floats>(columns[0], columns[1], columns[2]) * (Floats(1.0f) / probes.count);
 }
 

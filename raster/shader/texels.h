@@ -1,4 +1,4 @@
-// Pictures as strips of samples look them up: many places side by side.
+// Samples image textures for one batch of texture coordinates with SIMD.
 #pragma once
 
 #include "common/texture/texture.h"
@@ -9,34 +9,35 @@
 
 namespace duet::raster {
 
-/// Where as many samples as a batch of floats has lanes look a texture up, and what each stands for: SurfacePoint's uv, and
-/// duv_dx and duv_dy.
+/// Stores the texture coordinates and footprints of one batch of samples: SurfacePoint's uv, duv_dx and duv_dy.
 struct TexturePlaces {
     Vec2T<Floats> uv, duv_dx, duv_dy;
-    std::uint32_t lanes = 0; ///< a bit for each that looks
+    std::uint32_t lanes = 0; ///< one bit per lane that is sampled
 };
 
-/// Where an image and its smaller versions lie.
+/// Refers to an image and its mipmap levels.
 class Texels {
 public:
-    /// Of a picture that is not filtered there is nothing.
+    /// Creates the empty object of an unfiltered image.
     Texels() = default;
-    /// `smaller`: not empty; up to 16 sizes in all, as any image that is read has (kMaxImageSide). Both stay where they are.
+    /// References an image and its mipmap levels, which must outlive this object. `smaller` must not be empty.
+    /// There may be up to 16 levels in all, which every image within kMaxImageSide satisfies.
     Texels(const ImageRgb& image, const std::vector<ImageRgb>& smaller);
     bool empty() const { return levels_ == 0; }
 
-    /// What evaluate_texture() says at each place, of a texture of this image that uses_footprint(); 0 in lanes that don't look.
+    /// Returns the same as evaluate_texture() for each lane, for a texture of this image that uses_footprint(); 0
+    /// in inactive lanes.
     RgbT<Floats> look_up(const ImageTexture& texture, const TexturePlaces& places) const;
 
 private:
     class Quartets;
 
     std::int32_t levels_ = 0;
-    std::array<const float*, kStrip> numbers_{}; ///< of each, three a texel
+    std::array<const float*, kStrip> numbers_{}; ///< per level, three floats per texel
     StripOf<float> widths_, heights_;
 };
 
-/// Of those images of a scene that a texture filters.
+/// Returns the Texels of all images of a scene. They are empty for images that no texture filters.
 std::vector<Texels> texels_of(const TextureSet& textures);
 
 } // namespace duet::raster

@@ -1,4 +1,4 @@
-// Base colours as they are, under no light.
+// Shows base colors without lighting.
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 

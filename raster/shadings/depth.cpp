@@ -1,4 +1,4 @@
-// How near surfaces are: white at the camera, half as bright as far away as what it looks at, black at infinity.
+// Shows depth: white at the camera, half as bright at the distance of the look-at point, black at infinity.
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
@@ -6,9 +6,11 @@ namespace duet::raster {
 namespace {
 
 struct DepthShader : NoVaryings {
-    float half = 1; ///< that distance
+    float half = 1; ///< distance of half brightness, meters
 
-    template <typename T, typename F> RgbT<T> fragment(const F& f) const { return RgbT<T>(T(half) / (T(half) + f.depth)); }
+    template <typename T, typename F> RgbT<T> fragment(const F& f) const {
+        return RgbT<T>(T(half) / (T(half) + f.depth));
+    }
 };
 
 } // namespace

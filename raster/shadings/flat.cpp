@@ -1,6 +1,6 @@
-// Flat shading: light is worked out once a triangle, at its centroid, for its geometric normal (Bouknight 1970, «A
-// Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations»). A sphere has no
-// triangles: each of its samples is a facet of its own. The base colour is each sample's own.
+// Implements flat shading: light is computed once per triangle, at its centroid with its geometric normal (Bouknight
+// 1970, "A Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations"). On a sphere,
+// which has no triangles, each sample is its own facet. The base color is evaluated per sample.
 #include "raster/shader/phong.h"
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"

@@ -1,5 +1,5 @@
-// Gouraud shading: light is worked out at vertices and interpolated; the base colour is each sample's own (Gouraud 1971,
-// «Continuous Shading of Curved Surfaces»).
+// Implements Gouraud shading: light is computed at the vertices and interpolated. The base color is evaluated per
+// sample (Gouraud 1971, "Continuous Shading of Curved Surfaces").
 #include "raster/shader/phong.h"
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"

@@ -1,4 +1,4 @@
-// Shading normals as colours: (n + 1)/2, see direction_color.
+// Shows shading normals as colors: (n + 1)/2, see direction_color.
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 

@@ -11,7 +11,7 @@ struct Known {
     Shading shading;
     std::unique_ptr<Program> (*program)(const Camera&);
 };
-// Of those to which the camera is all one.
+// Adapts a program that does not depend on the camera.
 template <std::unique_ptr<Program> (*make)()> std::unique_ptr<Program> any(const Camera&) { return make(); }
 
 constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
@@ -20,7 +20,8 @@ constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
                           Known{"flat", Shading::kFlat, any<flat_program>},
                           Known{"toon", Shading::kToon, any<toon_program>},
                           Known{"wireframe", Shading::kWireframe, any<wireframe_program>},
-                          Known{"lines", Shading::kLines, depth_program}, // none of its colours are kept, as of the next
+                          // The overlay replaces the colors of "lines" and "edges".
+                          Known{"lines", Shading::kLines, depth_program},
                           Known{"edges", Shading::kEdges, depth_program},
                           Known{"normal", Shading::kNormal, any<normal_program>},
                           Known{"albedo", Shading::kAlbedo, any<albedo_program>},
@@ -31,7 +32,10 @@ constexpr std::array kAll{Known{"lit", Shading::kLit, nullptr},
 std::string shading_names() {
     std::string names;
     for (const Known& known : kAll)
-        names += (known.name == kAll.front().name ? "" : known.name == kAll.back().name ? " or " : ", ") + std::string(known.name);
+        names += (known.name == kAll.front().name  ? ""
+                  : known.name == kAll.back().name ? " or "
+                                                   : ", ") +
+                 std::string(known.name);
     return names;
 }
 

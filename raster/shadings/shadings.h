@@ -1,4 +1,4 @@
-// The built-in shadings, as programs.
+// Implements the built-in shadings as programs.
 #pragma once
 
 #include "raster/render.h"
@@ -8,17 +8,17 @@
 
 namespace duet::raster {
 
-/// Of Settings::shading, as a camera sees; null for Shading::kLit, which is no program (raster/shade.h).
+/// Returns the program of a shading for a camera; null for Shading::kLit, which has no program (raster/shade.h).
 std::unique_ptr<Program> program(Shading shading, const Camera& camera);
 
-// A file each.
+// Each program is defined in a file of the same name.
 std::unique_ptr<Program> phong_program();
 std::unique_ptr<Program> gouraud_program();
 std::unique_ptr<Program> flat_program();
 std::unique_ptr<Program> toon_program();
 std::unique_ptr<Program> wireframe_program();
 std::unique_ptr<Program> normal_program();
-std::unique_ptr<Program> smooth_normal_program(); ///< of normal.cpp, whatever maps say: what edges are drawn by
+std::unique_ptr<Program> smooth_normal_program(); ///< in normal.cpp; ignores normal and bump maps, for edge detection
 std::unique_ptr<Program> albedo_program();
 std::unique_ptr<Program> depth_program(const Camera& camera);
 

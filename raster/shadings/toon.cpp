@@ -1,7 +1,7 @@
-// Toon shading: each light comes in bands, by the cosine at which it arrives, and highlights are spots of even light with
-// a sharp edge (Lake, Marshall, Harris and Blackstein 2000, «Stylized Rendering Techniques for Scalable Real-Time 3D
-// Animation»). From band to band it goes within a pixel, by the normal's screen derivatives, so that borders do not
-// stair-step.
+// Implements toon shading: each light is quantized into bands by its incident cosine, and highlights are uniform
+// spots with a sharp edge (Lake, Marshall, Harris and Blackstein 2000, "Stylized Rendering Techniques for Scalable
+// Real-Time 3D Animation"). The borders of bands are one pixel wide, by the normal's screen-space derivatives, which
+// antialiases them.
 #include "raster/shader/phong.h"
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
@@ -9,7 +9,8 @@
 namespace duet::raster {
 namespace {
 
-/// 1 where x is beyond a border, 0 where it is not, and between within half a pixel: x changes by `width` a pixel.
+/// Returns 1 if x is beyond a border, 0 if not, with a linear ramp of one pixel. `width` is the change of x per
+/// pixel.
 template <typename T> T beyond(T x, float border, T width) {
     return clamp((x - T(border)) / max(width, T(1e-6f)) + T(0.5f), T(0), T(1));
 }
@@ -24,10 +25,11 @@ struct ToonShader {
         return {v.object.smooth ? v.n : v.ng};
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
-        constexpr std::array kBorders{0.0f, 0.25f, 0.5f, 0.75f}; // a quarter of the light more beyond each
-        constexpr float kSpot = 0.97f;                           // cosine to the mirror direction
+        constexpr std::array kBorders{0.0f, 0.25f, 0.5f, 0.75f}; // each adds a quarter of the light
+        constexpr float kSpot = 0.97f;                           // cosine between the mirror direction and wo
         const Vec3T<T> n = f.normal(f.at.n).unit(), wo = f.wo().unit();
-        // Change of the unit normal: what is across it of the change of the interpolated one, over that one's length.
+        // The derivative of the unit normal is the perpendicular component of the interpolated normal's derivative,
+        // divided by the interpolated normal's length.
         const T scale = Direction<T>::of(f.object.normal(f.at.n)).scale;
         const auto turn = [&](Vec3T<T> change) {
             const Vec3T<T> d = f.object.normal(change) * scale;
@@ -39,8 +41,9 @@ struct ToonShader {
             const auto width = [&](Vec3T<T> towards) { return abs(dot(along, towards)) + abs(dot(down, towards)); };
             T band(0);
             const T cosine = dot(n, arriving.wi), cosine_width = width(arriving.wi);
-            for (const float border : kBorders) band += T(1.0f / kBorders.size()) * beyond(cosine, border, cosine_width);
-            // The mirror direction turns twice as far as the normal.
+            for (const float border : kBorders)
+                band += T(1.0f / kBorders.size()) * beyond(cosine, border, cosine_width);
+            // The mirror direction turns by twice the angle of the normal.
             const T spot = beyond(dot(reflect(arriving.wi, n), wo), kSpot, T(2) * width(wo));
             sum.irradiance += arriving.irradiance * band;
             sum.highlights += arriving.irradiance * (band * spot * T(0.5f * kPhongSpecular));

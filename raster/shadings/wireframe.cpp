@@ -1,7 +1,7 @@
-// Wireframe with hidden lines removed: a triangle's edges, a pixel wide and anti-aliased, in the base colour (of a lamp in
-// its light); its inside black. The distance of a sample to an edge is barycentric: b / |∇b| pixels, exact on the edge
-// (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, «Single-pass Wireframe Rendering»). A quad's diagonal is no
-// edge; a sphere has none. Lines through and through: raster/overlay/lines.h.
+// Draws a wireframe with hidden lines removed: one-pixel antialiased edges of triangles in the base color plus
+// emission, on black. The distance of a sample to an edge comes from its barycentric: b / |∇b| pixels, exact on the
+// edge (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A quad's
+// diagonal is not an edge, and spheres have none. raster/overlay/lines.h draws lines without hidden-line removal.
 #include "raster/shader/program.h"
 #include "raster/shadings/shadings.h"
 
@@ -19,7 +19,7 @@ struct WireframeShader {
         T nearest(1e9f);
         for (std::size_t k = 0; k < 3; ++k) {
             const T steep = f.dx.edges[k] * f.dx.edges[k] + f.dy.edges[k] * f.dy.edges[k];
-            // What is no edge is as steep as nothing: far.
+            // Without an edge the gradient is 0, and the distance becomes very large.
             nearest = min(nearest, f.at.edges[k] * inverse_sqrt(max(steep, T(1e-24f))));
         }
         constexpr float kHalfWidth = 0.5f;

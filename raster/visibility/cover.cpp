@@ -16,18 +16,19 @@ void draw(const DrawSphere& sphere, const PassView& view, DepthTile& tile) {
             const Vec2d first = tile.offset().position(x, y);
             const CameraRays rays(view.pinhole, Doubles(first.x) + kLanesAsDoubles, Doubles(first.y));
             const Doubles t = sphere.intersect(rays);
-            (rays.t_min / t).store_aligned(nearness.data()); // 0 where it is missed
+            (rays.t_min / t).store_aligned(nearness.data()); // 0 on a miss
             for (int i = 0; i < std::min(kLanes, r.x1 - x); ++i)
-                if (const double n = nearness[static_cast<std::size_t>(i)]; n > 0) tile.draw(x + i, y, sphere.id, kept_nearness(n));
+                if (const double n = nearness[static_cast<std::size_t>(i)]; n > 0)
+                    tile.draw(x + i, y, sphere.id, kept_nearness(n));
         }
 }
 
-/// Of a sphere that the ray meets, but for rounding.
+/// Returns the hit of a sphere that the ray meets, up to rounding.
 Hit hit_sphere(const DrawSphere& sphere, const Ray& ray) {
     return {.object = sphere.object, .primitive = 0, .t = sphere.intersect(ray).value_or(sphere.nearest(ray))};
 }
 
-/// A tile's items of all batches, in order; asked for from memory ahead of time.
+/// Draws a tile's items of all batches in order, and prefetches the next ones.
 template <typename Item, typename Draw>
 void draw_all(const Geometry& geometry, std::span<const TileLists::Item> lists, std::vector<Item> Batch::*items,
               std::vector<std::uint32_t> Batch::*order, const Draw& draw_one) {
@@ -73,12 +74,13 @@ Ray rounded(const Rayd& exact, float time) {
             .time = time};
 }
 
-void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect, std::size_t index,
-               DepthTile& tile) {
+void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
+               std::size_t index, DepthTile& tile) {
     tile.reset(rect, offset, view.viewport);
     draw_all(geometry, geometry.outlines.tile(index), &Batch::triangles, &Batch::order,
              [&](const DrawTriangle& triangle) { tile.draw(triangle, geometry.triangles); });
-    draw_all(geometry, geometry.patches.tile(index), &Batch::patches, &Batch::patch_order, [&](const Patch& patch) { tile.draw(patch); });
+    draw_all(geometry, geometry.patches.tile(index), &Batch::patches, &Batch::patch_order,
+             [&](const Patch& patch) { tile.draw(patch); });
     const auto fragments = [&](const TileLists::Item& item) {
         return std::span(geometry.batches[item.batch].fragments).subspan(item.first, item.count);
     };
@@ -106,7 +108,8 @@ Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t
 
 Hit HitTile::exchange(int x, int y, const Hit& hit) {
     const std::size_t i = index(x, y);
-    nearness_[i] = hit.valid() ? static_cast<float>(pinhole_.near * distance_per_depth_[i] / static_cast<double>(hit.t)) : 0;
+    nearness_[i] =
+        hit.valid() ? static_cast<float>(pinhole_.near * distance_per_depth_[i] / static_cast<double>(hit.t)) : 0;
     return std::exchange(hits_[i], hit);
 }
 
@@ -122,14 +125,16 @@ Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, V
                         view.pinhole.near);
 }
 
-/// Fills in the rays and hits of strips.
+/// Computes the rays and hits of packets.
 class HitTile::Filler {
 public:
     Filler(HitTile& tile, const Geometry& geometry, const PassView& view)
-        : tile_(tile), geometry_(geometry), view_(view), solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
+        : tile_(tile), geometry_(geometry), view_(view),
+          solver_(geometry.triangles, view, tile.rect_, nothing_, false) {}
 
     void fill(const StripPlace& place) {
-        solver_.solve(std::span(&place, 1), false, [&](std::size_t, const auto& strips) { fill(place, strips.front()); });
+        solver_.solve(std::span(&place, 1), false,
+                      [&](std::size_t, const auto& strips) { fill(place, strips.front()); });
     }
 
 private:
@@ -144,7 +149,8 @@ private:
             const CameraRays rays(view_.pinhole, load(xs, first), load(ys, first));
             for (std::size_t lane = 0; lane < Doubles::size; ++lane) {
                 const std::size_t i = first + lane;
-                const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
+                const int x = place.x + static_cast<int>(i % kStripWidth),
+                          y = place.y + static_cast<int>(i / kStripWidth);
                 if (x >= tile_.rect_.x1 || y >= tile_.rect_.y1) continue;
                 const std::size_t at = tile_.index(x, y);
                 const double t_min = rays.t_min.get(lane);
@@ -152,24 +158,28 @@ private:
                 tile_.distance_per_depth_[at] = t_min / near;
                 if (!(strip.samples->seen >> i & 1)) continue;
                 tile_.hits_[at] = hit(i, place, strip, at);
-                tile_.nearness_[at] = place.nearness != nullptr
-                                          ? place.nearness[i]
-                                          : static_cast<float>(min(t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
+                tile_.nearness_[at] =
+                    place.nearness != nullptr
+                        ? place.nearness[i]
+                        : static_cast<float>(min(t_min / static_cast<double>(tile_.hits_[at].t), 1.0));
             }
         }
     }
 
-    Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip, std::size_t at) const {
+    Hit hit(std::size_t i, const StripPlace& place, const SolvedStrip<NoVaryings, double>& strip,
+            std::size_t at) const {
         const Triangles& triangles = geometry_.triangles;
         const std::uint32_t id = strip.samples->id(i);
         const Run& run = solver_.run_of(id);
         if (run.sphere) return hit_sphere(geometry_.spheres[run.object], tile_.rays_[at]);
-        if (!(strip.samples->on_mesh & strip.inside & 1u << i)) return find_hit(geometry_, view_, id, place.position(i));
+        if (!(strip.samples->on_mesh & strip.inside & 1u << i))
+            return find_hit(geometry_, view_, id, place.position(i));
         const double depth = std::max(strip.depth[i], view_.pinhole.near);
         const std::uint32_t index = Triangles::index(run, id);
         const PackedShape& shape = *strip.samples->shape;
-        return make_hit(triangles.objects[run.object].object, static_cast<std::uint32_t>(shape.primitive(index)), shape.piece(index),
-                        static_cast<double>(strip.b1[i]), static_cast<double>(strip.b2[i]), depth * tile_.distance_per_depth_[at]);
+        return make_hit(triangles.objects[run.object].object, static_cast<std::uint32_t>(shape.primitive(index)),
+                        shape.piece(index), static_cast<double>(strip.b1[i]), static_cast<double>(strip.b2[i]),
+                        depth * tile_.distance_per_depth_[at]);
     }
 
     HitTile& tile_;

@@ -1,4 +1,4 @@
-// Stage 7: the image of Hits of a tile.
+// Implements stage 7, which builds the visibility buffer of a tile, an image of Hits.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -12,30 +12,34 @@
 
 namespace duet::raster {
 
-/// The ray in float.
+/// Rounds a ray to float.
 Ray rounded(const Rayd& exact, float time);
 
-/// Draws all that may be seen of a tile of the picture: its depths, and the number of what each sample sees. draw_tile() leaves
-/// the samples of blocks that nothing was drawn to undefined.
-void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect, std::size_t index,
-               DepthTile& tile);
+/// Rasterizes all primitives that overlap a tile of the image into `tile`: reversed depth and the id of the visible
+/// primitive per sample. `index` is the tile's index in its grid. cover() initializes every sample; draw_tile()
+/// leaves the samples of blocks without any primitive undefined.
+void draw_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
+               std::size_t index, DepthTile& tile);
 void cover(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
            std::size_t index, DepthTile& tile);
 
-/// What a sample sees of a triangle: the naive way, one at a time, that all others are held to. `pixel` is the sample's
-/// place, distance_per_depth the length of its ray for each metre of depth.
+/// Returns the hit of a triangle at one sample. This is the scalar reference that all faster paths must match.
+/// `pixel` is the sample position in pixels, `distance_per_depth` the ray length per meter of depth, `near` the
+/// distance of the near plane in meters.
 Hit hit_triangle(const WholeTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
                  double distance_per_depth, double near);
 
-/// The same of anything that has a number. A sphere that the ray misses is hit where it passes nearest.
+/// Returns the hit of any primitive by its id, at one sample. If the ray misses a sphere, the hit is the point of
+/// closest approach.
 Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, Vec2d pixel);
 
-/// One sample a pixel of a tile: the camera rays through the samples, and the visibility buffer: an image of Hits.
+/// Holds the camera rays and the visibility buffer (an image of Hits) of a tile, with one sample per pixel.
 class HitTile {
 public:
-    /// Looks up what was drawn into `tile`.
+    /// Computes the rays of all samples and the hits of the primitives drawn into `tile`.
     HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view);
-    /// What is in one layer of the samples of `tile`; no other pixel has a ray.
+    /// Computes the rays and hits of one layer of a multisampled tile. Pixels that are not in the layer have no
+    /// ray.
     HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
@@ -43,17 +47,17 @@ public:
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
     double distance_per_depth(int x, int y) const { return distance_per_depth_[index(x, y)]; }
-    /// Lets a sample see something else; what it saw.
+    /// Replaces the hit of a sample and its reversed depth. Returns the previous hit.
     Hit exchange(int x, int y, const Hit& hit);
-    /// Camera-space −z of what the sample sees, in metres; infinity where that is nothing.
+    /// Returns the camera-space −z of the visible surface, in meters; infinity on a miss.
     double depth(int x, int y) const { return static_cast<double>(hit(x, y).t) / distance_per_depth_[index(x, y)]; }
-    /// Of a sample that sees something, where a pixel takes a number of them.
+    /// Returns the footprint of a sample that has a hit, given the number of samples per pixel.
     RayFootprint footprint(int x, int y, int samples_per_pixel) const {
         return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
     }
-    /// The quadrant of its pixel in which each sample lies, 0 to 3; of whole pixels 0.
+    /// Returns the quadrant of the pixel in which each sample lies, 0 to 3; 0 for a layer of a multisampled tile.
     int quadrant() const { return quadrant_; }
-    /// near / depth; 0 where nothing is seen.
+    /// Returns the reversed depth, near / depth; 0 on a miss.
     float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
 private:

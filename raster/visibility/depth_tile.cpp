@@ -6,22 +6,23 @@
 
 namespace duet::raster {
 
-/// A triangle's edge functions at the samples of a tile. All samples of a tile have the same place in their pixel, so a
-/// function's values differ by multiples of 256: divided by that and rounded down, their signs stay, and the steps from
-/// pixel to pixel are a and b themselves. Within a block that an edge passes through they fit into 32 bits, whatever the
-/// triangle's size: |a|, |b| < 2^25.2 (kGuardBand), so no sample of the block is as far as 14 · 2^25.2 < 2^30 from one of the
-/// other sign.
+/// Holds the edge functions of a triangle at the samples of a tile. All samples of a tile have the same offset in
+/// their pixel, so the values of an edge function differ by multiples of 256. After division by 256, rounded down,
+/// the signs are unchanged, and the increments from pixel to pixel are a and b themselves. Within a block that an
+/// edge passes through, the values fit into 32 bits for triangles of any size: |a|, |b| < 2^25.2 (kGuardBand), so no
+/// sample of the block is farther than 14 · 2^25.2 < 2^30 from a sample of the other sign.
 struct DepthTile::Edges {
     using Values = std::array<std::int64_t, 3>;
     Values at; ///< at the tile's first sample
-    Values right, down; ///< from block to block
-    /// At a block's first sample, as floats have it: none of its samples is inside below the one, all are well inside from the other
-    /// on. By an error more than floats have: each of six roundings is of at most half a unit in the last place of what a function
-    /// may be in the tile. So a block may be looked at for nothing, but none is missed.
+    Values right, down; ///< increments from block to block
+    /// These are thresholds for the value at a block's first sample. Below `none`, no sample of the block is inside.
+    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of six roundings has
+    /// an error of at most half a unit in the last place of the largest value in the tile. So a block may be tested
+    /// in vain, but none is missed.
     std::array<float, 3> none, all;
     std::array<std::int32_t, 3> margin; ///< edge_margins
-    std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a strip
-    std::array<std::int32_t, 3> next_strip;    ///< from a strip to the one below
+    std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a packet
+    std::array<std::int32_t, 3> next_strip;    ///< from a packet to the one below
 
     Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset) {
         const auto& p = triangle.corners;
@@ -29,11 +30,14 @@ struct DepthTile::Edges {
         constexpr std::int64_t kNever = 0x7fffffff, kLast = kBlock - 1, kZero = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
-            at[k] = edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >> kSubPixelBits;
+            at[k] =
+                edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >>
+                kSubPixelBits;
             right[k] = edge.a * kBlock;
             down[k] = edge.b * kBlock;
             const std::int64_t well = triangle.sound ? (margins[k] + kSubPixels - 1) >> kSubPixelBits : kNever;
-            const std::int64_t most = std::abs(at[k]) + TileGrid::kTileSize * (std::abs(edge.a) + std::abs(edge.b)) + well;
+            const std::int64_t most =
+                std::abs(at[k]) + TileGrid::kTileSize * (std::abs(edge.a) + std::abs(edge.b)) + well;
             const float error = static_cast<float>(most) * 0x1p-20f;
             none[k] = static_cast<float>(-kLast * (std::max(edge.a, kZero) + std::max(edge.b, kZero))) - error;
             all[k] = static_cast<float>(well - kLast * (std::min(edge.a, kZero) + std::min(edge.b, kZero))) + error;
@@ -44,7 +48,8 @@ struct DepthTile::Edges {
                 store(step[k], i, a * load(kColumns<std::int32_t>, i) + b * load(kRows<std::int32_t>, i));
         }
     }
-    /// At a block's first sample, as far as it matters: exact where the block's edge passes through.
+    /// Returns the values at a block's first sample, clamped to ±2^30. They are exact where an edge passes through
+    /// the block.
     std::array<std::int32_t, 3> at_block(int column, int row) const {
         constexpr std::int64_t kFar = 1 << 30;
         std::array<std::int32_t, 3> here;
@@ -54,9 +59,11 @@ struct DepthTile::Edges {
     }
 };
 
-/// A row of blocks of a tile, all of them side by side.
+/// Computes the coverage of a row of blocks of a tile with SIMD.
 struct DepthTile::BlockRow {
-    std::uint32_t some = 0, all = 0; ///< a bit for each block of which the triangle may cover some samples; all for certain, well inside
+    /// Each block has one bit: in `some` where the triangle may cover samples, in `all` where it certainly covers all
+    /// samples, well inside.
+    std::uint32_t some = 0, all = 0;
 
     BlockRow(const Edges& edges, int row) {
         for (std::size_t i = 0; i < kBlocks; i += Floats::size) {
@@ -74,20 +81,24 @@ struct DepthTile::BlockRow {
     }
 };
 
-/// A triangle's samples in a block, a bit each: all, and those that lie well inside.
+/// Holds the coverage of a block, one bit per sample: all covered samples, and those well inside.
 struct DepthTile::Covered {
     std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
 
-    Covered() = default; ///< all of them
+    Covered() = default; ///< all samples
     bool all_well_inside() const { return well_inside == ~std::uint64_t{0}; }
-    /// By the edges' values at the block's first sample; in the strips of its rows y0 to y1, the others have none.
+    /// Computes the coverage from the edge values at the block's first sample, for the packets of rows y0 to y1.
+    /// The other packets stay empty.
     Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) : some(0), well_inside(0) {
         const Ints zero(0);
         for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip)
             for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-                const auto value = [&](std::size_t k) { return Ints(at[k] + strip * edges.next_strip[k]) + load(edges.step[k], i); };
+                const auto value = [&](std::size_t k) {
+                    return Ints(at[k] + strip * edges.next_strip[k]) + load(edges.step[k], i);
+                };
                 const Ints e0 = value(0), e1 = value(1), e2 = value(2);
-                const auto inside = e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
+                const auto inside =
+                    e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
                 const std::size_t first = static_cast<std::size_t>(strip) * kStrip + i;
                 some |= std::uint64_t{lane_bits(min(min(e0, e1), e2) >= zero)} << first;
                 well_inside |= std::uint64_t{lane_bits(inside)} << first;
@@ -117,29 +128,32 @@ void DepthTile::empty_undrawn() {
         if (!drawn_[block]) empty(block);
 }
 
-/// A bit for each block of a row whose farthest sample is farther than `nearest`, or as far.
+/// Returns one bit per block of a row whose farthest sample is not nearer than `nearest`.
 std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
     std::uint32_t hidden = 0;
     for (std::size_t i = 0; i < kBlocks; i += Floats::size)
-        hidden |= lane_bits(Floats(nearest) < Floats::load_aligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i])) << i;
+        hidden |=
+            lane_bits(Floats(nearest) < Floats::load_aligned(&farthest_[static_cast<std::size_t>(row) * kBlocks + i]))
+            << i;
     return ~hidden;
 }
 
-/// Nearness over so many blocks along a side, or its inverse in an orthographic view: the sum of what a sample's column and its row
-/// have of it.
+/// Evaluates the reversed depth over kSide × kSide blocks; in an orthographic view the plane is its inverse. The
+/// value of a sample is the sum of a column term and a row term.
 template <std::size_t kSide> struct DepthTile::Nearness {
     const Viewport& viewport;
     alignas(64) std::array<double, kSide * kBlock> columns, rows;
 
-    /// The first block's first sample lies at (x, y) from the plane's origin.
+    /// (x, y) is the position of the first block's first sample relative to the plane's origin.
     Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
         for (std::size_t i = 0; i < columns.size(); i += Doubles::size) {
-            const Doubles number = Doubles(static_cast<double>(i / kBlock * kBlock)) + load(kColumns<double>, i % kBlock);
+            const Doubles number =
+                Doubles(static_cast<double>(i / kBlock * kBlock)) + load(kColumns<double>, i % kBlock);
             ((Doubles(x) + number) * Doubles(plane.x)).store_aligned(&columns[i]);
             (Doubles(plane.constant) + (Doubles(y) + number) * Doubles(plane.y)).store_aligned(&rows[i]);
         }
     }
-    /// Of a block's samples from the i-th on.
+    /// Returns the values of a block's samples from the i-th on.
     Floats at(std::size_t block, std::size_t i) const {
         const auto half = [&](std::size_t first) {
             const Doubles value = Doubles(rows[block / kSide * kBlock + first / kBlock]) +
@@ -151,13 +165,14 @@ template <std::size_t kSide> struct DepthTile::Nearness {
     }
 };
 
-/// The samples from a place on, as many as there are lanes, of which those given show a triangle, well inside it.
+/// Depth-tests one batch of samples from `place` on against a triangle. `lanes` selects the samples that it covers,
+/// well inside.
 template <typename Lanes>
 void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
     const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
     const Floats before = Floats::load_aligned(&nearness_[place]);
-    // Floats that are not negative compare as their bits do. A lower number wins if it is nearer than the float before, which is to
-    // be at least as near. (Of two conditions joined by «or» the second would wait for the first.)
+    // Nonnegative floats compare like their bits. A lower id wins a tie, so it is compared with the predecessor of
+    // the stored float. (Two comparisons joined by "or" would form a longer dependency chain.)
     const Ints bits = xsimd::bitwise_cast<Ints>(nearness);
     Ints to_beat = xsimd::bitwise_cast<Ints>(before);
     if (!sabotaged(Guard::kDrawOrder)) to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
@@ -167,11 +182,11 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
     inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
 }
 
-/// Draws those samples of a block that lie in its strip from `first` on; nearness_at(i): of the samples from the i-th on. (In line, as
-/// draw_block(): calls take a tenth of a frame.)
+/// Draws the samples of one packet of a block, from `first` on. nearness_at(i) returns the reversed depths of the
+/// samples from the i-th on. (It is inlined like draw_block(), because calls would cost a tenth of the frame time.)
 template <typename NearnessAt>
-[[gnu::always_inline]] inline void DepthTile::draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id,
-                                                         const NearnessAt& nearness_at) {
+[[gnu::always_inline]] inline void DepthTile::draw_strip(std::size_t block, std::size_t first, std::uint64_t samples,
+                                                         std::uint32_t id, const NearnessAt& nearness_at) {
     for (std::size_t i = first; i < first + kStrip; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
         keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness_at(i), lanes_from<float>(here));
@@ -185,12 +200,14 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
     const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
     const std::uint32_t touched = (2u << last_column) - (1u << first_column);
     const Origin from = origin(triangle.corners, viewport_);
-    const Vec2d first = offset_.position(rect_.x0 - from.x, rect_.y0 - from.y); // the tile's first sample, from the plane's origin
+    // This is the tile's first sample, relative to the plane's origin.
+    const Vec2d first = offset_.position(rect_.x0 - from.x, rect_.y0 - from.y);
     for (int row = (r.y0 - rect_.y0) / kBlock; row <= (r.y1 - 1 - rect_.y0) / kBlock; ++row) {
         const BlockRow blocks(edges, row);
         const int top = rect_.y0 + row * kBlock;
         const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
-        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0; left &= left - 1) {
+        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0;
+             left &= left - 1) {
             const int column = std::countr_zero(left);
             const bool all = (blocks.all >> column & 1) && triangle.sound;
             const Covered covered = all ? Covered() : Covered(edges, edges.at_block(column, row), y0, y1);
@@ -201,14 +218,16 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
     }
 }
 
-/// Those samples of a block, whose first lies there from the plane's origin.
-[[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
-                                                         const Covered& covered, Vec2d first) {
+/// Draws the covered samples of a block. `first` is its first sample, relative to the plane's origin.
+[[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const WholeTriangles& whole,
+                                                         std::size_t block, const Covered& covered, Vec2d first) {
     open(block);
     const Nearness<1> nearness(triangle.nearness, viewport_, first.x, first.y);
-    for (std::size_t strip = 0; strip < kBlockSamples; strip += kStrip) // all: no machine guesses which of them it covers
+    // Process all packets, because a branch on their coverage would be mispredicted.
+    for (std::size_t strip = 0; strip < kBlockSamples; strip += kStrip)
         draw_strip(block, strip, covered.well_inside, triangle.id, [&](std::size_t i) { return nearness.at(0, i); });
-    if (covered.some != covered.well_inside) draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
+    if (covered.some != covered.well_inside)
+        draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
     constexpr std::uint8_t kOften = 16;
     if (covered.all_well_inside() || ++partial_[block] >= kOften) find_farthest(block);
 }
@@ -222,14 +241,15 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTrian
     for (; samples != 0; samples &= samples - 1) {
         const int bit = std::countr_zero(samples), x = x0 + bit % kBlock, y = y0 + bit / kBlock;
         const Interpolated here = at.at(offset_.position(x, y), all.piece);
-        keep_one(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id, kept_nearness(here.nearness(viewport_.near)), false);
+        keep_one(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id,
+                 kept_nearness(here.nearness(viewport_.near)), false);
     }
 }
 
 namespace {
 
-/// A box of 8 × 8 samples lies over up to four blocks, two of them below the others: its samples in each, if its first is `left` to the
-/// right and `top` below of the first block's.
+/// Splits a box of 8 × 8 samples, which overlaps up to 2 × 2 blocks, into its samples in each block. The box's
+/// first sample is `left` samples to the right of and `top` samples below the first block's.
 std::array<std::uint64_t, 4> over_blocks(std::uint64_t samples, int left, int top) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
     const std::uint64_t in_left = (samples & kFirstColumn * (0xffu >> left)) << left,
@@ -239,32 +259,35 @@ std::array<std::uint64_t, 4> over_blocks(std::uint64_t samples, int left, int to
     return {above(in_left), above(in_right), below(in_left), below(in_right)};
 }
 
-/// A bit for each strip of the blocks that has one of the samples.
+/// Returns one bit per packet of the blocks that contains any of the samples.
 std::uint32_t strips_of(const std::array<std::uint64_t, 4>& samples) {
     std::uint32_t strips = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         constexpr std::uint64_t kAllButLast = 0x7fff7fff7fff7fff;
         const std::uint64_t any = (((samples[k] & kAllButLast) + kAllButLast) | samples[k]) & ~kAllButLast;
-        strips |= static_cast<std::uint32_t>((any >> 15) * 0x0001000200040008 >> 48 & 0xf) << 4 * k; // bits 15, 31, 47, 63 to four in a row
+        // Move bits 15, 31, 47 and 63 to four adjacent bits.
+        strips |= static_cast<std::uint32_t>((any >> 15) * 0x0001000200040008 >> 48 & 0xf) << 4 * k;
     }
     return strips;
 }
 
 } // namespace
 
-// Strips one after the other, whichever block they are of: so how many there are is all that a machine may guess wrong.
+// The function has one loop over the packets of all blocks, so the CPU can mispredict only its trip count.
 void DepthTile::draw(const Patch& patch) {
     const int x = patch.x - rect_.x0, y = patch.y - rect_.y0, left = x & 7, top = y & 7;
-    const int column = x >> 3, row = y >> 3; // of the first block: maybe just before the tile's
+    const int column = x >> 3, row = y >> 3; // of the first block, which may lie just outside the tile
     const std::array<std::uint64_t, 4> samples = over_blocks(patch.samples, left, top);
     const std::uint32_t in_tile = ((column >= 0 ? 0x0f0fu : 0) | (column + 1 < kBlocks ? 0xf0f0u : 0)) &
                                   ((row >= 0 ? 0x00ffu : 0) | (row + 1 < kBlocks ? 0xff00u : 0));
     const Nearness<2> nearness(patch.nearness, viewport_, -left, -top);
     for (std::uint32_t strips = strips_of(samples) & in_tile; strips != 0; strips &= strips - 1) {
         const auto strip = static_cast<std::size_t>(std::countr_zero(strips)), part = strip / 4;
-        const auto block = static_cast<std::size_t>((row + static_cast<int>(part / 2)) * kBlocks + column + static_cast<int>(part % 2));
+        const auto block = static_cast<std::size_t>((row + static_cast<int>(part / 2)) * kBlocks + column +
+                                                    static_cast<int>(part % 2));
         open(block);
-        draw_strip(block, strip % 4 * kStrip, samples[part], patch.id, [&](std::size_t i) { return nearness.at(part, i); });
+        draw_strip(block, strip % 4 * kStrip, samples[part], patch.id,
+                   [&](std::size_t i) { return nearness.at(part, i); });
     }
 }
 

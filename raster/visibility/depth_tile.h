@@ -1,4 +1,4 @@
-// Stage 6: which triangle each sample of a tile sees.
+// Implements stage 6, which determines the visible triangle of each sample of a tile.
 #pragma once
 
 #include "raster/geometry/batch.h"
@@ -10,55 +10,62 @@
 
 namespace duet::raster {
 
-/// One sample a pixel of a tile: how near what it sees is, and the number of it.
+/// Holds the depth buffer of a tile, one sample per pixel: reversed depth and the id of the visible primitive.
 ///
-/// Nearness is reversed depth, near / depth, in (0, 1], as a float: its relative error is 2^-24 at any depth, as that
-/// of Hit::t itself, and nothing is lost to a far plane. Of equal nearness the lower number wins, so that the result
-/// does not depend on the order of drawing.
+/// Reversed depth (`nearness`) is near / depth, in (0, 1], as a float. Its relative error is 2^-24 at any depth, as
+/// that of Hit::t itself, and no precision is lost to a far plane. At equal depth the lower id wins, so the result
+/// does not depend on the drawing order.
 ///
-/// Samples lie by blocks of 8 × 8 (place_in_tile). Each block knows how near its farthest sample is at least: what is
-/// wholly behind that is left out (Greene, Kass and Miller 1993, «Hierarchical Z-Buffer Visibility», of two levels).
+/// Samples are stored in blocks of 8 × 8 (place_in_tile). Each block has a bound of its farthest sample; primitives
+/// entirely behind it are culled (Greene, Kass and Miller 1993, "Hierarchical Z-Buffer Visibility", with two
+/// levels).
 class DepthTile {
 public:
-    DepthTile() {} // what is not reset has no contents
+    DepthTile() {} // members are uninitialized until reset()
 
-    /// Empties the tile and moves it: at most TileGrid::kTileSize pixels a side. Blocks get their samples as they are first
-    /// drawn to.
+    /// Clears the tile and sets its rectangle, at most TileGrid::kTileSize pixels per side. The samples of a block
+    /// are initialized when it is first drawn to.
     void reset(const PixelRect& rect, SampleOffset offset, const Viewport& viewport);
 
-    /// Draws a triangle. `whole` is asked for what it is a part of where snapping has a say.
+    /// Draws a triangle. `whole` gives access to the unsnapped, unclipped triangle, which is needed for samples
+    /// near edges.
     void draw(const DrawTriangle& triangle, const WholeTriangles& whole);
+    /// Draws a small triangle's coverage mask, with its depth plane.
     void draw(const Patch& patch);
+    /// Draws single samples.
     void draw(std::span<const Fragment> fragments);
-    /// One sample: `x` and `y` are the pixel's.
+    /// Draws one sample of pixel (x, y).
     void draw(int x, int y, std::uint32_t id, float nearness) { keep_one(place(x, y), id, nearness, false); }
 
     const PixelRect& rect() const { return rect_; }
     SampleOffset offset() const { return offset_; }
-    /// kNoTriangle where nothing is seen.
+    /// Returns the id of the visible primitive; kNoTriangle if there is none.
     std::uint32_t id(int x, int y) const {
         const std::uint32_t at = place(x, y);
         return drawn(at / kBlockSamples) ? static_cast<std::uint32_t>(ids_[at]) : kNoTriangle;
     }
+    /// Returns the reversed depth, near / depth; 0 if no primitive is visible.
     float nearness(int x, int y) const {
         const std::uint32_t at = place(x, y);
         return drawn(at / kBlockSamples) ? nearness_[at] : 0;
     }
+    /// Returns the index at which pixel (x, y) is stored.
     std::uint32_t place(int x, int y) const {
         return place_in_tile(static_cast<std::uint32_t>(x - rect_.x0), static_cast<std::uint32_t>(y - rect_.y0));
     }
-    /// Empties the samples of blocks that were not drawn to.
+    /// Clears the samples of blocks that were not drawn to.
     void empty_undrawn();
-    /// The same by place, for who walks along strips: of blocks drawn to, or after empty_undrawn() of all.
+    /// The arrays are in storage order. They are valid in blocks drawn to, and everywhere after empty_undrawn().
     const std::int32_t* ids() const { return ids_.data(); }
     const float* nearness() const { return nearness_.data(); }
-    /// A bit for each sample of the strip that begins at a place that lies in the unsnapped triangle it sees (edge_margins).
+    /// Returns one bit per sample of the packet that starts at `place`, set if the sample lies inside the unsnapped
+    /// visible triangle (edge_margins).
     std::uint32_t inside(std::size_t place) const { return inside_[place / kStrip]; }
-    /// Whether any sample of the block may see something.
+    /// Returns true if any sample of the block was drawn to.
     bool drawn(std::size_t block) const { return drawn_[block]; }
 
     static constexpr int kBlock = 8;
-    static constexpr int kBlocks = TileGrid::kTileSize / kBlock; ///< along a side
+    static constexpr int kBlocks = TileGrid::kTileSize / kBlock; ///< per side
     static_assert(kBlocks <= static_cast<int>(kStrip) && kBlocks % Floats::size == 0);
     static constexpr int kStripRows = kStrip / kStripWidth;
 
@@ -68,10 +75,13 @@ private:
     template <std::size_t kSide> struct Nearness;
     struct Covered;
     std::uint32_t not_hidden(int row, float nearest) const;
-    void draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block, const Covered& covered, Vec2d first);
+    void draw_block(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
+                    const Covered& covered, Vec2d first);
     template <typename NearnessAt>
-    void draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id, const NearnessAt& nearness_at);
-    template <typename Lanes> void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
+    void draw_strip(std::size_t block, std::size_t first, std::uint64_t samples, std::uint32_t id,
+                    const NearnessAt& nearness_at);
+    template <typename Lanes>
+    void keep_nearest(std::size_t place, std::int32_t id, const Floats& nearness, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
                            std::uint64_t samples);
     void keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside);
@@ -88,9 +98,10 @@ private:
     alignas(64) std::array<float, kTileSamples> nearness_;
     alignas(64) std::array<std::int32_t, kTileSamples> ids_;
     static_assert(kStrip == 16);
-    std::array<std::uint16_t, kTileSamples / kStrip> inside_; ///< a strip each
-    alignas(64) std::array<float, kBlocks * kBlocks> farthest_;        ///< of a block: no sample is farther
-    std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< times drawn to since that was found
+    std::array<std::uint16_t, kTileSamples / kStrip> inside_; ///< one mask per packet
+    /// No sample of a block has less reversed depth than its bound.
+    alignas(64) std::array<float, kBlocks * kBlocks> farthest_;
+    std::array<std::uint8_t, kBlocks * kBlocks> partial_;  ///< number of draws since `farthest_` was computed
     std::array<bool, kBlocks * kBlocks> drawn_;
 };
 

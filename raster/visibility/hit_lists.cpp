@@ -17,10 +17,12 @@ bool touches(const Geometry& geometry, std::size_t tile) {
            (!geometry.spheres.empty() && !geometry.sphere_bins.tile(tile).empty());
 }
 
-HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index, const HitTile& tile)
+HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
+                   const HitTile& tile)
     : geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index), tile_(tile) {
     const PixelRect& r = tile.rect();
-    if (touches(geometry, tile_index)) pixels_.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
+    if (touches(geometry, tile_index))
+        pixels_.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
 }
 
 void HitLists::draw() {
@@ -42,11 +44,13 @@ void HitLists::draw() {
 
 void HitLists::draw_outline(const DrawTriangle& triangle) {
     const auto& c = triangle.corners;
-    const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]), EdgeFunction(c[2], c[0])};
+    const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]),
+                                            EdgeFunction(c[2], c[0])};
     const PixelRect r = intersect(tile_.rect(), pixels_within(c, offset_));
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
-            const std::int64_t sx = std::int64_t{x} * kSubPixels + offset_.x, sy = std::int64_t{y} * kSubPixels + offset_.y;
+            const std::int64_t sx = std::int64_t{x} * kSubPixels + offset_.x,
+                               sy = std::int64_t{y} * kSubPixels + offset_.y;
             if (std::all_of(edges.begin(), edges.end(), [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; }))
                 add_triangle(triangle.id, x, y);
         }
@@ -57,7 +61,7 @@ void HitLists::draw_sphere(const DrawSphere& sphere) {
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
             Ray ray = tile_.ray(x, y);
-            for (int side = 0; side < 2; ++side) { // its front, and through that its inside
+            for (int side = 0; side < 2; ++side) { // front, then inside of the back
                 const std::optional<float> t = sphere.intersect(ray);
                 if (!t) break;
                 add(x, y, {.object = sphere.object, .primitive = 0, .t = *t});
@@ -76,7 +80,7 @@ void HitLists::add_triangle(std::uint32_t id, int x, int y) {
                      offset_.position(x, y), tile_.distance_per_depth(x, y), view_.pinhole.near));
 }
 
-// Keeps a pixel's nearest hits beyond those dealt with, sorted.
+// Inserts a hit into the sorted list of a pixel's nearest unprocessed hits.
 void HitLists::add(int x, int y, const Hit& hit) {
     Pixel& p = pixel(x, y);
     if (p.done || !nearer(p.last, hit) || !nearer(hit, tile_.hit(x, y))) return;

@@ -1,4 +1,4 @@
-// Each pixel's surfaces before what it sees, in order of depth.
+// Builds per-pixel lists of surfaces in front of the visible surface, sorted by depth.
 #pragma once
 
 #include "raster/visibility/cover.h"
@@ -11,21 +11,23 @@
 
 namespace duet::raster {
 
-/// Whether anything of a geometry that was set up without patches may be in a tile.
+/// Returns true if a geometry without coverage masks (Patch) has primitives that may overlap the tile.
 bool touches(const Geometry& geometry, std::size_t tile);
 
-/// The surfaces of a tile's pixels, one sample each, that are nearer than what that sees: lists of Hits, sorted from the front
-/// (Carpenter 1984, «The A-buffer, an Antialiased Hidden Surface Method»). Lists hold the kKept nearest; where there are
-/// more and they are asked for, the tile is drawn again for those behind them. So memory does not grow with the number of
+/// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
+/// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kKept nearest hits. If
+/// more are needed, the tile is drawn again for those behind them, so memory does not grow with the number of
 /// surfaces.
 class HitLists {
 public:
-    /// `geometry`: of the surfaces. `offset`: of the tile's samples. Refers to all.
-    HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index, const HitTile& tile);
+    /// `geometry` holds the surfaces of the lists, `offset` is that of the tile's samples. The references must
+    /// outlive the object.
+    HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
+             const HitTile& tile);
 
-    bool empty() const { return pixels_.empty(); } ///< nothing of the geometry touches the tile
+    bool empty() const { return pixels_.empty(); } ///< no primitive overlaps the tile
 
-    /// Calls take(x, y, hit) for the hits of each pixel, front to back, until that says it has done with the pixel.
+    /// Calls take(x, y, hit) for the hits of each pixel, front to back, until it returns true for the pixel.
     template <typename Take> void for_each(const Take& take) {
         for (bool again = !empty(); again;) {
             draw();
@@ -43,9 +45,10 @@ public:
         }
     }
 
-    /// Calls take(x, y, hit) for the first of each pixel's hits that stops its light: stops(x, y, left) says so of the part that it
-    /// and those before it let through.
-    template <typename Stops, typename Take> void for_each_stop(const Scene& scene, const Stops& stops, const Take& take) {
+    /// Calls take(x, y, hit) for the first hit of each pixel that stops its light. stops(x, y, left) decides this
+    /// from the transmittance `left` of the surfaces up to and including this hit.
+    template <typename Stops, typename Take>
+    void for_each_stop(const Scene& scene, const Stops& stops, const Take& take) {
         if (empty()) return;
         const PixelRect& r = tile_.rect();
         ImageFloat through(r.width(), r.height(), 1.0f);
@@ -64,7 +67,7 @@ private:
         std::array<Hit, kKept> nearest;
         std::uint32_t count = 0;
         bool more = false, done = false;
-        Hit last{.t = -1}; ///< all nearer ones, and it, are dealt with
+        Hit last{.t = -1}; ///< this hit and all nearer ones are processed
     };
 
     void draw();
@@ -74,7 +77,8 @@ private:
     void add(int x, int y, const Hit& hit);
     Pixel& pixel(int x, int y) {
         const PixelRect& r = tile_.rect();
-        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) + static_cast<std::size_t>(x - r.x0)];
+        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
+                       static_cast<std::size_t>(x - r.x0)];
     }
 
     const Geometry& geometry_;

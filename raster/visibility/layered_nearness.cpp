@@ -15,8 +15,10 @@ float dither(int x, int y) {
 
 namespace {
 
-/// A tile's rays, that end where a picture of nearness says: nobody asks what is there.
-HitTile rays_to(const ImageFloat& nearness, const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect) {
+/// Returns a tile whose hits lie at the given reversed depths. Only their distances are set, because no object is
+/// needed.
+HitTile rays_to(const ImageFloat& nearness, const Geometry& geometry, const PassView& view, SampleOffset offset,
+                const PixelRect& rect) {
     DepthTile nothing;
     nothing.reset(rect, offset, view.viewport);
     nothing.empty_undrawn();
@@ -32,8 +34,8 @@ HitTile rays_to(const ImageFloat& nearness, const Geometry& geometry, const Pass
 
 } // namespace
 
-void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers, const PassView& view,
-                           const PixelRect& rect, std::size_t index, ImageFloat& picture) {
+void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers,
+                           const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& picture) {
     keep_nearness(geometry, view, rect, index, picture);
     if (!touches(layers, index)) return;
     const SampleOffset offset = view.samples.front();

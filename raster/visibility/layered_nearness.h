@@ -1,4 +1,4 @@
-// Depths alone where surfaces have holes or let a part of the light through, as a shadow map takes them.
+// Renders depth maps, as a shadow map needs them, with alpha-masked and alpha-blended surfaces.
 #pragma once
 
 #include "raster/prepare.h"
@@ -6,20 +6,25 @@
 
 namespace duet::raster {
 
-/// keep_nearness() (raster/display.h) with surfaces that may be seen through: a texel keeps the first of its surfaces
-/// that stops its light. Holes never do, whole surfaces always, and in between the part of the texels that their opacity
-/// says, so that the mean over texels is that of blending (Enderton, Sintorn, Shirley and Luebke 2010, «Stochastic
-/// Transparency», §3.4). Two departures: a texel has one number for all its surfaces, and what stops it is where the
-/// light that has passed the layers so far falls below that, so that stacked veils let through the product; and the
-/// numbers are not independent but the ranks of an ordered dither of 4 × 4 texels, as wide as the filter that
-/// ShadowMap::lit_fraction takes to maps with layers. That leaves nothing of ranks that are above the opacity or below
-/// it, and of the one between, whose texels the hash decides, at most half a sixteenth of the light, rms.
-/// `layers`: of process_layers. The same bits as keep_nearness() where they are not.
-void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers, const PassView& view,
-                           const PixelRect& rect, std::size_t index, ImageFloat& picture);
+/// Renders reversed depth as keep_nearness() (raster/display.h) does, with alpha-masked and alpha-blended surfaces.
+/// A texel stores the first surface that stops its light. Fully transparent points never do and opaque surfaces
+/// always do. A surface of partial opacity stops the light of that fraction of the texels, so the mean over texels
+/// equals that of blending (Enderton, Sintorn, Shirley and Luebke 2010, "Stochastic Transparency", §3.4).
+///
+/// There are two differences. First, a texel has one threshold for all its surfaces: the first surface at which the
+/// accumulated opacity exceeds the threshold stops the light, so the transmittances of stacked surfaces multiply.
+/// Second, the thresholds are not independent but form an ordered dither of 4 × 4 texels, which is the width of the
+/// filter that ShadowMap::lit_fraction applies to maps with layers. Within the filter, thresholds with a rank above
+/// or below the opacity cause no error. The one rank in between, whose texels the hash decides, causes an rms error
+/// of at most half a sixteenth of the light.
+///
+/// `layers` comes from process_layers. Where there are none, the result is bit-identical to keep_nearness().
+void keep_layered_nearness(const PreparedData& data, const Geometry& geometry, const Geometry& layers,
+                           const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& picture);
 
-/// The texel's number, in [0, 1): a rank of Bayer's matrix (1973, «An Optimum Method for Two-Level Rendition of
-/// Continuous-Tone Pictures») and, within its step of 1/16, a hash, so that the mean is exact for every opacity.
+/// Returns the dither threshold of a texel, in [0, 1): a rank of Bayer's matrix (1973, "An Optimum Method for
+/// Two-Level Rendition of Continuous-Tone Pictures") plus a hash within its step of 1/16, so that the mean is exact
+/// for every opacity.
 float dither(int x, int y);
 
 } // namespace duet::raster

@@ -16,8 +16,8 @@ void add_weighted(Shaded& sum, const Shaded& shaded, float weight) {
 
 } // namespace
 
-Layers::Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry, const PassView& view,
-               SampleOffset offset, std::size_t tile_index, HitTile& tile)
+Layers::Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
+               const PassView& view, SampleOffset offset, std::size_t tile_index, HitTile& tile)
     : data_(data), settings_(settings), program_(program), view_(view), offset_(offset), tile_(tile) {
     HitLists lists(geometry, view, offset, tile_index, tile);
     if (lists.empty()) return;
@@ -36,7 +36,7 @@ Shaded Layers::over(int x, int y, const Shaded& behind) {
     return sum;
 }
 
-/// The next layer of a pixel; whether nothing behind it is seen.
+/// Adds the next layer of a pixel. Returns true if nothing behind it is visible.
 bool Layers::add(int x, int y, const Hit& hit) {
     const float stopped = opacity(data_.scene, tile_.ray(x, y), hit);
     if (stopped == 0) return false;

@@ -1,4 +1,5 @@
-// Stage 7b: surfaces with holes, and those that stop a part of the light only, in order of depth over the opaque picture.
+// Implements stage 7b, which composites alpha-masked and alpha-blended surfaces over the opaque image, sorted by
+// depth.
 #pragma once
 
 #include "raster/shade.h"
@@ -7,31 +8,33 @@
 
 namespace duet::raster {
 
-/// The layers of a tile, one sample a pixel. Of each pixel's list of Hits nearer than what it sees (raster/visibility/hit_lists.h)
-/// holes are left out, the first whole surface becomes what the sample sees, and what is partly there before it is blended:
-/// its opacity times its own light, the rest of what lies behind it (Porter and Duff 1984, «over»).
+/// Holds the transparent layers of a tile, one sample per pixel. Each pixel has a list of Hits in front of its
+/// visible surface (raster/visibility/hit_lists.h). Hits of zero opacity are skipped. The first fully opaque hit
+/// becomes the visible surface. Those in front of it are blended with the "over" operator (Porter and Duff 1984).
 class Layers {
 public:
-    /// Changes what the tile's samples see. `geometry`: of process_layers. `offset`: the tile's.
-    /// `program`: of the shading; null for Shading::kLit.
-    Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry, const PassView& view,
-           SampleOffset offset, std::size_t tile_index, HitTile& tile);
+    /// Shades the layers. It changes the visible surface in `tile` where an opaque hit lies in front. `geometry`
+    /// comes from process_layers, `offset` is that of the tile's samples, `program` is the shading program; null
+    /// for Shading::kLit.
+    Layers(const PreparedData& data, const Settings& settings, const Program* program, const Geometry& geometry,
+           const PassView& view, SampleOffset offset, std::size_t tile_index, HitTile& tile);
 
-    /// A pixel with its layers over what it sees. What it sees becomes, of the layers and that, what stops its ray
-    /// (common/scene/holes.h): the hit that a ray tracer reports.
+    /// Returns the pixel with its layers composited over `behind`. The tile's hit becomes the surface that stops
+    /// the ray (common/scene/holes.h), which is the hit that a ray tracer reports.
     Shaded over(int x, int y, const Shaded& behind);
 
 private:
     struct Pixel {
-        Hit stopping;             ///< the first of its layers that stops the sample's ray
-        Shaded front{{}, {}, {}}; ///< the sum of them
-        float through = 1;        ///< the part of what lies behind that is seen
+        Hit stopping;             ///< the first layer that stops the sample's ray
+        Shaded front{{}, {}, {}}; ///< the sum of the layers, weighted by visibility
+        float through = 1;        ///< transmittance of the layers
     };
 
     bool add(int x, int y, const Hit& hit);
     Pixel& pixel(int x, int y) {
         const PixelRect& r = tile_.rect();
-        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) + static_cast<std::size_t>(x - r.x0)];
+        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
+                       static_cast<std::size_t>(x - r.x0)];
     }
 
     const PreparedData& data_;
@@ -40,7 +43,7 @@ private:
     const PassView& view_;
     SampleOffset offset_;
     HitTile& tile_;
-    std::vector<Pixel> pixels_; ///< empty where no layer touches the tile
+    std::vector<Pixel> pixels_; ///< empty if no layer overlaps the tile
 };
 
 } // namespace duet::raster

@@ -5,7 +5,7 @@
 namespace duet::raster {
 namespace {
 
-/// From sixteenths of a pixel about its centre.
+/// Converts positions in sixteenths of a pixel, relative to the pixel center.
 std::vector<SampleOffset> pattern(std::initializer_list<std::array<int, 2>> sixteenths) {
     std::vector<SampleOffset> result;
     for (const auto& [x, y] : sixteenths)
@@ -57,7 +57,7 @@ void LayeredTile::add(const DepthTile& tile) {
         bool same = !layers_.empty() && layers_[0]->used_[first / kStrip];
         for (std::size_t i = first; same && i < first + kStrip; i += Ints::size)
             same = xsimd::all(Ints::load_aligned(&layers_[0]->ids_[i]) == Ints::load_aligned(tile.ids() + i));
-        if (!same) { // the first sample; or more than one primitive
+        if (!same) { // the first sample, or more than one primitive
             for (std::uint32_t i = first; i < first + kStrip; ++i) add_one(i, tile.ids()[i], offset);
             continue;
         }
@@ -76,14 +76,16 @@ void LayeredTile::add(const DepthTile& tile) {
 void LayeredTile::strip(std::size_t i, int x, int y, Strip& strip) const {
     const Layer& layer = *layers_[i];
     const std::uint32_t first = place(x, y);
-    strip.place = {.x = x, .y = y, .ids = nullptr, .nearness = nullptr, .offset = {}, .offsets = nullptr, .whole_pixels = true};
+    strip.place = {
+        .x = x, .y = y, .ids = nullptr, .nearness = nullptr, .offset = {}, .offsets = nullptr, .whole_pixels = true};
     if (!layer.used_[first / kStrip]) return;
     strip.place.ids = &layer.ids_[first];
     for (std::size_t k = 0; k < kStrip; ++k) {
         const int count = layer.counts_[first + k];
         strip.offsets[k] = {};
         if (count == 0 || count == count_) continue;
-        strip.offsets[k] = {(layer.sum_x_[first + k] + count / 2) / count, (layer.sum_y_[first + k] + count / 2) / count};
+        strip.offsets[k] = {(layer.sum_x_[first + k] + count / 2) / count,
+                            (layer.sum_y_[first + k] + count / 2) / count};
         strip.place.offsets = &strip.offsets;
     }
 }

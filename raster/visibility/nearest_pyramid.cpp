@@ -24,7 +24,7 @@ NearestPyramid::NearestPyramid(ImageFloat image) {
 
 float NearestPyramid::greatest(int x0, int y0, int x1, int y1) const {
     const int extent = std::max(x1 - x0, y1 - y0);
-    // Blocks as large as the region or larger: it touches two at most along each side.
+    // Use blocks at least as large as the region, so that it overlaps at most two along each side.
     const auto bits = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(extent)));
     const auto level = std::min(bits, levels_.size() - 1);
     const ImageFloat& blocks = levels_[level];

@@ -1,4 +1,4 @@
-// Where sixteen samples of a tile lie, and what they see.
+// Describes the positions of a packet of sixteen samples of a tile, and the ids of their visible surfaces.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -8,16 +8,18 @@
 
 namespace duet::raster {
 
-/// Two rows of eight samples of a tile.
+/// Describes a packet of two rows of eight samples of a tile.
 struct StripPlace {
-    int x = 0, y = 0;                  ///< the first pixel
-    const std::int32_t* ids = nullptr; ///< of what each sees (DepthTile::ids); aligned to 64 bytes
-    const float* nearness = nullptr;   ///< of each (DepthTile::nearness), likewise aligned; null: to be worked out
-    std::uint32_t inside = 0;          ///< a bit for each that lies in the unsnapped triangle for certain, as far as is known
+    int x = 0, y = 0;                  ///< first pixel
+    const std::int32_t* ids = nullptr; ///< of the visible primitives (DepthTile::ids); aligned to 64 bytes
+    /// The reversed depths (DepthTile::nearness) are aligned to 64 bytes. If the pointer is null, they must be
+    /// computed.
+    const float* nearness = nullptr;
+    std::uint32_t inside = 0;          ///< one bit per sample that is known to lie inside the unsnapped triangle
     SampleOffset offset;               ///< of every sample in its pixel
-    const std::array<SampleOffset, kStrip>* offsets = nullptr; ///< or, where given, of each its own
+    const std::array<SampleOffset, kStrip>* offsets = nullptr; ///< per-sample offsets; null: all use `offset`
 
-    bool whole_pixels = false; ///< multisampling: each stands for a pixel, or what is seen of it
+    bool whole_pixels = false; ///< multisampling: each sample stands for a pixel, or a layer of it
 
     SampleOffset offset_of(std::size_t i) const { return offsets != nullptr ? (*offsets)[i] : offset; }
     Vec2d position(std::size_t i) const {
@@ -25,7 +27,7 @@ struct StripPlace {
     }
 };
 
-/// How many samples a pixel are shaded: so much of it each one stands for.
+/// Returns the number of shaded samples per pixel, which determines each sample's footprint.
 inline int samples_per_pixel(const StripPlace& place, const PassView& view) {
     return place.whole_pixels ? 1 : static_cast<int>(view.samples.size());
 }

@@ -11,7 +11,7 @@ void StripReader::find_object(const StripSamples& samples) {
     last_run_ = &triangles_.run_of(static_cast<std::uint32_t>(*low),
                                    last_run_ != nullptr ? *last_run_ : triangles_.runs.front());
     const Run& last = triangles_.run_of(static_cast<std::uint32_t>(*high), *last_run_);
-    // Numbers are in the order of objects: between two of one object there is no other's.
+    // Ids are in the order of objects, so all ids between two of one object belong to it.
     if (last_run_->sphere || last.sphere || last.object != last_run_->object) return;
     shape_ = &triangles_.packed(last);
     object_ = &triangles_.objects[last.object];

@@ -1,4 +1,4 @@
-// Sixteen samples of a tile, and what they see.
+// Reads the ids of a packet of sixteen samples and finds the object they belong to.
 #pragma once
 
 #include "raster/visibility/strip_place.h"
@@ -8,7 +8,7 @@
 
 namespace duet::raster {
 
-/// A bit for each sample that sees something.
+/// Returns one bit per sample that has a visible primitive.
 inline std::uint32_t samples_seen(const std::int32_t* ids) {
     const Ints none(static_cast<std::int32_t>(kNoTriangle));
     std::uint32_t seen = 0;
@@ -16,7 +16,7 @@ inline std::uint32_t samples_seen(const std::int32_t* ids) {
     return seen;
 }
 
-/// The strip of a tile that begins at a pixel, whose place is known.
+/// Returns the packet that starts at pixel (x, y), whose storage index is `place`.
 inline StripPlace strip_place(const DepthTile& tile, int x, int y, std::uint32_t place) {
     return {.x = x,
             .y = y,
@@ -27,26 +27,26 @@ inline StripPlace strip_place(const DepthTile& tile, int x, int y, std::uint32_t
 }
 inline StripPlace strip_place(const DepthTile& tile, int x, int y) { return strip_place(tile, x, y, tile.place(x, y)); }
 
-/// What the samples of a strip see.
+/// Holds the visible primitives of a packet's samples.
 struct StripSamples {
-    StripOf<std::int32_t> ids; ///< where nothing is seen: another's
-    std::uint32_t seen = 0;    ///< a bit for each sample that sees something
-    std::uint32_t on_mesh = 0; ///< and for each that sees a mesh's triangle or a quad's half, where only one object's are seen
-    const TransformedObject* object = nullptr; ///< that one, or null
-    const PackedShape* shape = nullptr;        ///< its triangles; of a sphere: null
-    std::size_t first_id = 0;                  ///< number of the first of them
+    StripOf<std::int32_t> ids; ///< samples without a primitive repeat the id of another one
+    std::uint32_t seen = 0;    ///< one bit per sample with a visible primitive
+    std::uint32_t on_mesh = 0; ///< one bit per sample on a mesh or quad; 0 unless all belong to the same object
+    const TransformedObject* object = nullptr; ///< that object, or null
+    const PackedShape* shape = nullptr;        ///< triangles of that object; null for a sphere
+    std::size_t first_id = 0;                  ///< id of its first triangle
 
     std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids[i]); }
-    /// Triangle of the one object.
+    /// Returns the index of sample i's triangle in the one object.
     std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids[i]) - first_id; }
 };
 
-/// Walks from strip to strip: the object that two of them have in common is not looked up again.
+/// Reads consecutive packets. The object lookup is skipped while packets see the same object.
 class StripReader {
 public:
     explicit StripReader(const Triangles& triangles) : triangles_(triangles) {}
 
-    /// Takes the numbers of what the sixteen samples see (DepthTile::ids).
+    /// Reads the ids of the sixteen samples' visible primitives (DepthTile::ids).
     void read(const std::int32_t* ids, StripSamples& samples);
     const Run& run_of(std::uint32_t id) const { return triangles_.run_of(id, *last_run_); }
 
@@ -56,10 +56,10 @@ private:
 
     const Triangles& triangles_;
     const Run* last_run_ = nullptr;
-    const TransformedObject* object_ = nullptr; ///< null: the last samples did not see the triangles of just one
+    const TransformedObject* object_ = nullptr; ///< null: the last packet did not see triangles of exactly one object
     const PackedShape* shape_ = nullptr;
     std::size_t first_id_ = 0;
-    std::int32_t low_id_ = 0, end_id_ = 0; ///< numbers of its triangles
+    std::int32_t low_id_ = 0, end_id_ = 0; ///< range of the ids of its triangles
 };
 
 inline bool StripReader::all_of_last_object(const StripSamples& samples) const {

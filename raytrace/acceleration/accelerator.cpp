@@ -42,7 +42,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
     streams_ = streamable(world_) && !sabotaged(Guard::kSphereRoots);
 }
 
-// A ray in an instance's space, at its time.
+// Transforms the ray to the instance's object space at the ray's time.
 Ray Accelerator::inside(const BvhInstance& instance, const Ray& ray) const {
     const Object& object = scene_.objects[instance.object];
     if (!object.moving) return to_object_space(ray, object.to_world, object.to_object);
@@ -50,7 +50,7 @@ Ray Accelerator::inside(const BvhInstance& instance, const Ray& ray) const {
     return to_object_space(ray, transform.to_world, transform.to_object);
 }
 
-// What an instance's hits are in its shape's hierarchy.
+// Returns the instance test of a ray: it traverses the bottom-level BVH of the instance's shape.
 template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
     return [this, &ray](const BvhInstance& instance, Hit& so_far) {
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
@@ -64,7 +64,7 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
     };
 }
 
-// The same for a packet.
+// Tests instances against a whole packet; operator()(ray) returns the test for a single ray.
 struct Accelerator::PacketInstances {
     static constexpr std::size_t kSize = RayPacket::kSize;
     const Accelerator& scene;
@@ -75,7 +75,8 @@ struct Accelerator::PacketInstances {
     void operator()(const BvhInstance& instance, unsigned active, PacketHits& best) const {
         const Bvh& shape = scene.shapes_[instance.shape];
         std::array<Ray, kSize> its;
-        its.fill(scene.inside(instance, rays[static_cast<std::size_t>(std::countr_zero(active))])); // of all not active
+        // Lanes that are not active get the ray of the first active one.
+        its.fill(scene.inside(instance, rays[static_cast<std::size_t>(std::countr_zero(active))]));
         for (unsigned some = active & (active - 1); some != 0; some &= some - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(some));
             its[ray] = scene.inside(instance, rays[ray]);
@@ -94,10 +95,10 @@ struct Accelerator::PacketInstances {
     }
 };
 
-// Whole surfaces and holes alike.
+// Finds the closest hit without regard to alpha: transparent points count as hits.
 Hit Accelerator::first(const Ray& ray) const {
     Hit best;
-    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (!traceable(ray)) return {};
     return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
 }
@@ -107,7 +108,8 @@ Hit Accelerator::closest(const Ray& ray) const {
     return holes_ ? beyond_holes(ray, hit) : hit;
 }
 
-// From a hit on to the first that the ray does not pass through. Every hit lies beyond the last, so there is an end.
+// Steps from `hit` to the first hit that the ray does not pass through. Each hit lies beyond the previous one, so
+// the loop ends.
 Hit Accelerator::beyond_holes(const Ray& ray, Hit hit) const {
     Ray rest = ray;
     while (hit.valid() && passes_through(scene_, ray, hit)) {
@@ -117,7 +119,7 @@ Hit Accelerator::beyond_holes(const Ray& ray, Hit hit) const {
     return hit;
 }
 
-// As find_any has it, but by way of the nearest hits.
+// Returns what find_any returns, but respects alpha by stepping through closest hits.
 bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
     ray.t_max = min(ray.t_max, end.t);
     const auto before_end = [&](const Hit& hit) {
@@ -135,7 +137,7 @@ bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
     constexpr unsigned kAll = (1u << kSize) - 1;
-    const RayPacket::Batch most(std::numeric_limits<float>::max()); // a distance that overflowed is none
+    const RayPacket::Batch most(std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     std::size_t done = 0;
     for (; rays.size() - done >= kSize; done += kSize) {
         const auto some = rays.subspan(done).first<kSize>();
@@ -156,24 +158,27 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
 
 namespace {
 
-// Rays that are sheared along the same axes: the main one, and which way they run along it. Of others the last.
+// Returns the shear class of a ray: its dominant axis, and whether it points in the negative direction along it.
+// Rays that cannot be traced get the last class.
 constexpr std::size_t kShearClasses = 7;
 std::size_t shear_class(const Ray& ray) {
     if (!traceable(ray) || ray.t_min != ray.t_min || ray.t_max != ray.t_max) return kShearClasses - 1;
-    const Vec3 size = abs(ray.direction); // as longest_axis, without a branch
+    const Vec3 size = abs(ray.direction); // the result of longest_axis, without a branch
     const bool x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
     const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
     const std::size_t axis = x ? 0 : 2 - std::size_t{y};
     return axis + (d[axis] < 0 ? 3 : 0);
 }
 
-// So many rays are sorted at a time.
+// Rays are sorted by class in chunks of at most this size.
 constexpr std::size_t kMostSorted = 512;
 
 } // namespace
 
-// Rays sheared alike, up to a packet of them, however they run otherwise: all primitives are tested.
-void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const {
+// Tests up to one packet of rays of the same shear class against the whole primitive list. The rays may otherwise be
+// incoherent.
+void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which,
+                                  std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
     std::array<Ray, kSize> some;
     for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[which[k < which.size() ? k : 0]];
@@ -204,10 +209,12 @@ void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<cons
         for (const std::uint32_t i : which) hits[i] = beyond_holes(rays[i], hits[i]);
 }
 
-void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const {
+void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which,
+                                   std::span<Hit> hits) const {
     std::array<std::uint8_t, kMostSorted> classes;
     std::array<std::uint32_t, kMostSorted> order;
-    const auto ends = sort_by_class<kShearClasses>(which, [&](std::uint32_t i) { return shear_class(rays[i]); }, classes, order);
+    const auto ends = sort_by_class<kShearClasses>(
+        which, [&](std::uint32_t i) { return shear_class(rays[i]); }, classes, order);
     std::size_t done = 0;
     for (std::size_t c = 0; c < kShearClasses - 1; ++c)
         while (done < ends[c]) {
@@ -220,7 +227,7 @@ void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const st
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
-    clamped.t = min(end.t, std::numeric_limits<float>::max()); // as above
+    clamped.t = min(end.t, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (holes_) return occluded_beyond_holes(ray, clamped);
     return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
 }

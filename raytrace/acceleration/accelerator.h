@@ -1,4 +1,4 @@
-// The whole scene behind two questions: what does a ray hit first, and is anything in its way?
+// The accelerator answers ray queries against the whole scene: closest hit and occlusion.
 #pragma once
 
 #include "common/film/rendering.h"
@@ -10,33 +10,37 @@
 
 namespace duet::raytrace {
 
-/// Two levels: one hierarchy over everything that stands in the world as it is, and over the bounds of instances;
-/// and one of its own, in its own space, for each shape that instances show. Refers to the scene.
+/// Builds and queries a two-level acceleration structure. The top-level BVH holds the primitives of all static,
+/// untransformed objects and the bounds of instances. Each instanced shape has a bottom-level BVH in its object
+/// space. The accelerator refers to the scene, which must outlive it.
 class Accelerator {
 public:
-    /// threads: for building, 0 = all. The result does not depend on it; no hit depends on the quality.
+    /// Builds all hierarchies. `threads` is the number of build threads (0 = all); the result does not depend on it.
+    /// Hits do not depend on `quality`.
     Accelerator(const Scene& scene, int threads, BvhQuality quality = BvhQuality::kDefault);
 
-    /// The first hit with t in (t_min, t_max], t_min not negative; invalid where there is none, or where the ray's
-    /// numbers are out of range (`traceable`) or it has no direction. At equal t the lower (object, primitive). Holes of
-    /// the surfaces' opacity maps are no hits; what stops a part of the light is one for that part of all rays (holes.h).
+    /// Returns the closest hit with t in (t_min, t_max]; t_min must not be negative. The hit is invalid if the ray
+    /// misses, or if it is not `traceable`: its components are out of range or it has no direction. At equal t the
+    /// lower (object, primitive) wins. A point where the material's alpha is 0 is no hit. At an alpha between 0 and
+    /// 1 that fraction of rays hits, chosen by a hash of the ray and the primitive (holes.h).
     Hit closest(const Ray& ray) const;
-    /// The same of many rays at once: faster where neighbours in the list run close by each other, as those of
-    /// neighbouring pixels do. As many hits as rays.
+    /// Finds the closest hit of each ray; `hits` must be as long as `rays`. The rays are traced in packets, which is
+    /// faster if neighbors in the list are coherent, as the camera rays of neighboring pixels are.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
-    /// The same of some rays, those with these indices, which may run anywhere, in a scene that gathers_scattered(). Other
-    /// hits stay.
-    void closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
-    /// Whether many rays that run anywhere are sooner there together than one by one.
+    /// Finds the closest hits of the rays with the indices `which`, which may be incoherent. Other elements of
+    /// `hits` stay unchanged. The scene must be one for which gathers_scattered() is true.
+    void closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
+                              std::span<Hit> hits) const;
+    /// Returns whether a batch of incoherent rays is traced faster together than one by one.
     bool gathers_scattered() const { return few_primitives_ || streams_; }
-    /// Whether there are few, and nothing but primitives: then the nearest hit of many rays costs less than a look for any
-    /// hit of each.
+    /// Returns whether the scene is a short list of primitives without instances and alpha masks. For such a scene,
+    /// the closest hits of a batch of rays cost less than a separate any-hit query for each ray.
     bool few_primitives() const { return few_primitives_; }
-    /// Whether anything is hit before `end`, other than end's own primitive: where a light is the end of a shadow
-    /// ray, it does not shade itself. An end without object is a mere distance.
+    /// Returns whether any primitive is hit before `end`. The primitive of `end` itself is ignored, so that a light
+    /// at the end of a shadow ray does not occlude itself. An `end` without an object is only a distance.
     bool occluded(const Ray& ray, const Hit& end) const;
 
-    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene
+    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene, counting each instance's
     std::int64_t memory_bytes() const;
     HierarchyStatistics statistics() const;
     const Bvh& world() const { return world_; }
@@ -54,11 +58,11 @@ private:
     const Scene& scene_;
     BvhQuality quality_;
     Bvh world_;
-    std::vector<Bvh> shapes_; ///< by shape; empty for those that no instance shows
+    std::vector<Bvh> shapes_; ///< by shape; empty if no instance uses the shape
     std::int64_t primitives_ = 0;
-    bool holes_; ///< some material has
+    bool holes_; ///< whether any material has an alpha mask
     bool few_primitives_ = false;
-    bool streams_ = false; ///< rays may go through the world side by side
+    bool streams_ = false; ///< whether `world_` is streamable (bvh_stream.h)
 };
 
 } // namespace duet::raytrace

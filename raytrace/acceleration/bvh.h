@@ -1,5 +1,5 @@
-// The bounding volume hierarchy: what it is made of. bvh_build.cpp makes a binary tree of boxes, bvh_collapse.cpp packs
-// it into these nodes, bvh_traverse.h sends rays through.
+// These are the data structures of the bounding volume hierarchy. bvh_build.cpp builds a binary tree of boxes,
+// bvh_collapse.cpp packs it into these wide nodes, and bvh_traverse.h traverses them.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -13,19 +13,21 @@
 
 namespace duet::raytrace {
 
-/// What a leaf holds. All primitives of a leaf are of one kind, so that its loop tests one thing.
+/// Names the kind of a leaf's primitives. All primitives of a leaf are of one kind, so that the leaf loop runs only
+/// one intersection test.
 enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance };
 
-// Primitives are kept in the order of the leaves, with all that their test needs: a leaf reads consecutive memory.
-// `object` and `primitive` are what a Hit names; in the hierarchy of an instanced shape `object` is the instance's.
+// Primitives are stored in leaf order with everything that their intersection test needs, so that a leaf reads
+// consecutive memory. `object` and `primitive` are the indices that a Hit reports. In the hierarchy of an instanced
+// shape, hits report the instance's object instead of `object`.
 
-/// Primitives that are tested at once.
+/// This is the number of primitives that are tested at once with SIMD.
 inline constexpr std::size_t kBlockSize = kSimdLanes;
 template <typename T> using BlockLanes = std::array<T, kBlockSize>;
 
-/// Triangles or quads. Absent ones are NaN, which nothing hits.
+/// Stores a block of triangles or quads in structure-of-arrays layout. Unused lanes hold NaN, which no ray hits.
 template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) PolygonBlock {
-    std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< of each x, y, z
+    std::array<std::array<BlockLanes<float>, 3>, kCorners> corner; ///< [corner][axis][lane]
     BlockLanes<std::uint32_t> object, primitive;
 
     void set(std::size_t lane, const std::array<Vec3, kCorners>& corners, std::uint32_t its_object,
@@ -45,7 +47,8 @@ template <std::size_t kCorners> struct alignas(kSimdLanes * sizeof(float)) Polyg
 using TriangleBlock = PolygonBlock<3>;
 using QuadBlock = PolygonBlock<4>;
 
-/// Spheres: the only primitive of their object, 0. Absent ones are NaN, which nothing hits.
+/// Stores a block of spheres in structure-of-arrays layout. A sphere is the only primitive of its object, so its
+/// primitive index is 0. Unused lanes hold NaN, which no ray hits.
 struct alignas(kSimdLanes * sizeof(float)) SphereBlock {
     std::array<BlockLanes<float>, 3> center;
     BlockLanes<float> radius;
@@ -64,17 +67,17 @@ struct BvhInstance {
     std::uint32_t object, shape; ///< indices into Scene::objects and Scene::shapes
 };
 
-/// A child of a node, or the root: an inner node, or a leaf of primitives of one kind. (Without initializers: a
-/// traversal's stack is an array of these, which nobody should clear for each ray.)
+/// Refers to a child of a node or to the root: an inner node, or a leaf of primitives of one kind. It has no member
+/// initializers, because a traversal stack is an array of these and must not be cleared for each ray.
 class BvhRef {
 public:
-    /// Nodes, and elements of each kind's list: indices are below this.
+    /// Indices of nodes (in units of kNodeUnit bytes) and of elements in each kind's list are below this.
     static constexpr std::size_t kMaxIndex = std::size_t{1} << 29;
 
     BvhRef() = default;
     static constexpr std::size_t kNodeUnit = 32;
     static BvhRef node(std::uint32_t index);
-    /// The element of the kind's list: a block of primitives, or an instance.
+    /// Refers to an element of the kind's list: a block of primitives, or an instance.
     static BvhRef leaf(PrimitiveKind kind, std::uint32_t index) {
         return BvhRef(static_cast<std::uint32_t>(kind) << 29 | index);
     }
@@ -87,15 +90,15 @@ public:
 
 private:
     explicit BvhRef(std::uint32_t bits) : bits_(bits) {}
-    // Leaves have the smaller numbers: of children at equal distance, as those are whose boxes a ray begins in, they are
-    // tested first, and may spare it the others.
+    // Leaves compare less than inner nodes. Among children at equal entry distance, such as boxes that contain the
+    // ray's origin, leaves are thus tested first, and a hit in them may cull the others.
     static constexpr std::uint32_t kNode = 1u << 31;
     std::uint32_t bits_;
 };
 
-/// A node with the boxes of up to kWidth children, each of their six planes in an array of its own: one instruction
-/// tests a plane of all children against a ray. Children are dense; the boxes of absent ones are empty and hit by no
-/// ray.
+/// Stores a wide node with the boxes of up to kWidth children. Each of their six planes has an array of its own, so
+/// that one SIMD instruction tests a plane of all children against a ray. Children are packed at the front. Unused
+/// children have empty boxes, which no ray hits.
 struct alignas(32) BvhNode {
     static constexpr std::size_t kWidth = kSimdLanes;
     using Lanes = std::array<float, kWidth>;
@@ -114,15 +117,16 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 }
 
 struct Bvh {
-    /// The longest way from the root to a leaf: bounds a traversal's stack.
+    /// This is the greatest depth of a leaf below the root. It bounds the size of a traversal stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< primitives
+    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< maximum number of primitives
 
     Box3 bounds;
-    std::size_t references = 0; ///< primitives in leaves; one that is cut counts in each
-    /// All primitives, where single rays are sooner through with them than with the tree.
+    std::size_t references = 0; ///< primitives in leaves; a primitive cut by spatial splits counts once per leaf
+    /// These leaves together hold all primitives, if a single ray tests them faster than it traverses the tree.
     std::vector<BvhRef> list;
-    /// The tree; the first is its root. None where there is but one leaf, which is the list.
+    /// These are the nodes of the tree, and nodes[0] is the root. There are none if there is only one leaf, which is
+    /// then in `list`.
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<QuadBlock> quads;
@@ -131,7 +135,8 @@ struct Bvh {
 
     bool empty() const { return bounds.empty(); }
     bool has_polygons() const { return !triangles.empty() || !quads.empty(); }
-    /// Whether single rays go through the tree, not the list; packets do wherever there is one.
+    /// Returns whether single rays traverse the tree instead of testing `list`. Packets traverse the tree whenever
+    /// there is one.
     bool use_tree() const { return list.empty() && !nodes.empty(); }
     std::int64_t memory_bytes() const;
 };

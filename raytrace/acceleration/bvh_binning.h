@@ -1,4 +1,5 @@
-// What the builders of binary trees share: sets of items sorted into bins, and the planes between bins weighed.
+// The builders of binary trees share these functions, which sort sets of items into bins and evaluate the planes
+// between bins.
 #pragma once
 
 #include "common/system/parallel.h"
@@ -12,27 +13,33 @@
 namespace duet::raytrace {
 
 inline constexpr std::size_t kMaxBins = 32;
-// The cost of a step down, in tests of a leaf's block.
+// This is the SAH cost of one traversal step, relative to the test of one leaf block.
 inline constexpr float kStepCost = 1;
-// Below this depth boxes are halved by count, so that no input makes the tree deeper than another log2(2³²) levels.
+// From this depth on, sets are halved by count, so that no input makes the tree deeper by more than log2(2³²)
+// levels.
 inline constexpr int kSahDepth = Bvh::kMaxDepth - 40;
-// Ranges of more items are binned and divided by all threads, in chunks of this many.
+// This is the chunk size, in items, of parallel binning and partitioning. Sets of at most two chunks are processed
+// by one thread.
 inline constexpr std::size_t kChunk = std::size_t{1} << 15;
 
 using Items = std::span<BuildItem>;
 using Four = Bounds::Four;
 
-// An item's corners: the fourth number of each is its neighbour in memory.
+// These functions load a corner of an item's box. The fourth lane holds the value that follows in memory and is not
+// used.
 inline Four low_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item)); }
-inline Four high_corner(const BuildItem& item) { return Four::load_unaligned(reinterpret_cast<const float*>(&item) + 3); }
-static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float) && sizeof(BuildItem) >= 7 * sizeof(float));
-// Twice the centre: it saves a product.
+inline Four high_corner(const BuildItem& item) {
+    return Four::load_unaligned(reinterpret_cast<const float*>(&item) + 3);
+}
+static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float) &&
+              sizeof(BuildItem) >= 7 * sizeof(float));
+// Returns twice the center of the box, which saves a multiplication.
 inline Four doubled_center(const BuildItem& item) { return low_corner(item) + high_corner(item); }
 
-// What the builder knows of a set of items.
+// Summarizes a set of items: their bounds and their kinds of primitives.
 struct Extent {
-    Bounds bounds, centers; ///< of the boxes, and of their centres (doubled)
-    unsigned kinds = 0;     ///< a bit for each kind that occurs
+    Bounds bounds, centers; ///< of the boxes, and of their doubled centers
+    unsigned kinds = 0;     ///< bit mask of the kinds that occur
 
     void extend(const BuildItem& item) {
         bounds.extend(low_corner(item), high_corner(item));
@@ -55,8 +62,9 @@ inline Extent extent_of(std::span<const BuildItem> items) {
     return extent;
 }
 
-// The cost of testing so many primitives: by the block; of instances each is a hierarchy of its own. (That a block of
-// quads takes longer than one of spheres changes no tree that was tried.)
+// Returns the SAH cost of testing a number of primitives: 1 per block, or 1 per instance, since each instance is a
+// hierarchy of its own. (Blocks of quads take longer than blocks of spheres, but a separate cost changed none of the
+// trees that were tried.)
 class Tests {
 public:
     explicit Tests(unsigned kinds)
@@ -69,11 +77,12 @@ private:
     int shift_;
 };
 
-// Maps centres to bins of equal width on each axis; axes on which the centres have no extent have one bin.
+// Maps box centers to bins of equal width on each axis. All items are in one bin on an axis along which the centers
+// have no extent.
 class Binning {
 public:
     Binning(const Extent& extent, std::size_t count) : low_(extent.centers.low) {
-        // Few items: few bins, as their evaluation would cost more than it gains.
+        // Small sets get few bins, because evaluating more of them would cost more than it gains.
         bins = std::min(kMaxBins, 4 + count / 16);
         const Four width = extent.centers.high - extent.centers.low;
         const Four scale = Four(static_cast<float>(bins)) / width;
@@ -86,7 +95,8 @@ public:
         const Four place = (doubled_center(item) - low_) * scale_;
         using Four32 = xsimd::batch<std::int32_t, Four::arch_type>;
         const Four32 last(static_cast<std::int32_t>(bins) - 1);
-        const auto index = xsimd::max(xsimd::min(xsimd::to_int(place), last), Four32(0)); // a NaN has become negative
+        // NaN becomes a negative integer, and so index 0.
+        const auto index = xsimd::max(xsimd::min(xsimd::to_int(place), last), Four32(0));
         alignas(16) std::array<std::int32_t, 4> result;
         index.store_aligned(result.data());
         return result;
@@ -123,7 +133,7 @@ inline void fill(Bins& bins, std::span<const BuildItem> items, const Binning& bi
     }
 }
 
-// The same by all threads.
+// Fills the bins in parallel chunks. The result equals that of the serial `fill`.
 inline void fill(Bins& bins, std::span<const BuildItem> items, const Binning& binning, int threads) {
     if (items.size() <= 2 * kChunk) return fill(bins, items, binning);
     std::vector<Bins> parts((items.size() + kChunk - 1) / kChunk);
@@ -142,7 +152,7 @@ struct Split {
     float cost = 0;
 };
 
-// The cheapest of the planes between bins; none where all centres are one point.
+// Returns the cheapest plane between bins, or nothing if all centers coincide.
 inline std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area,
                                        const Tests& tests, std::size_t count) {
     std::optional<Split> best;
@@ -166,10 +176,11 @@ inline std::optional<Split> best_split(const Bins& bins, const Binning& binning,
     return best;
 }
 
-// An instance is a hierarchy of its own: a box around each pays.
+// Returns the largest leaf size for a kind. Instances get a leaf each, because each is a hierarchy of its own, and a
+// box test is cheap in comparison.
 inline std::size_t largest_leaf(PrimitiveKind kind) { return kind == PrimitiveKind::kInstance ? 1 : Bvh::kMaxLeaf; }
 
-// A set of items that has become two, the left one's in front.
+// Describes a partitioned set of items, in which those of the left half come first.
 struct Halves {
     std::size_t left_count = 0;
     Extent left, right;
@@ -188,8 +199,8 @@ template <typename GoesLeft> Halves divide(Items items, const GoesLeft& goes_lef
     return halves;
 }
 
-// Halves a set that no plane divides, all in one place (or too deep): by kind where only that keeps it from being a
-// leaf, else by count.
+// Splits a set that no plane divides, because all centers coincide or the node is too deep. It is split by kind if
+// only its mixed kinds keep it from being a leaf, else by count.
 inline Halves divide_anyhow(Items items, const Extent& extent) {
     if (items.size() <= Bvh::kMaxLeaf && !extent.one_kind())
         return divide(items, [kind = items[0].kind](const BuildItem& item) { return item.kind == kind; });

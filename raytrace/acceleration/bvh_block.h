@@ -1,5 +1,5 @@
-// Rays against the polygons of a leaf, many at once. The results are those of intersect_triangle and intersect_quad, to
-// the bit.
+// These classes test rays against the polygons of a leaf with SIMD. The results are bit-equal to those of
+// intersect_triangle and intersect_quad.
 #pragma once
 
 #include "common/geometry/quad.h"
@@ -11,10 +11,12 @@
 
 namespace duet::raytrace {
 
-/// Triangles or quads against rays, a pair a lane. What intersect_triangle decides in double is left to it.
+/// Tests rays against triangles or quads, one pair per lane, in float. The cases that intersect_triangle decides in
+/// double precision are left to it.
 template <typename Batch> class CandidateTest {
 public:
-    /// Of one ray and many polygons or the other way round; ends: of the rays.
+    /// Tests one ray against many polygons, or many rays against one polygon. `ends` are the greatest hit distances
+    /// that count.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
         test({ray, p[0], p[1], p[2]}, ray.speed, ends, 0);
@@ -26,8 +28,8 @@ public:
         const Vec3T<Batch> a = Test::sheared(ray, p[0]), b = Test::sheared(ray, p[1]), c = Test::sheared(ray, p[2]),
                            d = Test::sheared(ray, p[3]);
         const Batch ba = Test::edge(b, a), cb = Test::edge(c, b), dc = Test::edge(d, c), ad = Test::edge(a, d);
-        // The diagonal is an edge of both halves, abc and acd. So a ray meets at most one of them, unless it runs
-        // through the diagonal: then, and where rounding has folded the quad, intersect_quad has to say.
+        // The diagonal is an edge of both halves, abc and acd. A ray therefore hits at most one half, unless it
+        // passes through the diagonal. In that case, and where rounding has folded the quad, intersect_quad decides.
         const Batch ac = Test::edge(a, c), ca = -ac;
         const auto first = same_sign(cb, ac, ba), second = same_sign(dc, ad, ca);
         const auto half = [&](const auto& of_first, const auto& of_second) {
@@ -42,14 +44,17 @@ public:
         v_ = half(v_, sum);
     }
 
-    /// The lanes with a hit before the end, a bit each: all of them, and hardly any other.
+    /// Returns a bit mask of the lanes that may have a hit before the end. It contains every lane with a hit, and
+    /// few others.
     unsigned candidates() const { return candidates_; }
-    /// The candidates that are hit just as t, u and v say, if that is within the ray's range.
+    /// Returns a bit mask of the candidates whose hit is exactly t, u and v, provided that t is within the ray's
+    /// range.
     unsigned certain() const { return certain_ & candidates_; }
-    /// Those that are hit where u and v say, but so near to the ray's origin that plane_distance has to say how far:
-    /// most rays leave such a polygon. Of the rest intersect_triangle or intersect_quad has to say all.
+    /// Returns a bit mask of the candidates that are hit at u and v, but so close to the ray's origin that
+    /// plane_distance must compute the distance. Most of these rays leave the polygon. For all remaining candidates,
+    /// intersect_triangle or intersect_quad decides.
     unsigned touched() const { return touched_ & candidates_; }
-    /// The distances of all touched lanes are known now: these.
+    /// Sets the distances of all touched lanes, whose hits become certain.
     [[gnu::always_inline]] void decide_touched(Batch distances) {
         t_ = xsimd::select(touched_lanes_, distances, t_);
         certain_ |= touched_;
@@ -59,7 +64,7 @@ public:
     Batch u() const { return u_; }
     Batch v() const { return v_; }
     using Lanes = typename Batch::batch_bool_type;
-    /// The lanes whose quads are hit in the first of their halves.
+    /// Returns the lanes whose quad is hit in its first half, abc. For triangles it returns all lanes.
     Lanes first_half() const { return first_half_; }
 
 private:
@@ -67,7 +72,7 @@ private:
         return (xsimd::min(xsimd::min(a, b), c) >= Batch(0.0f)) | (xsimd::max(xsimd::max(a, b), c) <= Batch(0.0f));
     }
 
-    // unsure: lanes that are candidates whatever the triangle says.
+    // `unsure` is a bit mask of lanes that the distance test must not reject, and whose hits are never certain.
     template <typename S>
     [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, const S& speed, Batch ends, unsigned unsure) {
         const Batch zero(0.0f);
@@ -78,7 +83,7 @@ private:
         const Batch inv_det = Batch(1.0f) / test.det();
         const Batch t = test.distance(inv_det), error = test.distance_error(inv_det, speed);
         unsure |= lane_bits(test.is_needle(inv_det, speed));
-        const auto outside = (t < -error) | (t - error > ends); // and not NaN
+        const auto outside = (t < -error) | (t - error > ends); // false for NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;
         const auto inside = (low > zero) | (high < zero);
@@ -91,17 +96,17 @@ private:
     }
 
     unsigned candidates_, certain_ = 0, touched_ = 0;
-    Lanes touched_lanes_, first_half_; // not even begun where there are no candidates
+    Lanes touched_lanes_, first_half_; // uninitialized if there are no candidates
     Batch t_, u_, v_;
 };
 
-/// The polygons of a block against one ray, all at once.
+/// Tests one ray against all polygons of a block.
 template <std::size_t kCorners> class BlockTest : public CandidateTest<FloatBatch<kBlockSize>> {
 public:
     [[gnu::always_inline]] BlockTest(const Shear<float>& ray, const PolygonBlock<kCorners>& block, float end)
         : CandidateTest(ray, vertices(block, std::make_index_sequence<kCorners>()), Batch(end)) {}
 
-    /// Finds how far the touched polygons are, of the same ray and block.
+    /// Computes the distances of the touched polygons. `ray` and `block` must be those given to the constructor.
     [[gnu::always_inline]] void measure_touched(const ShearedRay& ray, const PolygonBlock<kCorners>& block) {
         Batch distances = plane_distances(ray, block.corner[0], block.corner[1], block.corner[2]);
         if constexpr (kCorners == 4)
@@ -112,7 +117,7 @@ public:
 
 private:
     using Batch = FloatBatch<kBlockSize>;
-    using Corner = std::array<BlockLanes<float>, 3>; // of all polygons, x, y, z
+    using Corner = std::array<BlockLanes<float>, 3>; // [axis][polygon]
 
     struct Vertex {
         const Corner* axes;
@@ -139,7 +144,7 @@ private:
     }
 };
 
-/// Where the ray hits one of the candidates before its end, if it does.
+/// Returns where the ray hits one polygon of a block before the ray's end, by the exact scalar test.
 inline std::optional<TriangleHit> exact_hit(const ShearedRay& ray, const TriangleBlock& block, std::size_t lane) {
     const auto [a, b, c] = block.corners(lane);
     return intersect_triangle(ray, a, b, c);

@@ -1,4 +1,4 @@
-// Boxes while hierarchies are made: as batches, for speed, with areas that stay in range.
+// The builders of hierarchies use these boxes: they are SIMD vectors for speed, and their areas stay in range.
 #pragma once
 
 #include "common/vec/box.h"
@@ -9,7 +9,7 @@
 
 namespace duet::raytrace {
 
-/// A box, empty as constructed: x, y, z and one number that nobody looks at.
+/// Stores a box with x, y, z and one unused lane. It is empty when constructed.
 struct Bounds {
     using Four = FloatBatch<4>;
     Four low = Four(kInfinity), high = Four(-kInfinity);
@@ -27,7 +27,7 @@ struct Bounds {
     }
 };
 
-/// Half the surface area of boxes inside a larger one, as a part of the larger one's: in range whatever the scale.
+/// Returns the surface area of boxes relative to that of an enclosing box, which stays in range at any scale.
 class RelativeArea {
 public:
     explicit RelativeArea(const Bounds& whole) {

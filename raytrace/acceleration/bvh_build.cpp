@@ -11,12 +11,15 @@ namespace duet::raytrace {
 
 namespace {
 
-// The same by all threads, through a second array: each chunk's items keep their order.
+// Partitions the items like `divide`, but in parallel and through a second array, `copy`. Items of one chunk keep
+// their order.
 template <typename GoesLeft>
 Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const GoesLeft& goes_left) {
     const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
     std::vector<Halves> parts(chunks);
-    const auto chunk = [&](std::size_t i) { return items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)); };
+    const auto chunk = [&](std::size_t i) {
+        return items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk));
+    };
     parallel_for(chunks, threads, [&](std::size_t i) {
         for (const BuildItem& item : chunk(i)) {
             const bool left = goes_left(item);
@@ -49,7 +52,8 @@ Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const Goes
     return halves;
 }
 
-// Subtrees of at most `job_size` items are left as placeholders, to be built by several threads at once.
+// Describes a subtree of at most `job_size` items. The builder leaves a placeholder node for it, so that several
+// threads can build these subtrees at once.
 struct Job {
     std::size_t node;
     std::size_t first, count;
@@ -66,11 +70,13 @@ public:
     std::vector<BinaryNode> nodes;
     std::vector<Job> jobs;
 
-    /// distinct: no twins are left among the items.
+    /// Builds the subtree of items [first, first + count) and returns the index of its node. `distinct` is true if
+    /// duplicates have been removed already.
     std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth, bool distinct) {
         const auto index = static_cast<std::uint32_t>(nodes.size());
         nodes.emplace_back();
-        // Boxes cannot tell these apart: without this a ray at n twins would test all n.
+        // Boxes cannot separate items with the same center. Without this step, a ray that reaches n duplicates would
+        // test all n.
         if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_ && !distinct) {
             count = drop_twins_(items_.subspan(first, count));
             distinct = true;
@@ -84,7 +90,8 @@ public:
         if (halves) {
             const std::size_t left_count = halves->left_count;
             const std::uint32_t left = build(first, left_count, halves->left, depth + 1, distinct);
-            const std::uint32_t right = build(first + left_count, count - left_count, halves->right, depth + 1, distinct);
+            const std::uint32_t right =
+                build(first + left_count, count - left_count, halves->right, depth + 1, distinct);
             nodes[index].left = left;
             nodes[index].right = right;
         } else {
@@ -95,7 +102,7 @@ public:
     }
 
 private:
-    // None where the items are a leaf.
+    // Partitions the items, or returns nothing if they are to be a leaf.
     std::optional<Halves> split(Items items, const Extent& extent, int depth) {
         if (items.size() == 1) return std::nullopt;
         const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
@@ -123,7 +130,7 @@ private:
     BuildItems copy_;
 };
 
-// Moves a subtree's nodes behind those of the tree; its root takes the placeholder's seat.
+// Appends the nodes of a subtree to the tree. The subtree's root replaces the placeholder node at index `seat`.
 void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<BinaryNode>& subtree) {
     const auto offset = static_cast<std::uint32_t>(tree.size()) - 1;
     const auto rebased = [&](BinaryNode node) {
@@ -144,7 +151,7 @@ BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& dro
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));
 
-    // The division into jobs depends on the input alone, so that the tree does, too.
+    // The division into jobs depends only on the input, so that the tree does not depend on the number of threads.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
     Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, drop_twins);
     top.build(0, tree.items.size(), extent_of(tree.items), 0, false);

@@ -1,4 +1,5 @@
-// Building a hierarchy: boxes → binary tree by the surface area heuristic → wide nodes.
+// A hierarchy is built in two steps: a binary tree of boxes by the surface area heuristic (SAH), then its collapse
+// into wide nodes.
 #pragma once
 
 #include "raytrace/acceleration/bvh.h"
@@ -9,19 +10,19 @@
 
 namespace duet::raytrace {
 
-/// A primitive as the builder sees it.
+/// Describes a primitive to the builder. `index` is its position in the list of its kind.
 struct BuildItem {
-    Box3 box; ///< finite
+    Box3 box; ///< must be finite
     std::uint32_t index;
     PrimitiveKind kind;
 };
 using BuildItems = std::vector<BuildItem, HugePageAllocator<BuildItem>>;
 
-/// A node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most Bvh::kMaxLeaf; an
-/// inner node has two children.
+/// Stores a node of the binary tree. A leaf covers items [first, first + count), all of one kind, at most
+/// Bvh::kMaxLeaf; an inner node has two children.
 struct BinaryNode {
     Box3 box;
-    std::uint32_t first = 0, count = 0; ///< count 0: an inner node
+    std::uint32_t first = 0, count = 0; ///< count is 0 in an inner node
     std::uint32_t left = 0, right = 0;
 
     bool leaf() const { return count > 0; }
@@ -34,42 +35,47 @@ inline Bounds BinaryNode::bounds() const {
     return {Bounds::Four::load_unaligned(numbers), Bounds::Four::load_unaligned(numbers + 3)};
 }
 
-/// Node 0 is the root; no nodes where there are no items. No deeper than Bvh::kMaxDepth.
+/// Node 0 is the root. There are no nodes if there are no items. The depth is at most Bvh::kMaxDepth.
 struct BinaryTree {
     std::vector<BinaryNode> nodes;
-    BuildItems items; ///< in the order of the leaves
+    BuildItems items; ///< in leaf order
 };
 
-/// Of items that all have one centre, moves those to the front that can be hit, and returns how many they are: of
-/// primitives that are the same but for their names all but the first in order are never a ray's answer.
+/// This function removes duplicates from items that all have the same center: it moves the items to retain to the
+/// front and returns their number. Of primitives that are equal except for their (object, primitive), only the first
+/// in that order is ever a closest hit.
 using DropTwins = std::function<std::size_t(std::span<BuildItem>)>;
 
-/// The binary tree over any set of boxes, by binned surface area heuristic (Wald 2007, «On fast Construction of
-/// SAH-based Bounding Volume Hierarchies», §3); O(n log n) whatever the input, and the same tree for any number of
-/// threads (0: all). Without `drop_twins` each item is in one leaf; what it drops is in none.
+/// Builds a binary tree over any set of boxes by the binned SAH (Wald 2007, "On fast Construction of SAH-based
+/// Bounding Volume Hierarchies", §3). It takes O(n log n) time on any input, and returns the same tree for any
+/// number of threads (0 = all). Each item is in one leaf, except for those that `drop_twins` removes, which are in
+/// none. Throws Error for more than 2³¹ items.
 BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins = {});
 
-/// Items [first, first + count) of the tree: those of one leaf; and where in their kind's list they go.
+/// Names the items [first, first + count) of one leaf, and the element of their kind's list that they fill.
 struct LeafItems {
     std::uint32_t first, count, element;
 };
 
-/// A hierarchy whose blocks of primitives and instances are still to be filled, one a leaf.
+/// Holds a packed hierarchy whose blocks of primitives and instances are still to be filled, one block or instance
+/// per leaf.
 struct Collapsed {
     Bvh bvh;
     std::vector<LeafItems> leaves;
-    /// How many a ray through the root's box meets, by the surface area heuristic; of nodes, what the collapse minimizes.
+    /// These are the expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH.
+    /// The collapse minimizes node_cost.
     float node_cost = 0, leaf_cost = 0;
-    std::array<std::size_t, 4> elements{}; ///< how many each kind's list gets
+    std::array<std::size_t, 4> elements{}; ///< number of elements in each kind's list
 };
 
-/// Packs the tree into nodes of BvhNode::kWidth children, so that a ray meets as few nodes as possible (Ylitie, Karras
-/// and Laine 2017, «Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs», §3). The same for any
-/// number of threads (0: all). Throws Error where there are more than BvhRef can name.
+/// Packs the tree into nodes of up to BvhNode::kWidth children, so that a ray visits as few nodes as possible
+/// (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", §3).
+/// The result is the same for any number of threads (0 = all). Throws Error if there are more elements than BvhRef
+/// can index.
 Collapsed collapse(const BinaryTree& tree, int threads);
 
-/// Gives the hierarchy of few primitives a list of all of them, in full blocks, where a ray is expected to be through
-/// with that sooner than with the tree. The list's items are appended to the tree's.
+/// Adds a list of all primitives, in full blocks, to the hierarchy of a small scene if a ray is expected to test
+/// that list faster than it traverses the tree. The items of the list are appended to the tree's.
 void add_list_where_faster(BinaryTree& tree, Collapsed& collapsed);
 
 } // namespace duet::raytrace

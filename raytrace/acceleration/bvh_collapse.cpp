@@ -9,13 +9,14 @@ namespace duet::raytrace {
 
 namespace {
 
-// How best to cut each subtree into so many wide ones: by dynamic programming from the leaves up. The cost of a wide
-// node is its area, which is the odds that a ray meets it; the leaves are given, and cost what they cost.
+// Tabulates the cheapest ways to represent each binary subtree by a forest of at most n wide subtrees. Dynamic
+// programming fills it from the leaves up. The cost of a wide node is its relative area, which is the probability
+// that a ray enters it. The leaves are given, and their own cost is the same for every forest.
 class Forests {
 public:
     Forests(const BinaryTree& tree, int threads)
         : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
-        // Subtrees by all threads at once, then what is above them.
+        // The subtrees kTop levels below the root are processed in parallel, then the levels above them.
         constexpr int kTop = 8;
         std::vector<std::uint32_t> subtrees;
         gather(0, kTop, subtrees);
@@ -23,11 +24,12 @@ public:
         visit(0, kTop);
     }
 
-    /// Of the whole tree, as Collapsed has them.
+    /// Return the costs of the whole tree; see Collapsed.
     float node_cost() const { return forests_[0].cost[0]; }
     float leaf_cost() const { return forests_[0].leaves; }
 
-    /// The roots of the wide subtrees that are a node's children, at most BvhNode::kWidth; returns how many.
+    /// Writes the roots of the wide subtrees that are a node's children, at most BvhNode::kWidth, and returns their
+    /// number.
     std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
         std::size_t count = 0;
         cut(node, BvhNode::kWidth, roots, count);
@@ -36,13 +38,14 @@ public:
 
 private:
     static constexpr std::size_t kMost = BvhNode::kWidth - 1;
-    // Of two ways to meet as few nodes the better is to have large leaves far up: rays that are stopped by them are
-    // stopped sooner, and that area does not see. So each leaf costs this part of its area at each level.
+    // Among forests with the same area, those with large leaves near the root are better: rays that hit such leaves
+    // end earlier, which the area does not express. Each leaf therefore adds this fraction of its area at every
+    // level above it.
     static constexpr float kHidden = 0.1f;
 
     struct Forest {
-        std::array<float, kMost> cost; // as one tree, as at most two …
-        float leaves;                  // the sum of their areas
+        std::array<float, kMost> cost; // cost[n - 1] is the cost as at most n wide subtrees
+        float leaves;                  // sum of the leaves' relative areas
     };
 
     void gather(std::uint32_t node, int depth, std::vector<std::uint32_t>& subtrees) const {
@@ -52,7 +55,7 @@ private:
         gather(tree_.nodes[node].right, depth - 1, subtrees);
     }
 
-    // Down to `depth` levels: below, the work is done.
+    // Fills the table down to `depth` levels below a node. Deeper levels must be filled already.
     void visit(std::uint32_t index, int depth) {
         const BinaryNode& node = tree_.nodes[index];
         if (node.leaf()) {
@@ -71,7 +74,7 @@ private:
             forest.cost[n - 1] = min(forest.cost[n - 2], share(left, right, n).cost);
     }
 
-    // The best way to make n trees of two subtrees: so many of the left one.
+    // Describes the best division of n wide subtrees among two children, of which the left child gets `left`.
     struct Share {
         float cost;
         std::size_t left;
@@ -95,7 +98,7 @@ private:
     void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
               std::size_t& count) const {
         const auto& cost = forests_[node].cost;
-        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // no better than fewer
+        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // fewer subtrees cost no more
         if (n == 1)
             roots[count++] = node;
         else
@@ -104,7 +107,7 @@ private:
 
     const BinaryTree& tree_;
     RelativeArea area_;
-    std::vector<Forest> forests_; // by node
+    std::vector<Forest> forests_; // indexed by node
 };
 
 class Collapser {
@@ -119,7 +122,7 @@ public:
     const Forests& forests() const { return forests_; }
 
 private:
-    // One element: a block of primitives, or an instance.
+    // Adds one element, a block of primitives or an instance, and returns the reference to it.
     BvhRef leaf(std::uint32_t first, std::uint32_t count) {
         const PrimitiveKind kind = tree_.items[first].kind;
         const std::size_t element = elements_[static_cast<std::size_t>(kind)]++;
@@ -136,7 +139,7 @@ private:
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
         const std::size_t count = forests_.children(index, children);
-        // The largest last: find_any visits them backwards.
+        // The largest child is stored last, because find_any visits the children in reverse order.
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
                          [&](std::uint32_t a, std::uint32_t b) {
                              return tree_.nodes[a].box.half_area() < tree_.nodes[b].box.half_area();
@@ -152,7 +155,7 @@ private:
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
-            const BvhRef child = ref(children[i]); // may move the nodes
+            const BvhRef child = ref(children[i]); // this may reallocate bvh_.nodes
             bvh_.nodes[packed].children[i] = child;
         }
         return packed;
@@ -162,7 +165,7 @@ private:
     Forests forests_;
     Bvh& bvh_;
     std::vector<LeafItems>& leaves_;
-    std::array<std::size_t, 4>& elements_; // so far in the list of each kind
+    std::array<std::size_t, 4>& elements_; // number of elements so far in each kind's list
 };
 
 template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) { return v.capacity() * sizeof(T); }

@@ -7,10 +7,11 @@ namespace duet::raytrace {
 
 namespace {
 
-// At the default, a few nodes are moved. Most of what moving gains is gained at the top: some large subtrees in a wrong
-// place (a room's walls among its furniture's, overlapping objects) cost every ray.
+// Limits the effort spent on moving nodes (reinsertion). The default quality moves only a few nodes, because most of
+// the gain is near the root: a few large, badly placed subtrees (a room's walls among its furniture, overlapping
+// objects) slow down every ray.
 struct Effort {
-    std::size_t one_in; // of the nodes, those of the largest areas
+    std::size_t one_in; // the 1/one_in of all nodes with the largest areas are tried
     int rounds;
 };
 constexpr Effort kFew{64, 3}, kMany{1, 4};
@@ -23,11 +24,13 @@ Hierarchy packed(BinaryTree tree, Effort effort, int threads) {
     return {std::move(tree.items), std::move(collapsed)};
 }
 
-// How many leaves a ray meets in the most crowded part of the tree that has a fair share of them, by the surface area
-// heuristic. Of any part, as the whole may be mostly void: a thicket on a wide ground.
+// Finds the largest number of leaves that a ray is expected to visit, by the SAH, in any subtree with at least
+// 1/kFairShare of all leaves. The whole tree alone would not do, because most of its box may be empty: a thicket on
+// a wide ground, for example.
 class Crowding {
 public:
-    explicit Crowding(const BinaryTree& tree) : tree_(tree), area_(tree.nodes[0].bounds()), all_((tree.nodes.size() + 1) / 2) {
+    explicit Crowding(const BinaryTree& tree)
+        : tree_(tree), area_(tree.nodes[0].bounds()), all_((tree.nodes.size() + 1) / 2) {
         visit(0);
     }
     float most() const { return most_; }
@@ -44,7 +47,7 @@ private:
         if (node.leaf()) return {1, area};
         const Leaves left = visit(node.left), right = visit(node.right);
         const Leaves both{left.count + right.count, left.area + right.area};
-        constexpr std::size_t kFairShare = 16; // one in so many
+        constexpr std::size_t kFairShare = 16;
         if (both.count * kFairShare >= all_ && area > 0) most_ = max(most_, both.area / area);
         return both;
     }
@@ -55,7 +58,7 @@ private:
     float most_ = 0;
 };
 
-// All but the twins that were dropped.
+// Returns the items that are in leaves: all except the duplicates that were removed.
 BuildItems items_of_leaves(const BinaryTree& tree) {
     BuildItems items;
     items.reserve(tree.items.size());
@@ -78,16 +81,18 @@ Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQua
     BinaryTree tree = build_binary_tree(std::move(items), threads, primitives.drop_twins);
     if (quality == BvhQuality::kDefault) return packed(std::move(tree), kFew, threads);
 
-    // Spatial splits buy smaller boxes with more leaves. The heuristic, which lets all rays begin and end outside, thinks
-    // too well of that: walls cut into pieces are met by more rays than whole ones. They pay where rays meet many leaves
-    // (a hundred in halls of beams or in hair, two to five in finely tessellated meshes, which gain nothing).
+    // Spatial splits make boxes smaller at the price of more leaves. The SAH assumes that all rays start and end
+    // outside of the scene, and so it overrates them: a wall cut into pieces is visited by more rays than a whole
+    // one. Spatial splits pay off where rays visit many leaves (about a hundred in halls of beams or in hair), but
+    // gain nothing in finely tessellated meshes (two to five).
     constexpr float kCrowded = 8;
-    constexpr float kBudget = 1; // no more additional items than there are items
+    constexpr float kBudget = 1; // at most as many additional items as items
     const float crowding = tree.nodes.empty() ? 0 : Crowding(tree).most();
     if (crowding < kCrowded) return packed(std::move(tree), kMany, threads);
     BuildItems kept = items_of_leaves(tree);
     Hierarchy whole = packed(std::move(tree), kMany, threads);
-    Hierarchy cut = packed(build_spatial_tree(std::move(kept), primitives.outline_of, kBudget, threads), kMany, threads);
+    Hierarchy cut =
+        packed(build_spatial_tree(std::move(kept), primitives.outline_of, kBudget, threads), kMany, threads);
     return cost(cut) < cost(whole) ? std::move(cut) : std::move(whole);
 }
 

@@ -1,4 +1,4 @@
-// From primitives to packed nodes, at the quality asked for.
+// build_hierarchy makes packed nodes from primitives at the requested quality.
 #pragma once
 
 #include "raytrace/acceleration/bvh_quality.h"
@@ -6,19 +6,20 @@
 
 namespace duet::raytrace {
 
-/// A hierarchy, and the items that its leaves name; with spatial splits there may be several of one index.
+/// Holds a packed hierarchy and the items that its leaves refer to. With spatial splits, several items may have the
+/// same index.
 struct Hierarchy {
     BuildItems items;
     Collapsed collapsed;
 };
 
-/// What a builder has to ask of the primitives that items stand for.
+/// Holds the functions by which a builder queries the primitives of items.
 struct Primitives {
-    OutlineOf outline_of; ///< for spatial splits
+    OutlineOf outline_of; ///< used by spatial splits
     DropTwins drop_twins;
 };
 
-/// The same for any number of threads (0: all).
+/// Builds a hierarchy over the items. It is the same for any number of threads (0 = all).
 Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQuality quality, int threads);
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// Rays against the primitives of leaves.
+// LeafTest tests a ray against the primitives of leaves.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -9,17 +9,18 @@
 
 namespace duet::raytrace {
 
-/// The order of hits along a ray: by distance, and at equal distance by (object, primitive).
+/// Returns whether hit a comes before hit b along a ray: by distance, and at equal distance by (object, primitive).
 inline bool precedes(const Hit& a, const Hit& b) {
     if (a.t != b.t || sabotaged(Guard::kTieOrder)) return a.t < b.t;
     return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
 }
 
-/// Tests leaves against one ray. With kAny a test ends at the first hit that comes before the best and is not the
-/// best's own primitive. `instance(i, best)` is asked for instances' hits.
+/// Tests leaves against one ray. With kAny, the search ends at the first hit that precedes `best` and is not on its
+/// primitive. `instance(i, best)` is called to find the hits of instances.
 template <bool kAny, typename Instance> class LeafTest {
 public:
-    /// object: of the primitives where it is not kNoObject (an instance's), else they name their own.
+    /// If `object` is not kNoObject (inside an instance), hits report it, else they report the primitive's own
+    /// object.
     LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance)
         : bvh_(bvh), object_(object), instance_(instance) {
         if (bvh.has_polygons()) sheared_.emplace(ray);
@@ -28,14 +29,15 @@ public:
 
     bool found() const { return found_; } ///< whether any test has found a hit
 
-    /// Leaves in `best` what comes first of it and the leaf's hits. True where the search is over.
+    /// Tests a leaf. Without kAny, `best` becomes the first of itself and the leaf's hits. Returns true if the
+    /// search is over.
     [[gnu::always_inline]] bool operator()(BvhRef leaf, Hit& best) {
         if (leaf.kind() == PrimitiveKind::kTriangle) return polygons(bvh_.triangles[leaf.index()], best);
         return others(leaf, best);
     }
 
 private:
-    // Out of the way of a scene of triangles alone.
+    // This function is not inlined, which keeps the loop for scenes of triangles small.
     [[gnu::noinline]] bool others(BvhRef leaf, Hit& best) {
         if (leaf.kind() == PrimitiveKind::kQuad) return polygons(bvh_.quads[leaf.index()], best);
         if (leaf.kind() == PrimitiveKind::kSphere) return spheres(bvh_.spheres[leaf.index()], best);
@@ -91,8 +93,8 @@ private:
     std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
-    std::optional<ShearedRay> sheared_; // for polygons
-    std::optional<SphereRay> sphere_ray_; // for spheres
+    std::optional<ShearedRay> sheared_; // used for polygons
+    std::optional<SphereRay> sphere_ray_; // used for spheres
     std::uint32_t object_;
     const Instance& instance_;
     bool found_ = false;

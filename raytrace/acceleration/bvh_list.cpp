@@ -1,4 +1,4 @@
-// Few primitives: a ray that tests them all may be through sooner than one that looks for its way through a tree.
+// If there are few primitives, a ray may test them all faster than it traverses a tree.
 #include "raytrace/acceleration/bvh_build.h"
 
 #include <algorithm>
@@ -8,15 +8,15 @@ namespace duet::raytrace {
 
 namespace {
 
-// What it takes, in nanoseconds, measured (Zen 5, 8 lanes) on 2 to 64 triangles, quads, spheres and mixtures of these,
-// small and large, in the open and in a room: between these the rule's choice was the faster one or within a tenth of
-// it. Only ratios count.
-constexpr double kStep = 25;                       // a node's boxes
-constexpr double kLeafVisit = 12;                  // a branch the processor has not foreseen, for the most part
-constexpr std::array kBlockTest{10.0, 22.0, 12.0}; // by PrimitiveKind
+// These are the times in nanoseconds, measured (Zen 5, 8 lanes) on 2 to 64 triangles, quads, spheres and mixtures of
+// these, small and large, in the open and in a room. On these scenes, the choice by these times was the faster one
+// or within a tenth of it. Only their ratios matter.
+constexpr double kStep = 25;                       // tests of a node's boxes
+constexpr double kLeafVisit = 12;                  // mostly a mispredicted branch
+constexpr std::array kBlockTest{10.0, 22.0, 12.0}; // indexed by PrimitiveKind
 
 constexpr std::size_t number(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
-// More than this is never a list.
+// Scenes with more items never get a list.
 constexpr std::size_t kMostItems = 128;
 
 double half_area(const Box3& box) {
@@ -25,7 +25,8 @@ double half_area(const Box3& box) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-// The expected time below a reference for a ray that enters its box, of that half area (the surface area heuristic).
+// Returns the expected time to traverse the subtree below `ref` for a ray that enters its box of half area `area`,
+// by the SAH.
 double tree_time(const Bvh& bvh, BvhRef ref, double area) {
     if (ref.is_leaf()) return kLeafVisit + kBlockTest[number(ref.kind())];
     const BvhNode& node = bvh.nodes[ref.index() / (sizeof(BvhNode) / BvhRef::kNodeUnit)];
@@ -47,7 +48,7 @@ void add_list_where_faster(BinaryTree& tree, Collapsed& collapsed) {
     if (bvh.nodes.empty() || size > kMostItems) return;
     std::array<std::size_t, 4> count{};
     for (const BuildItem& item : tree.items) ++count[number(item.kind)];
-    if (count[number(PrimitiveKind::kInstance)] > 0) return; // each is worth a box
+    if (count[number(PrimitiveKind::kInstance)] > 0) return; // an instance's box test always pays off
     double list_time = 0;
     for (std::size_t kind = 0; kind < kBlockTest.size(); ++kind)
         list_time += static_cast<double>((count[kind] + kBlockSize - 1) / kBlockSize) * kBlockTest[kind];

@@ -16,7 +16,7 @@ Bounds merge(Bounds a, const Bounds& b) {
     return a;
 }
 
-// A binary tree with links both ways. Areas are relative to the root's. The root stays node 0.
+// Adds links to parents to a binary tree. to parents. Areas are relative to the root's. The root remains node 0.
 class LinkedTree {
 public:
     explicit LinkedTree(std::vector<BinaryNode>& nodes)
@@ -26,7 +26,8 @@ public:
     }
 
     float area(std::uint32_t node) const { return area_of_(nodes_[node].bounds()); }
-    bool movable(std::uint32_t node) const { return node != 0 && parents_[node] != 0; } // the root must stay
+    // A move removes the node's parent, but the root must stay.
+    bool movable(std::uint32_t node) const { return node != 0 && parents_[node] != 0; }
 
     struct Move {
         std::uint32_t node, target; ///< the target becomes the node's sibling
@@ -34,10 +35,11 @@ public:
     };
     struct Place {
         std::uint32_t node;
-        float gain; ///< of all that changes above the node
+        float gain; ///< area saved above the node
     };
 
-    /// The move of a subtree by which the inner nodes' areas shrink most; to nowhere where none makes them shrink.
+    /// Returns the move of a subtree that reduces the inner nodes' areas most. Its target is kNone if no move
+    /// reduces them. `stack` is scratch memory.
     Move best_move(std::uint32_t node, std::vector<Place>& stack) const {
         Move best{node, kNone, 0};
         if (!movable(node)) return best;
@@ -59,9 +61,9 @@ public:
                 stack.push_back({there.right, below});
             }
         };
-        // Up from the node: the subtrees beside the way, and the places on it.
-        float gain = area(parents_[node]); // the parent vanishes
-        Bounds rest = nodes_[sibling(node)].bounds(); // of what is below `child` without the node
+        // Walk from the node to the root. Search the sibling subtrees on the way, and try each ancestor as a target.
+        float gain = area(parents_[node]); // the parent is removed
+        Bounds rest = nodes_[sibling(node)].bounds(); // bounds of what remains below `child`
         search(sibling(node), gain);
         for (std::uint32_t child = parents_[node]; child != 0; child = parents_[child]) {
             const std::uint32_t beside = sibling(child), parent = parents_[child];
@@ -74,7 +76,7 @@ public:
         return best;
     }
 
-    /// Moves a subtree, if that is still possible and a gain after what has been moved before; returns the gain.
+    /// Makes a move if it is still possible and still a gain after the moves before it. Returns the gain, or 0.
     float apply(const Move& move) {
         if (!movable(move.node) || move.target == parents_[move.node]) return 0;
         for (std::uint32_t i = move.target; i != kNone; i = parents_[i])
@@ -109,7 +111,7 @@ private:
         parents_[by] = parent;
     }
 
-    // The boxes from here to the root; by how much their areas shrink.
+    // Recomputes the boxes from a node up to the root, and returns by how much their areas shrink.
     double refit(std::uint32_t node) {
         double gain = 0;
         for (; node != kNone; node = parents_[node]) {
@@ -123,7 +125,8 @@ private:
         return gain;
     }
 
-    // Takes a subtree out, with its parent, and makes both the target's sibling and parent. Returns the gain.
+    // Removes a subtree together with its parent, and inserts them as the target's sibling and parent. Returns the
+    // gain.
     double attach(std::uint32_t node, std::uint32_t target) {
         const std::uint32_t parent = parents_[node], rest = sibling(node);
         double gain = area(parent);
@@ -139,7 +142,7 @@ private:
     }
 
     struct Origin {
-        std::uint32_t node, sibling; // what was moved, and from where
+        std::uint32_t node, sibling; // the moved node, and its former sibling
     };
 
     std::vector<BinaryNode>& nodes_;
@@ -152,7 +155,8 @@ bool by_gain(const LinkedTree::Move& a, const LinkedTree::Move& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
 }
 
-// The movable nodes of the largest areas: no node is larger than its parent, so they are found from the root down.
+// Returns the movable nodes with the largest areas. No node is larger than its parent, so they are found from the
+// root down.
 std::vector<LinkedTree::Move> largest(const std::vector<BinaryNode>& nodes, const LinkedTree& tree, std::size_t count) {
     std::vector<LinkedTree::Move> result, next{{0, kNone, tree.area(0)}};
     const auto smaller = [](const LinkedTree::Move& a, const LinkedTree::Move& b) { return by_gain(b, a); };
@@ -173,7 +177,7 @@ std::vector<LinkedTree::Move> largest(const std::vector<BinaryNode>& nodes, cons
 } // namespace
 
 void reinsert(BinaryTree& tree, std::size_t candidates, int rounds, int threads) {
-    if (tree.nodes.size() < 5) return; // no subtree that could move
+    if (tree.nodes.size() < 5) return; // no node is movable
     constexpr std::size_t kChunk = 64;
     LinkedTree linked(tree.nodes);
     for (int round = 0; round < rounds; ++round) {

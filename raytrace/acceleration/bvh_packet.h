@@ -1,5 +1,5 @@
-// Sending a packet of coherent rays through a hierarchy together: each box and each triangle is fetched once and tested
-// against all of them. The hits are those of `find_closest`, to the bit.
+// PacketTraversal traverses a hierarchy with a packet of coherent rays: each box and each triangle is loaded once
+// and tested against all rays. The hits are bit-equal to those of `find_closest`.
 #pragma once
 
 #include "raytrace/acceleration/ray_packet.h"
@@ -8,8 +8,8 @@
 
 namespace duet::raytrace {
 
-/// The corners of a block's polygons, or their differences from the origin that all rays have in common: then each is
-/// computed once for all of them.
+/// Provides the corners of a block's polygons. With kRelative they are differences from the origin that all rays
+/// share, computed once for all rays.
 template <std::size_t kCorners, bool kRelative> class BlockCorners {
 public:
     using Batch = RayPacket::Batch;
@@ -17,11 +17,11 @@ public:
 
     explicit BlockCorners(const std::array<Axes, kCorners>& corners) : corners_(corners) {}
 
-    /// The polygon of one lane, for all rays.
+    /// Returns the corners of the polygon in one lane, to be tested against all rays.
     auto of(std::size_t lane) const {
         return each(std::make_index_sequence<kCorners>(), [&](const Axes& axes) { return Single{&axes, lane}; });
     }
-    /// All polygons, for rays that each have a share of the lanes as wide as the block.
+    /// Returns the corners of all polygons, repeated for each ray of a batch in which a ray takes kBlockSize lanes.
     auto of_all() const {
         return each(std::make_index_sequence<kCorners>(), [&](const Axes& axes) { return Repeated{&axes}; });
     }
@@ -46,7 +46,7 @@ private:
     const std::array<Axes, kCorners>& corners_;
 };
 
-/// What a hierarchy without instances asks of them.
+/// Replaces the instance tests in a hierarchy without instances.
 struct NoInstances {
     auto operator()(const Ray&) const {
         return [](const BvhInstance&, Hit&) { return false; };
@@ -54,14 +54,14 @@ struct NoInstances {
     void operator()(const BvhInstance&, unsigned, PacketHits&) const {}
 };
 
-/// Finds for a coherent packet's rays what `find_closest` finds for each.
+/// Finds the closest hits of a coherent packet's rays, as `find_closest` does for each.
 template <typename Instances> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
 
-    /// `active`: a bit for each ray that counts. object: of the primitives where it is not kNoObject (an instance's).
-    /// instances(ray) makes what `find_closest` asks for one ray's hits of instances, instances(i, rays, best) finds
-    /// those of several rays.
+    /// `active` is a bit mask of the rays to trace. If `object` is not kNoObject (inside an instance), hits report
+    /// it as their object. instances(ray) returns the instance test that `find_closest` needs for one ray;
+    /// instances(instance, rays, best) tests an instance against several rays.
     PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, unsigned active,
                     std::uint32_t object, const Instances& instances, PacketHits& best)
         : bvh_(bvh), packet_(packet), rays_(rays), active_(active), object_(object), instances_(instances), best_(best),
@@ -73,25 +73,27 @@ public:
         else
             traverse();
     }
-    /// Of a list, for a packet that was made for one.
+    /// Tests all leaves of the list. The packet may be one constructed without bounds.
     void run_list() {
         for (const BvhRef leaf : bvh_.list) test_leaf(leaf, active_);
     }
 
 private:
     using Batch = RayPacket::Batch;
-    // Up to so many rays are tested against a whole block of polygons, more with each polygon at a time.
+    // Up to this many active rays are tested, a few at a time, against a whole block of polygons. More active rays
+    // are all tested against one polygon at a time.
     static constexpr int kFewRays = kSize / 2;
-    // From so many on they are tested together against a sphere, fewer each against all of a block.
+    // This many active rays or more are all tested against one sphere at a time. Fewer are each tested against a
+    // whole block of spheres.
     static constexpr int kSomeRays = 3;
-    // Rays that are tested together against a block, each in its share of the lanes.
+    // This is the number of rays that are tested together against a block. Each takes kBlockSize lanes.
     static constexpr std::size_t kShares = kSize / kBlockSize;
 
-    // A child that waits, and where each ray enters its box.
+    // Stores a child on the traversal stack, with the distance at which each ray enters its box.
     struct Waiting {
-        alignas(sizeof(Batch)) RayPacket::Values entry; // infinity: not at all
+        alignas(sizeof(Batch)) RayPacket::Values entry; // infinity for rays that miss the box
         float nearest;
-        unsigned entering; // a bit for each ray that enters
+        unsigned entering; // bit mask of the rays that enter
         BvhRef child;
     };
 
@@ -110,8 +112,8 @@ private:
         }
     }
 
-    // From a node to its nearest child that some rays enter, the others waiting; returns those rays, 0 where there is
-    // none.
+    // Steps from the node `next` to its nearest child that any ray enters, and pushes the other children. Returns a
+    // bit mask of the rays that enter that child, or 0 if there is no such child.
     unsigned step(BvhRef& next) {
         const BvhNode& node = node_at(bvh_, next);
         const auto [distance, entered] = packet_.enter_any(node, last_);
@@ -183,13 +185,13 @@ private:
             one_by_one(block, corners, active);
     }
 
-    // Some rays at a time, as many as blocks fill a batch, against all of the block.
+    // Tests a whole block against kShares rays at a time, as many as fit into a batch.
     template <std::size_t kCorners, typename Corners>
     void ray_by_ray(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
         const auto vertices = corners.of_all();
         while (active != 0) {
             std::array<std::size_t, kShares> rays;
-            unsigned known = 0; // lanes of a ray that is there already, where too few are left
+            unsigned known = 0; // lanes that repeat the first ray, because too few are left
             for (std::size_t i = 0; i < kShares; ++i) {
                 if (active == 0) known |= ((1u << kBlockSize) - 1) << (i * kBlockSize);
                 rays[i] = active != 0 ? static_cast<std::size_t>(std::countr_zero(active)) : rays[0];
@@ -210,12 +212,12 @@ private:
         }
     }
 
-    // A polygon at a time against all rays.
+    // Tests one polygon at a time against all rays.
     template <std::size_t kCorners, typename Corners>
     void one_by_one(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
         for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
             const float x = block.corner[0][0][lane];
-            if (x != x) return; // absent, and so are the rest
+            if (x != x) return; // this lane and all after it are unused
             const CandidateTest<Batch> test(packet_.shear(), corners.of(lane), ends());
             const unsigned candidates = test.candidates() & active;
             if (candidates == 0) continue;
@@ -232,12 +234,13 @@ private:
         }
     }
 
-    // A sphere at a time: in double against the rays that do not surely miss it.
+    // Tests one sphere at a time, in double precision, against the rays that a conservative filter in float does not
+    // reject.
     [[gnu::noinline]] void test(const SphereBlock& block, unsigned active) {
         const SphereFilter filter(packet_.lines());
         for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
             const Sphere sphere = block.sphere(lane);
-            if (sphere.radius != sphere.radius) return; // absent, and so are the rest
+            if (sphere.radius != sphere.radius) return; // this lane and all after it are unused
             const unsigned candidates = filter.may_meet(sphere) & active;
             if (candidates == 0) continue;
             const SphereRaysTest test(packet_.lines(), candidates, sphere, packet_.t_min(), ends());
@@ -252,7 +255,7 @@ private:
         }
     }
 
-    // The hits become these rays' best ones.
+    // Stores these hits as the best ones of the rays.
     void take(unsigned rays, Batch t, Batch u, Batch v, std::uint32_t object, std::uint32_t primitive) {
         nearer_ = true;
         store_lanes(t, rays, best_.t.data());
@@ -269,7 +272,7 @@ private:
             consider(block, lane, ray, {t[ray], u[ray], v[ray]});
         }
     }
-    // The rays that may be leaving a polygon: what is left to find is how far it is.
+    // Computes the missing hit distance of rays that start close to a polygon. Most of these rays leave it.
     template <std::size_t kCorners>
     [[gnu::noinline]] void consider_touched(unsigned rays, const PolygonBlock<kCorners>& block, std::size_t lane,
                                             const CandidateTest<Batch>& test) {
@@ -312,10 +315,10 @@ private:
     std::uint32_t object_;
     const Instances& instances_;
     PacketHits& best_;
-    float last_;          // the greatest t
-    bool nearer_ = false; // whether one has got less since
+    float last_;          // greatest t of the best hits
+    bool nearer_ = false; // whether a best hit changed since `last_` was computed
     std::size_t size_ = 0;
-    // Each step down leaves at most kWidth children waiting.
+    // A step down pushes at most kWidth children.
     std::array<Waiting, BvhNode::kWidth * Bvh::kMaxDepth + 1> stack_;
 };
 

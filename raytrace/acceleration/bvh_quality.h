@@ -1,4 +1,4 @@
-// How much work goes into a hierarchy.
+// The quality of a hierarchy trades build time for traversal speed.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 namespace duet::raytrace {
 
 enum class BvhQuality {
-    kDefault, ///< binned surface area heuristic, and a few moves of what lies wrong
-    kHigh,    ///< moves until little is gained, and spatial splits where they pay: many times the work
+    kDefault, ///< binned SAH, and reinsertion of the 1/64 of nodes with the largest areas
+    kHigh,    ///< reinsertion of all nodes, and spatial splits where they pay off; many times the work
 };
-/// "default", "high"; throws Error for another name.
+/// Returns the quality named "default" or "high". Throws Error for any other name.
 BvhQuality bvh_quality(std::string_view name);
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// Rays against the boxes of nodes: conservative, so that no box is skipped that holds a hit.
+// These ray-box tests of nodes are conservative: no box that contains a hit is skipped.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -9,31 +9,34 @@
 
 namespace duet::raytrace {
 
-/// What makes box tests conservative: slab distances are lower and upper bounds of the distances which the primitives'
-/// tests compute. The origin is moved by more than the rounding of both tests, by the size of the whole hierarchy as
-/// seen from there (Woop et al. have 5 roundings, the triangle's distance 6 more, and the fused form plane·(1/d) −
-/// origin·(1/d) another of each; here is room for 16).
+/// These error bounds make box tests conservative: slab distances are lower and upper bounds of the distances that
+/// the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion to
+/// the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance has 6
+/// more, and the fused form plane·(1/d) − origin·(1/d) adds another of each; this bound has room for 16.)
 struct SlabError {
-    /// Of the sizes at hand, the room that boxes get.
+    /// Returns the margin of box tests, relative to the sizes of the coordinates.
     static float relative() { return sabotaged(Guard::kEnlargedBoxes) ? 0.0f : 0x1p-20f; }
-    /// No reciprocal is infinite: a direction's component of 0 counts as this part of the largest, so small that the
-    /// ray leaves a slab that it is in (by more than the error that the slab is widened by) beyond all that lies in the
-    /// box.
+    /// No reciprocal is infinite: a direction component of 0 counts as this fraction of the largest component. The
+    /// fraction is so small that a ray inside a slab, by more than the error that the slab is widened by, leaves it
+    /// beyond everything in the box.
     static constexpr float kSmallest = 1e-12f;
-    /// And no product of a reciprocal with a coordinate is infinite: the fused form would take it for a plane.
+    /// Returns the least divisor for which no product of its reciprocal with a coordinate is infinite. The fused
+    /// form would take an infinite product for the distance of a plane.
     template <typename B> static B least_divisor(B coordinates) {
         return max(coordinates * B(0x1p-120f), B(0x1p-125f));
     }
 };
 
-/// The slabs of one axis, as a ray meets them: a plane that it runs into at plane·scale + near or later, one that it leaves
-/// at plane·scale + far or sooner. B has an axis a lane, or a ray.
+/// Holds the slabs of one axis as a ray intersects them: it enters a slab through a plane at plane·scale + near or
+/// later, and leaves it through a plane at plane·scale + far or earlier. B has one lane per axis or one per ray.
 template <typename B> struct Slabs {
     B scale, near, far;
 
-    /// extent: how far the hierarchy reaches from the origin; the greatest of all three axes.
+    /// `extent` is the largest distance along this axis from the origin to the hierarchy's bounds, `greatest_extent`
+    /// the largest over all three axes, and `greatest_size` the largest absolute component of the direction.
     Slabs(B origin, B direction, B extent, B greatest_extent, B greatest_size) {
-        const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction), place = xsimd::abs(origin);
+        const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction),
+                place = xsimd::abs(origin);
         const B error = (extent + extent + greatest_extent + place) * B(SlabError::relative()) +
                         B(std::numeric_limits<float>::min());
         const B divisor = xsimd::max(xsimd::max(size, greatest_size * B(SlabError::kSmallest)),
@@ -43,19 +46,19 @@ template <typename B> struct Slabs {
         near = -(origin + away) * scale;
         far = -(origin - away) * scale;
     }
-    /// How far bounds reach from an origin, along an axis.
+    /// Returns the largest distance from an origin to bounds along one axis.
     static B extent(float low, float high, B origin) {
         return xsimd::max(xsimd::abs(B(low) - origin), xsimd::abs(B(high) - origin));
     }
 };
 
-/// A ray made ready for box tests.
+/// Prepares a ray for box tests.
 class SlabRay {
 public:
     using Batch = FloatBatch<BvhNode::kWidth>;
 
     SlabRay(const Ray& ray, const Box3& bounds) {
-        // Without a branch on signs or sizes, which incoherent rays would mispredict.
+        // This code avoids branches on signs and sizes, which are mispredicted for incoherent rays.
         using Four = FloatBatch<4>;
         const auto four = [](Vec3 v) { return Four(_mm_setr_ps(v.x, v.y, v.z, 0.0f)); };
         const Four origin = four(ray.origin), direction = four(ray.direction);
@@ -75,7 +78,8 @@ public:
         }
     }
 
-    /// Where the ray enters each child's box, and a bit for each that it does enter at a distance in [t_min, t_max].
+    /// Holds the distance at which the ray enters each child's box, and a bit mask of the children that it enters at
+    /// a distance in [t_min, t_max].
     struct Entered {
         Batch distance;
         unsigned children;
@@ -85,8 +89,8 @@ public:
             const auto* values = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
             return fused(Batch::load_aligned(values), scale, offset);
         };
-        // A NaN (of numbers out of range) comes first in min and max, which then return the second: that slab does not
-        // count.
+        // A NaN (from values out of range) is the first argument of min and max, which then return the second, so
+        // that this slab is ignored.
         const Batch nx = slab(near_plane_[0], scale_[0], near_offset_[0]),
                     ny = slab(near_plane_[1], scale_[1], near_offset_[1]),
                     nz = slab(near_plane_[2], scale_[2], near_offset_[2]);
@@ -99,14 +103,14 @@ public:
     }
 
 private:
-    /// The greatest lane, in all of them.
+    /// Returns the greatest lane, in all lanes.
     static FloatBatch<4> greatest(FloatBatch<4> v) {
         const FloatBatch<4> twos = xsimd::max(v, FloatBatch<4>(_mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2))));
         return xsimd::max(twos, FloatBatch<4>(_mm_shuffle_ps(twos, twos, _MM_SHUFFLE(2, 3, 0, 1))));
     }
 
     static constexpr std::size_t kPlane = sizeof(BvhNode::Lanes);
-    std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
+    std::array<std::size_t, 3> near_plane_, far_plane_; // offsets in bytes from the node
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
 };
 

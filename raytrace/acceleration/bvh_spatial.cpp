@@ -20,8 +20,8 @@ float float_above(double x) {
     return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
 }
 
-// The point of an edge from p to q at a plane that it crosses, as a box that holds it: computed in double, it is off by
-// fewer than 8 roundings of the edge's numbers.
+// Returns a box that contains the point where the edge from p to q crosses a plane. The point is computed in double
+// precision and is off by fewer than 8 roundings of the edge's coordinates.
 Box3 crossing(Vec3 p, Vec3 q, std::size_t axis, float plane) {
     const double a = p[axis], b = q[axis], t = (static_cast<double>(plane) - a) / (b - a);
     Box3 result;
@@ -38,7 +38,8 @@ Box3 crossing(Vec3 p, Vec3 q, std::size_t axis, float plane) {
 
 Box3 clip(const Outline& outline, const Box3& box, std::size_t axis, float low, float high) {
     Box3 part;
-    // The hull of the corners: where planes cut it, all of its edges are among the lines from corner to corner.
+    // The polygon is the convex hull of its corners. Where planes cut the hull, all of its edges are among the
+    // segments between any two corners.
     for (std::size_t i = 0; i < outline.count; ++i) {
         const Vec3 p = outline.corners[i];
         if (low <= p[axis] && p[axis] <= high) part.extend(p);
@@ -57,11 +58,12 @@ Box3 clip(const Outline& outline, const Box3& box, std::size_t axis, float low, 
 
 namespace {
 
-// Spatial splits are looked for where the children of the best other split overlap in more than this part of the root's
-// area (Stich et al., §4.5, who take 1e-5: that takes longer and gains nothing here).
+// Spatial splits are tried only where the children of the best object split overlap in more than this fraction of
+// the root's area. (Stich et al., §4.5, use 1e-5, which takes longer and gains nothing here.)
 constexpr float kLeastOverlap = 1e-4f;
 
-// A set of items, and how many more it may become.
+// Holds a set of items to build a subtree over. `room` is the number of additional items that spatial splits may
+// add.
 struct Task {
     std::size_t node;
     BuildItems items;
@@ -76,7 +78,7 @@ public:
         : outline_of_(outline_of), of_root_(of_root), job_size_(job_size), threads_(threads) {}
 
     std::vector<BinaryNode> nodes;
-    BuildItems leaves; // their items
+    BuildItems leaves; // items of the leaves
     std::vector<Task> jobs;
 
     std::uint32_t build(BuildItems items, const Extent& extent, std::size_t room, int depth) {
@@ -92,9 +94,10 @@ public:
             leaf(nodes[index], items);
             return index;
         }
-        items = BuildItems(); // its memory is free for those below
+        items = BuildItems(); // free the memory for the recursion
         const std::size_t both = parts->left.size() + parts->right.size();
-        const std::size_t left_room = room_of(parts->room, parts->left.size(), both), right_room = parts->room - left_room;
+        const std::size_t left_room = room_of(parts->room, parts->left.size(), both),
+                          right_room = parts->room - left_room;
         const std::uint32_t left = build(std::move(parts->left), parts->left_extent, left_room, depth + 1);
         const std::uint32_t right = build(std::move(parts->right), parts->right_extent, right_room, depth + 1);
         nodes[index].left = left;
@@ -106,14 +109,15 @@ private:
     struct Parts {
         BuildItems left, right;
         Extent left_extent, right_extent;
-        std::size_t room; // that is left
+        std::size_t room; // additional items that are still allowed
     };
 
     static std::size_t room_of(std::size_t room, std::size_t part, std::size_t whole) {
-        return static_cast<std::size_t>(static_cast<double>(room) * static_cast<double>(part) / static_cast<double>(whole));
+        return static_cast<std::size_t>(static_cast<double>(room) * static_cast<double>(part) /
+                                        static_cast<double>(whole));
     }
 
-    // Parts of one item are one again.
+    // Makes a node a leaf of the items. Parts of the same item are merged.
     void leaf(BinaryNode& node, Items items) {
         node.first = static_cast<std::uint32_t>(leaves.size());
         for (const BuildItem& item : items) {
@@ -127,7 +131,7 @@ private:
         node.count = static_cast<std::uint32_t>(leaves.size()) - node.first;
     }
 
-    // None where the items are a leaf.
+    // Partitions the items, or returns nothing if they are to be a leaf.
     std::optional<Parts> split(Items items, const Extent& extent, std::size_t room, int depth) {
         if (items.size() == 1) return std::nullopt;
         const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
@@ -150,10 +154,11 @@ private:
         const auto goes_left = [&](const BuildItem& item) { return binning.bin(item)[whole->axis] <= whole->bin; };
         const Halves halves = whole ? divide(items, goes_left) : divide_anyhow(items, extent);
         const auto middle = items.begin() + static_cast<std::ptrdiff_t>(halves.left_count);
-        return Parts{BuildItems(items.begin(), middle), BuildItems(middle, items.end()), halves.left, halves.right, room};
+        return Parts{BuildItems(items.begin(), middle), BuildItems(middle, items.end()), halves.left, halves.right,
+                     room};
     }
 
-    // Whether the boxes of a split overlap so much that a spatial one may gain something.
+    // Returns whether the two boxes of an object split overlap so much that a spatial split may gain something.
     bool worth_cutting(const Split& split, const Binning& binning) const {
         Bounds left, right;
         for (std::size_t i = 0; i < binning.bins; ++i)
@@ -162,9 +167,11 @@ private:
         return !both.box().empty() && of_root_(both) > kLeastOverlap;
     }
 
-    // Items by a plane; those that straddle it become two where that is cheaper than to leave them on one side (Stich et
-    // al., §4.4, «reference unsplitting»). None where one side would have all of them.
-    std::optional<Parts> cut(std::span<const BuildItem> items, const SpatialBinning::Split& split, std::size_t room) const {
+    // Partitions the items by a plane. An item that straddles the plane becomes two where that is cheaper than to
+    // leave it on one side (Stich et al., §4.4, "reference unsplitting"). Returns nothing if one side would have all
+    // items.
+    std::optional<Parts> cut(std::span<const BuildItem> items, const SpatialBinning::Split& split,
+                             std::size_t room) const {
         Parts parts;
         parts.room = room;
         const RelativeArea area(merged(split.left, split.right));
@@ -188,14 +195,15 @@ private:
             a.box = clip(outline, item.box, split.axis, item.box.low[split.axis], split.plane);
             b.box = clip(outline, item.box, split.axis, split.plane, item.box.high[split.axis]);
             const Bounds box{low_corner(item), high_corner(item)};
-            const float in_both = area(left) * static_cast<float>(left_count) + area(right) * static_cast<float>(right_count);
+            const float in_both =
+                area(left) * static_cast<float>(left_count) + area(right) * static_cast<float>(right_count);
             const float in_left = area(merged(left, box)) * static_cast<float>(left_count) +
                                   area(right) * static_cast<float>(right_count - std::min<std::size_t>(right_count, 1));
             const float in_right = area(left) * static_cast<float>(left_count - std::min<std::size_t>(left_count, 1)) +
                                    area(merged(right, box)) * static_cast<float>(right_count);
             const bool cuttable = outline.count > 0 && parts.room > 0 && !(a.box.empty() && b.box.empty());
             if (cuttable && in_both < std::min(in_left, in_right)) {
-                // A part without extent, outside of what the item has been cut to before, needs no item.
+                // An empty part, outside of the box that the item was clipped to before, needs no item.
                 if (!a.box.empty()) put(parts.left, parts.left_extent, a);
                 if (!b.box.empty()) put(parts.right, parts.right_extent, b);
                 if (!a.box.empty() && !b.box.empty()) --parts.room;
@@ -226,9 +234,11 @@ private:
     Bins bins_;
 };
 
-// A subtree's nodes and items behind those of the tree; its root takes the placeholder's seat.
+// Appends a subtree's nodes and items to those of the tree. The subtree's root replaces the placeholder node at
+// index `seat`.
 void graft(BinaryTree& tree, std::size_t seat, const SpatialBuilder& subtree) {
-    const auto nodes = static_cast<std::uint32_t>(tree.nodes.size()) - 1, items = static_cast<std::uint32_t>(tree.items.size());
+    const auto nodes = static_cast<std::uint32_t>(tree.nodes.size()) - 1,
+               items = static_cast<std::uint32_t>(tree.items.size());
     for (std::size_t i = 0; i < subtree.nodes.size(); ++i) {
         BinaryNode node = subtree.nodes[i];
         if (node.leaf()) {
@@ -253,7 +263,7 @@ BinaryTree build_spatial_tree(BuildItems items, const OutlineOf& outline_of, flo
     const auto room = static_cast<std::size_t>(static_cast<double>(items.size()) * static_cast<double>(budget));
     if (items.size() + room > (std::size_t{1} << 31)) throw Error(message(items.size(), " primitives: too many"));
 
-    // The division into jobs depends on the input alone, so that the tree does, too.
+    // The division into jobs depends only on the input, so that the tree does not depend on the number of threads.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
     const Extent extent = extent_of(items);
     const RelativeArea area(extent.bounds);

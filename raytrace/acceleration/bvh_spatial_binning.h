@@ -1,4 +1,5 @@
-// Where a plane in space would best divide a set of items, those that it cuts having a part on both sides.
+// SpatialBinning finds the best plane in space to divide a set of items. Items that the plane cuts have a part on
+// each side.
 #pragma once
 
 #include "raytrace/acceleration/bvh_binning.h"
@@ -12,8 +13,8 @@
 
 namespace duet::raytrace {
 
-// A node's box in slabs of equal width: an item counts where it begins and where it ends, and its parts extend the boxes
-// of the slabs that they lie in.
+// A node's box is divided into bins of equal width on each axis. An item counts in the bin where it begins and in
+// the bin where it ends, and its parts extend the boxes of the bins that they lie in.
 class SpatialBinning {
 public:
     struct Bin {
@@ -29,7 +30,7 @@ public:
     struct Split {
         std::size_t axis = 0;
         float plane = 0, cost = 0;
-        Bounds left, right; // boxes of the parts
+        Bounds left, right; // bounds of the two sides
         std::size_t left_count = 0, right_count = 0;
     };
 
@@ -54,12 +55,13 @@ public:
                 for (std::size_t k = 0; k < count_; ++k) bins_[axis][k].extend(other[axis][k]);
     }
 
-    // The cheapest plane that makes at most `room` additional items and both sides fewer than all.
+    // Returns the cheapest plane that adds at most `room` items and leaves fewer than all items on each side, or
+    // nothing if there is no such plane.
     std::optional<Split> best(const RelativeArea& area, const Tests& tests, std::size_t count, std::size_t room) const {
         std::optional<Split> best;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
-            std::array<Bin, kMaxBins> right; // of this and all that follow
+            std::array<Bin, kMaxBins> right; // right[i] is bin i and all after it
             right[count_ - 1] = bins_[axis][count_ - 1];
             for (std::size_t i = count_ - 1; i-- > 1;) {
                 right[i] = right[i + 1];
@@ -80,7 +82,7 @@ public:
 
 private:
     using Bins = std::array<std::array<Bin, kMaxBins>, 3>;
-    using Parts = std::array<Bounds, kMaxBins>; // of an item, by bin
+    using Parts = std::array<Bounds, kMaxBins>; // bounds of an item's parts, by bin
 
     bool usable(std::size_t axis) const {
         return plane(axis, 1) > box_.low[axis] && plane(axis, count_ - 1) < box_.high[axis];
@@ -95,7 +97,7 @@ private:
 
     void add(Bins& bins, const BuildItem& item, Parts& parts) const {
         const Bounds box{low_corner(item), high_corner(item)};
-        std::optional<Outline> outline; // not asked for where the item lies in one bin on each axis
+        std::optional<Outline> outline; // computed only if the item spans several bins of an axis
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
             const std::size_t first = bin(axis, item.box.low[axis]);
@@ -111,10 +113,12 @@ private:
         }
     }
 
-    // Extends each bin by the part of an outline between its planes, in about: here the numbers only serve to choose.
+    // Extends each bin by the part of a polygon between its planes. The parts are approximate, because they serve
+    // only to choose a plane.
     void add_parts(std::array<Bin, kMaxBins>& bins, const Bounds& box, const Outline& outline, std::size_t axis,
                    std::size_t first, std::size_t last, Parts& parts) const {
-        std::fill(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.begin() + static_cast<std::ptrdiff_t>(last) + 1, Bounds());
+        std::fill(parts.begin() + static_cast<std::ptrdiff_t>(first),
+                  parts.begin() + static_cast<std::ptrdiff_t>(last) + 1, Bounds());
         const auto four = [](Vec3 p) {
             alignas(16) const std::array<float, 4> values{p.x, p.y, p.z, 0};
             return Four::load_aligned(values.data());

@@ -1,4 +1,5 @@
-// Rays against the spheres of a leaf, many at once. The results are those of intersect_sphere, to the bit.
+// These classes test rays against the spheres of a leaf with SIMD. The results are bit-equal to those of
+// intersect_sphere.
 #pragma once
 
 #include "common/geometry/sphere.h"
@@ -11,7 +12,7 @@
 
 namespace duet::raytrace {
 
-/// A ray made ready for such tests.
+/// Prepares a ray for sphere tests.
 struct SphereRay {
     const Ray& ray;
     Vec3d origin;
@@ -20,8 +21,8 @@ struct SphereRay {
     explicit SphereRay(const Ray& its) : ray(its), origin(its.origin), line(Vec3d(its.direction)) {}
 };
 
-/// The spheres of a block against one ray, all at once: in double, as one by one. (A filter in float before that gains
-/// nothing: mostly a ray has begun on the one sphere that it does not surely miss.)
+/// Tests one ray against all spheres of a block, in double precision like the scalar test. (A filter in float before
+/// that gains nothing: a ray usually starts on a sphere, which the filter cannot reject.)
 class SphereBlockTest {
 public:
     [[gnu::always_inline]] SphereBlockTest(const SphereRay& its, const SphereBlock& block, float end) {
@@ -54,7 +55,7 @@ public:
         xsimd::select(near_counts, t_near, t_far).store_aligned(t_.data());
     }
 
-    unsigned hits() const { return hits_; } ///< the lanes with a hit in (t_min, end], a bit each
+    unsigned hits() const { return hits_; } ///< bit mask of the lanes with a hit in (t_min, end]
     float t(std::size_t lane) const { return t_[lane]; }
 
 private:
@@ -74,20 +75,20 @@ private:
     alignas(32) BlockLanes<float> t_;
 };
 
-/// The lines of N rays, a number a lane: origins x, y, z, then directions.
+/// Holds the lines of N rays, one ray per lane: origin x, y, z, then direction x, y, z.
 template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
 
-/// 1 / d·d of a line's direction, for may_meet. NaN where a square may be rounded to nothing or to infinity: such rays may
-/// meet all. T is float or a batch of floats.
+/// Returns 1 / d·d for the direction d of a line, as may_meet needs it. It is NaN where a square may underflow or
+/// overflow; may_meet never rejects such rays. T is float or a batch of floats.
 template <typename T> T filter_scale(const Vec3T<T>& direction) {
     const T squared = dot(direction, direction);
     const auto in_range = (squared > T(1e-20f)) & (squared < T(1e20f));
     return select(in_range, T(1.0f) / squared, T(std::numeric_limits<float>::quiet_NaN()));
 }
-/// A bit for each lane whose line may meet its sphere; the others surely miss it. In float, u being its unit roundoff and
-/// g = centre − origin: the nearest point's place along the line is off by less than 10u|g|, and so is that point; its
-/// distance from the centre by less than 14u|g|. (Where those numbers get too large, both sides are infinite; a radius
-/// that is NaN, of an absent sphere, is none.)
+/// Returns a bit mask of the lanes whose line may hit its sphere. The other lines certainly miss. The test is in
+/// float. With the unit roundoff u and g = center − origin, the parameter of the closest point on the line is off by
+/// less than 10u|g|, and so is that point; its distance from the center is off by less than 14u|g|. (Where these
+/// values overflow, both sides of the comparison are infinite. Unused lanes, whose radius is NaN, are never set.)
 template <typename Batch>
 unsigned may_meet(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, Batch scale, Batch radius) {
     const Vec3T<Batch> closest = direction * (dot(to_center, direction) * scale) - to_center;
@@ -97,7 +98,7 @@ unsigned may_meet(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, 
     return ~lane_bits(dot(closest, closest) > reach * reach) & lane_bits(radius == radius) & kAll;
 }
 
-/// N rays against one sphere after the other.
+/// Tests N rays against one sphere at a time with may_meet.
 template <std::size_t N> class SphereFilter {
 public:
     using Batch = FloatBatch<N>;
@@ -105,7 +106,7 @@ public:
     explicit SphereFilter(const LineLanes<N>& lines)
         : origin_(load(lines, 0)), direction_(load(lines, 3)), scale_(filter_scale(direction_)) {}
 
-    /// A bit for each ray whose line may meet the sphere.
+    /// Returns a bit mask of the rays whose line may hit the sphere.
     unsigned may_meet(const Sphere& sphere) const {
         const Vec3T<Batch> to_center(Batch(sphere.center.x) - origin_.x, Batch(sphere.center.y) - origin_.y,
                                      Batch(sphere.center.z) - origin_.z);
@@ -122,7 +123,7 @@ private:
     Batch scale_;
 };
 
-/// One sphere against those of N rays that are asked for, in double.
+/// Tests one sphere against a subset of N rays, in double precision.
 template <std::size_t N> class SphereRaysTest {
 public:
     using Batch = FloatBatch<N>;
@@ -135,9 +136,10 @@ public:
         for (std::size_t i = 0; i < N; i += kDoubleLanes) {
             if ((rays >> i & kSome) == 0) continue;
             const auto load = [&](std::size_t column) { return load_doubles(lines[column].data() + i); };
-            const SphereTest<DoubleBatch> test(
-                {spread(sphere.center.x) - load(0), spread(sphere.center.y) - load(1), spread(sphere.center.z) - load(2)},
-                SphereLine<DoubleBatch>({load(3), load(4), load(5)}), spread(sphere.radius));
+            const SphereTest<DoubleBatch> test({spread(sphere.center.x) - load(0), spread(sphere.center.y) - load(1),
+                                                spread(sphere.center.z) - load(2)},
+                                               SphereLine<DoubleBatch>({load(3), load(4), load(5)}),
+                                               spread(sphere.radius));
             const unsigned met = lane_bits(test.meets_ahead());
             hits_ |= met << i;
             if (met == 0) continue;
@@ -151,8 +153,8 @@ public:
         t_ = xsimd::select(near_counts, t_near, t_far);
     }
 
-    unsigned hits() const { return hits_; } ///< the rays asked for with a hit in (t_min, end], a bit each
-    Batch t() const { return t_; }          ///< where
+    unsigned hits() const { return hits_; } ///< bit mask of the rays of the subset with a hit in (t_min, end]
+    Batch t() const { return t_; }          ///< hit distances of these rays
 
 private:
     unsigned hits_ = 0;

@@ -13,16 +13,18 @@ namespace duet::raytrace {
 
 namespace {
 
-// No ray comes to a node twice, so the lists have room for all pairs of a ray and a node that there can be: this many
-// nodes by the rays of a stream.
+// A streamable hierarchy has at most this many nodes. No ray visits a node twice, so lists with room for this many
+// nodes times the rays of a stream hold all possible pairs.
 constexpr std::size_t kMostNodes = 64;
-// A ray alone leaves out what lies behind its first hit, a stream does not: it loses what it gains where a ray meets many
-// leaves. Clouds of 100 to 2,000 spheres of 0.02 to 0.4 of the cloud's side, with a ground and without, Zen 5, rays from
-// their surfaces, a stream's time over that of the rays one by one: 0.5 to 0.6 up to 4 leaves expected, 0.65 to 0.85 from 4 to
-// 10, 0.8 to 1.2 from 10 to 18, 1.0 to 1.4 beyond. (The models' spheres.json: 2.)
+// A ray may be expected to visit at most this many leaves of a streamable hierarchy. A single ray skips what lies
+// behind its closest hit, but a stream does not, and so it loses where rays visit many leaves. Measurements: clouds
+// of 100 to 2,000 spheres of 0.02 to 0.4 of the cloud's side, with and without a ground, Zen 5, rays from the
+// spheres' surfaces. The time of a stream relative to single rays was 0.5 to 0.6 up to 4 expected leaves, 0.65 to
+// 0.85 from 4 to 10, 0.8 to 1.2 from 10 to 18, and 1.0 to 1.4 beyond. (models/spheres.json has 2 expected leaves.)
 constexpr double kMostLeaves = 10;
 
-// How many leaves below a reference a ray meets that enters its box, of that half area (the surface area heuristic).
+// Returns how many leaves below `ref` a ray is expected to visit if it enters its box of half area `area`, by the
+// SAH.
 double expected_leaves(const Bvh& bvh, BvhRef ref, double area) {
     if (ref.is_leaf()) return 1;
     const BvhNode& node = node_at(bvh, ref);
@@ -35,8 +37,9 @@ double expected_leaves(const Bvh& bvh, BvhRef ref, double area) {
     }
     return leaves;
 }
-// Of rays that run among the small things: the root's inner children together are what they enter, lest a ground that fills
-// all of the root's box make everything on it look as if it were seldom met.
+// Returns the expected number of leaves for rays that run among the small objects: they enter the union of the
+// root's inner children. Without this rule, a ground that fills the root's box would make everything on it seem
+// seldom visited.
 double expected_leaves(const Bvh& bvh) {
     const BvhNode& root = bvh.nodes[0];
     Box3 inner;
@@ -45,13 +48,13 @@ double expected_leaves(const Bvh& bvh) {
     return expected_leaves(bvh, BvhRef::node(0), static_cast<double>((inner.empty() ? bvh.bounds : inner).half_area()));
 }
 
-/// Pairs of a ray and what it is to be tested against, by their numbers.
+/// Stores pairs of the index of a ray and the index of what it is to be tested against.
 template <std::size_t kMost> class StreamPairs {
 public:
     static constexpr std::size_t kLanes = kSimdLanes;
 
     std::size_t size() const { return size_; }
-    /// Whether so many times kLanes more fit.
+    /// Returns whether `times` · kLanes more pairs fit.
     bool has_room(std::size_t times) const { return size_ + times * kLanes <= kMost; }
     void clear() { size_ = 0; }
     std::uint32_t ray(std::size_t i) const { return rays_[i]; }
@@ -63,7 +66,7 @@ public:
         rays_[size_] = ray;
         others_[size_++] = other;
     }
-    /// Adds many, and keeps count of them in a register.
+    /// Appends many pairs, with their number in a register.
     class Writer {
     public:
         explicit Writer(StreamPairs& pairs) : pairs_(pairs), size_(pairs.size_) {}
@@ -71,12 +74,13 @@ public:
         Writer(const Writer&) = delete;
         Writer& operator=(const Writer&) = delete;
 
-        /// The ray with those of kLanes others whose bits are set.
+        /// Appends the pairs of a ray and those of kLanes `others` whose bit in `which` is set.
         void add(std::uint32_t ray, const std::uint32_t* others, unsigned which) {
             const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(others));
             const auto some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), all);
             _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.others_[size_]), some);
-            _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.rays_[size_]), _mm256_set1_epi32(static_cast<int>(ray)));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(&pairs_.rays_[size_]),
+                                _mm256_set1_epi32(static_cast<int>(ray)));
             size_ += static_cast<std::size_t>(std::popcount(which));
         }
 
@@ -84,24 +88,26 @@ public:
         StreamPairs& pairs_;
         std::size_t size_;
     };
-    /// Fills the lanes up to a multiple of `count`, with the last pair; the size stays.
+    /// Pads the arrays with the last pair up to a multiple of `count`. The size does not change.
     void pad(std::size_t count) {
         for (std::size_t i = size_; i % count != 0; ++i) rays_[i] = rays_[size_ - 1], others_[i] = others_[size_ - 1];
     }
 
 private:
-    // Without values: nobody should clear them for each stream. More are written than are kept.
+    // The arrays are not initialized, because that would clear them for each stream. Writers store up to kLanes
+    // values more than they count.
     std::array<std::uint32_t, kMost + kLanes> rays_, others_;
     std::size_t size_ = 0;
 };
 
-/// The slabs of rays side by side; as SlabRay.
+/// Holds the slabs of up to kMost rays in structure-of-arrays layout; see SlabRay.
 template <std::size_t kMost> class SlabRays {
 public:
     using Batch = SlabRay::Batch;
-    static constexpr std::size_t kLanes = BvhNode::kWidth; // of rays, too
+    static constexpr std::size_t kLanes = BvhNode::kWidth; // number of a node's children, and of the rays set at once
 
-    /// Sets those from `first` on, a lane each; returns a bit for each that is `traceable`.
+    /// Sets the slabs of the rays from index `first` on, one ray per lane. Returns a bit mask of those that are
+    /// `traceable`.
     unsigned set(std::size_t first, const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
         std::array<Batch, 3> extent;
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -120,7 +126,7 @@ public:
         return lane_bits(in_range);
     }
 
-    /// As SlabRay's, of one of the rays.
+    /// Returns a bit mask of the children that one of the rays enters; see SlabRay::enter.
     unsigned enter(std::size_t ray, const BvhNode& node, Batch t_min, Batch t_max) const {
         Batch near = t_min, far = t_max;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -136,15 +142,16 @@ public:
 
 private:
     using Numbers = std::array<std::array<float, kMost>, 3>;
-    alignas(sizeof(Batch)) Numbers scale_, near_, far_, sign_; // without values, as the pairs
+    alignas(sizeof(Batch)) Numbers scale_, near_, far_, sign_; // not initialized, like the pairs
 };
 
-/// Up to kSize rays on their way through a streamable hierarchy.
+/// Traverses a streamable hierarchy with up to kSize rays.
 class RayStream {
 public:
     static constexpr std::size_t kSize = 64;
 
-    /// Of the rays with these indices; finds what `find_closest` finds for each, and leaves it at the same index.
+    /// Takes the rays with the indices `which`. run() finds for each what `find_closest` finds, and writes it to
+    /// `hits` at the same index.
     RayStream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits)
         : bvh_(bvh), rays_(rays), which_(which), hits_(hits) {
         DUET_CHECK_LE(which.size(), kSize);
@@ -163,8 +170,8 @@ public:
 
 private:
     static constexpr std::size_t kLanes = kBlockSize;
-    static constexpr std::size_t kChunk = 16; // pairs looked at between looks at the room left
-    static constexpr std::size_t kDoubles = kDoubleLanes; // of exact tests
+    static constexpr std::size_t kChunk = 16; // number of pairs between checks of the room left
+    static constexpr std::size_t kDoubles = kDoubleLanes; // lanes of the exact tests
     using Batch = FloatBatch<kLanes>;
     struct NoInstance {
         bool operator()(const BvhInstance&, Hit&) const { return false; }
@@ -172,13 +179,13 @@ private:
 
     using Pairs = StreamPairs<kSize * kMostNodes>;
     using SomePairs = StreamPairs<512>;
-    std::array<Pairs, 2> nodes_; // of a level, and of the one below
-    SomePairs leaves_, spheres_; // those not tested yet
+    std::array<Pairs, 2> nodes_; // pairs of the current level and of the one below
+    SomePairs leaves_, spheres_; // pairs that are not tested yet
 
     const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
-    // Of so many rays at(i) their numbers, column by column.
+    // Loads the components of the N rays at(0) to at(N - 1): a batch per component.
     template <std::size_t N, typename At> static std::array<FloatBatch<N>, 8> columns(const At& at) {
         const auto four = [&](std::size_t first) {
             return load_columns<N>([&](std::size_t i) { return reinterpret_cast<const float*>(&at(i)) + first; });
@@ -197,14 +204,14 @@ private:
         filter_scale(direction).store_aligned(&scales_[first]);
         for (std::size_t i = first; i < first + size; ++i) {
             best_[i] = {};
-            best_[i].t = min(ray(i).t_max, std::numeric_limits<float>::max()); // a distance that overflowed is none
+            best_[i].t = min(ray(i).t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
         }
         for (; traceable != 0; traceable &= traceable - 1)
             nodes_[0].add(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(traceable)),
                           BvhRef::node(0).bits());
     }
 
-    // Some pairs of a level of the tree, from `first` on.
+    // Tests up to kChunk pairs of one level of the tree, from index `first` on.
     void enter(const Pairs& level, std::size_t first, Pairs& below) {
         if (!leaves_.has_room(kChunk)) test_leaves();
         Pairs::Writer nodes(below);
@@ -242,15 +249,15 @@ private:
         }
     }
 
-    // Spheres that the ray's line does not surely miss.
+    // Appends the spheres of a block that the ray's line may hit.
     [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, SomePairs::Writer& spheres) const {
         const SphereBlock& block = bvh_.spheres[index];
         const Ray& line = ray(i);
         const auto along = [&](std::size_t axis) {
             return Batch::load_aligned(block.center[axis].data()) - Batch(line.origin[axis]);
         };
-        const unsigned met = may_meet<Batch>({along(0), along(1), along(2)}, spread<Batch>(line.direction), Batch(scales_[i]),
-                                             Batch::load_aligned(block.radius.data()));
+        const unsigned met = may_meet<Batch>({along(0), along(1), along(2)}, spread<Batch>(line.direction),
+                                             Batch(scales_[i]), Batch::load_aligned(block.radius.data()));
         using Whole = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
         alignas(32) static constexpr std::array<std::uint32_t, 8> kEach{0, 1, 2, 3, 4, 5, 6, 7};
         alignas(32) BlockLanes<std::uint32_t> places;
@@ -258,7 +265,7 @@ private:
         spheres.add(i, places.data(), met);
     }
 
-    // In double, as SphereBlockTest.
+    // Tests the listed spheres in double precision, as SphereBlockTest does.
     [[gnu::flatten]] void test_spheres() {
         if (spheres_.size() == 0) return;
         spheres_.pad(kDoubles);
@@ -288,15 +295,15 @@ private:
     }
     void consider(std::uint32_t i, std::uint32_t place, float t) {
         const Hit hit{bvh_.spheres[place / kBlockFloats].object[place % kBlockFloats], 0, 0, 0, t};
-        if (precedes(hit, best_[i])) best_[i] = hit; // whose t is the ray's end where there is none
+        if (precedes(hit, best_[i])) best_[i] = hit; // best_[i].t is the ray's end while there is no hit
     }
 
     static NarrowBatch gathered(const float* from, const std::uint32_t* places) {
         return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), 4);
     }
 
-    // A sphere is known by the place of its centre's x among the floats of all blocks; y, z and the radius follow a block's
-    // lanes farther on each.
+    // A sphere is identified by the index of its center's x among the floats of all blocks. Its y, z and radius
+    // follow, each kBlockSize floats later.
     static_assert(offsetof(SphereBlock, center) == 0 && offsetof(SphereBlock, radius) == 3 * sizeof(BlockLanes<float>));
     static constexpr std::uint32_t kBlockFloats = sizeof(SphereBlock) / sizeof(float);
 
@@ -305,7 +312,7 @@ private:
     const std::span<const std::uint32_t> which_;
     const std::span<Hit> hits_;
     SlabRays<kSize> slabs_;
-    alignas(64) std::array<float, kSize> scales_; // filter_scale
+    alignas(64) std::array<float, kSize> scales_; // values of filter_scale
     std::array<Hit, kSize> best_;
 };
 
@@ -322,11 +329,11 @@ void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span
         RayStream(bvh, rays, which.first(std::min(which.size(), RayStream::kSize)), hits).run();
 }
 
-#else // too few lanes
+#else // without AVX-512
 
 bool streamable(const Bvh&) { return false; }
 void find_closest_of_stream(const Bvh&, std::span<const Ray>, std::span<const std::uint32_t>, std::span<Hit>) {
-    DUET_CHECK(false); // none is streamable
+    DUET_CHECK(false); // no hierarchy is streamable
 }
 
 #endif

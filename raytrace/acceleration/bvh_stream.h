@@ -1,7 +1,7 @@
-// Rays that run anywhere, through a hierarchy of few nodes side by side: a ray alone waits at every box for what the
-// last comparison says, and the processor guesses wrong where it goes. Here each step is done for all rays before the
-// next one is, from lists that are written without a branch (like the ray streams of Tsakok 2009, «Faster Incoherent
-// Rays: Multi-BVH Ray Stream Tracing»).
+// A stream of incoherent rays traverses a hierarchy of few nodes. A single ray stalls at every box until the last
+// comparison is done, and its branches are mispredicted. A stream does each step for all rays before the next step,
+// with lists that are written without a branch (like the ray streams of Tsakok 2009, "Faster Incoherent Rays:
+// Multi-BVH Ray Stream Tracing").
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -12,18 +12,18 @@
 
 namespace duet::raytrace {
 
-/// Whether rays that run anywhere are sooner through a hierarchy together: a tree of few nodes, of whose leaves most hold
-/// spheres and none instances, and of which a ray is expected to meet few, as no ray of a stream visits what is near
-/// first. Only where the machine can write lists without a branch: on AVX2, where streams were tried, they take as long as
-/// the rays one by one or up to 1.9 times as long.
+/// Returns whether incoherent rays traverse a hierarchy faster as a stream than one by one. The tree must have few
+/// nodes and no instances, most of its blocks must hold spheres, and a ray must be expected to visit few leaves,
+/// since a stream does not visit the nearest first. This needs AVX-512, which can write lists without a branch. On
+/// AVX2, where streams were tried, they take 1 to 1.9 times as long as single rays.
 bool streamable(const Bvh& bvh);
 
-/// Fewer rays than this are sooner there one by one. (spheres.json, Zen 5, times as long as these: 1 ray 2.6, 2 rays 1.45,
-/// 3 rays 1.07, 4 rays 0.94, 5 rays 0.86, 8 rays 0.72, 64 rays 0.65.)
+/// Fewer rays than this are faster one by one. (Time of a stream relative to single rays, spheres.json, Zen 5: 1 ray
+/// 2.6, 2 rays 1.45, 3 rays 1.07, 4 rays 0.94, 5 rays 0.86, 8 rays 0.72, 64 rays 0.65.)
 inline constexpr std::size_t kFewestStreamed = 4;
 
-/// Of the rays with these indices, through a streamable hierarchy: finds what `find_closest` finds for each, to the bit,
-/// and leaves it at the same index.
+/// Finds the closest hits of the rays with the indices `which`, bit-equal to those of `find_closest`, and writes
+/// them to `hits` at the same indices. The hierarchy must be streamable.
 void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which,
                             std::span<Hit> hits);
 

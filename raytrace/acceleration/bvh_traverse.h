@@ -1,8 +1,8 @@
-// Sending a ray through a hierarchy: near children first, whatever lies beyond the nearest hit is skipped.
+// These functions traverse a hierarchy with one ray: near children first, and without those beyond the closest hit.
 //
-// The answer is that of testing every primitive, to the bit, ties included: boxes are tested so conservatively that
-// none is skipped that holds a hit (Woop, Benthin and Wald 2013, «Watertight Ray/Triangle Intersection», §3.3), and
-// what is as near as the nearest hit is still looked at.
+// The result is bit-equal to that of testing every primitive, ties included. Box tests are so conservative that no
+// box with a hit is skipped (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", §3.3), and boxes
+// at the same distance as the closest hit are still visited.
 #pragma once
 
 #include "raytrace/acceleration/bvh_leaf.h"
@@ -15,10 +15,10 @@ inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
                                              std::size_t{ref.index()} * BvhRef::kNodeUnit);
 }
 
-/// Asks for what a visit of this child reads, before it is needed.
+/// Prefetches the memory that a visit of this child reads.
 inline void prefetch(const Bvh& bvh, BvhRef child) {
     const bool leaf = child.is_leaf();
-    if (leaf && child.kind() != PrimitiveKind::kTriangle) return; // few, and at hand
+    if (leaf && child.kind() != PrimitiveKind::kTriangle) return; // other leaves are few, and mostly in a cache
     const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
                              : reinterpret_cast<const char*>(&node_at(bvh, child));
     constexpr std::size_t kLine = 64;
@@ -26,23 +26,25 @@ inline void prefetch(const Bvh& bvh, BvhRef child) {
         __builtin_prefetch(place + i);
 }
 
-/// Numbers of a ray that are larger, and directions all of whose components are smaller than its reciprocal, would
-/// overflow on the way. (Scenes are refused beyond 1e18 long before.)
+/// Components of a ray larger than this, and directions with all components smaller than its reciprocal, would
+/// overflow during traversal. (The scene loader rejects scenes beyond 1e18.)
 inline constexpr float kLargestNumber = 1e37f;
-/// Whether a ray can be traced: in range, with a direction. Others hit nothing.
+/// Returns whether a ray can be traced: its components are in range, and its direction is not zero. Other rays hit
+/// nothing.
 inline bool traceable(const Ray& ray) {
     const auto in_range = [](Vec3 v) {
         const Vec3 size = abs(v);
-        return size.x <= kLargestNumber && size.y <= kLargestNumber && size.z <= kLargestNumber; // and not NaN
+        return size.x <= kLargestNumber && size.y <= kLargestNumber && size.z <= kLargestNumber; // false for NaN
     };
     return in_range(ray.origin) && in_range(ray.direction) && max_component(abs(ray.direction)) >= 1 / kLargestNumber;
 }
 
-/// A child that waits to be visited: where the ray enters its box, and which it is. In one number, so that a stack of
-/// them is written and sorted at least cost: distances that are not negative are ordered like their bits.
+/// Stores a child on the traversal stack: the distance at which the ray enters its box, and the reference to it.
+/// Both are in one integer, so that a stack is written and sorted at least cost: floats that are not negative have
+/// the same order as their bits.
 class Waiting {
 public:
-    Waiting() = default; // without a value: nobody should clear a stack of these for each ray
+    Waiting() = default; // not initialized, because that would clear a stack for each ray
     Waiting(float entry, BvhRef child)
         : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | child.bits()) {}
 
@@ -50,7 +52,7 @@ public:
     BvhRef child() const { return BvhRef::from_bits(static_cast<std::uint32_t>(bits_)); }
     bool nearer_than(Waiting other) const { return bits_ < other.bits_; }
 
-    /// The nearer of two; `farther` gets the other. Without a branch.
+    /// Returns the nearer of two and sets `farther` to the other, without a branch.
     friend Waiting take_nearer(Waiting a, Waiting b, Waiting& farther) {
         farther.bits_ = a.bits_ < b.bits_ ? b.bits_ : a.bits_;
         a.bits_ = a.bits_ < b.bits_ ? a.bits_ : b.bits_;
@@ -61,7 +63,7 @@ private:
     std::uint64_t bits_;
 };
 
-/// Where there is no tree to go through.
+/// Tests the leaves of the list, in a hierarchy whose tree is not to be traversed.
 template <bool kAny, typename Instance>
 [[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
                                     const Instance& instance) {
@@ -71,16 +73,17 @@ template <bool kAny, typename Instance>
     return test_leaf.found();
 }
 
-/// Looks for the primitive that comes before `best`, in the order of `precedes`, and leaves it there; best.t is the end
-/// of the ray. Returns whether there was one. `object` stands for the objects of the primitives where it is not
-/// kNoObject (an instance's). `instance(i, best)` is asked for instances' hits, in the same manner.
+/// Finds the first hit that comes before `best`, in the order of `precedes`, and stores it in `best`. On input,
+/// best.t is the end of the ray. Returns whether there was such a hit. If `object` is not kNoObject (inside an
+/// instance), hits report it as their object. `instance(i, best)` is called to find the hits of instances in the
+/// same manner.
 template <typename Instance>
 bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
     if (!bvh.use_tree()) return find_in_list<false>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
     LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
-    // Each step down leaves at most kWidth − 1 children waiting.
+    // A step down pushes at most kWidth − 1 children.
     std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min);
@@ -108,7 +111,7 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
             while (children != 0) {
                 Waiting other;
                 nearest = take_nearer(nearest, take(), other);
-                // The farthest at the bottom.
+                // The children are sorted so that the farthest is lowest on the stack.
                 std::size_t i = size++;
                 for (; i > bottom && stack[i - 1].nearer_than(other); --i) stack[i] = stack[i - 1];
                 stack[i] = other;
@@ -124,8 +127,8 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
     }
 }
 
-/// Whether any primitive comes before `end` and is not end's own: a shadow ray to a light passes the light itself.
-/// Stops at the first; the other arguments as above.
+/// Returns whether any primitive other than that of `end` is hit before `end`. A shadow ray to a light thus ignores
+/// the light itself. The search ends at the first such hit. The other arguments are those of find_closest.
 template <typename Instance>
 bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
     Hit best = end;
@@ -142,8 +145,8 @@ bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& e
             const BvhNode& node = node_at(bvh, next);
             unsigned children = slabs.enter(node, t_min, t_max).children;
             if (children == 0) break;
-            // The largest child, which is the last, first (Ogaki and Derouet-Jourdan 2016, «An N-ary BVH child node
-            // sorting technique for occlusion test», sort by area likewise).
+            // The largest child, which is the last, is visited first (Ogaki and Derouet-Jourdan 2016, "An N-ary BVH
+            // child node sorting technique for occlusion test", sort by area likewise).
             next = node.children[static_cast<std::size_t>(31 - std::countl_zero(children))];
             for (; (children & (children - 1)) != 0; children &= children - 1)
                 stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];

@@ -76,9 +76,11 @@ void Gatherer::add_mesh(const Mesh& mesh, std::uint32_t object) {
 
 void Gatherer::add_instance(const Object& object, std::uint32_t index, const Shape& shape) {
     Box3 box = bounds(shape, object.to_world);
-    // Matrix entries are interpolated, so each point moves on a straight line between its ends.
+    // Matrix entries are interpolated linearly, so each point moves on a straight line between its positions at both
+    // ends.
     if (object.moving) box.extend(bounds(shape, object.to_world_end));
-    // The hit is found in the object's space, where the ray arrives with the rounding of its own transform.
+    // Hits are found in object space. The transform of the ray to that space has rounding errors, for which the box
+    // gets a margin.
     const Vec3 room = max(abs(box.low), abs(box.high)) * gamma_bound(16);
     box.extend(box.low - room);
     box.extend(box.high + room);
@@ -90,7 +92,9 @@ Bvh Gatherer::build() {
                                 [this](std::span<BuildItem> items) { return first_of_twins(items); }};
     auto [items, collapsed] = build_hierarchy(std::move(items_), primitives, quality_, threads_);
     Bvh& bvh = collapsed.bvh;
-    const auto elements = [&collapsed = collapsed](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
+    const auto elements = [&collapsed = collapsed](PrimitiveKind kind) {
+        return collapsed.elements[static_cast<std::size_t>(kind)];
+    };
     bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
     bvh.quads.resize(elements(PrimitiveKind::kQuad));
     bvh.spheres.resize(elements(PrimitiveKind::kSphere));
@@ -102,7 +106,7 @@ Bvh Gatherer::build() {
     return std::move(bvh);
 }
 
-// Of triangles and quads; nothing of others.
+// Returns the corners of a triangle or a quad, and none for other primitives.
 Outline Gatherer::outline(const BuildItem& item) const {
     if (item.kind == PrimitiveKind::kTriangle) {
         const MeshTriangle& triangle = triangles_[item.index];
@@ -114,12 +118,13 @@ Outline Gatherer::outline(const BuildItem& item) const {
     return {};
 }
 
-// Primitives with the very same corners, or spheres with the same centre and radius, are hit at the very same
-// distance, where the lowest (object, primitive) wins: that of the lowest index here. A table of hashes finds them
-// in one walk, whatever their number. Instances are no twins: they may move.
+// Moves one primitive of each set of duplicates to the front, and returns the number of these. Primitives with
+// bit-equal corners, or spheres with bit-equal center and radius, are hit at exactly the same distance, where the
+// lowest (object, primitive) wins; that is the one with the lowest index here. A hash table finds duplicates in one
+// pass. Instances are never duplicates, because they may move.
 std::size_t Gatherer::first_of_twins(std::span<BuildItem> items) const {
     constexpr std::uint32_t kFree = ~0u;
-    std::vector<std::uint32_t> seats(std::bit_ceil(2 * items.size()), kFree); // of `items`, by hash
+    std::vector<std::uint32_t> seats(std::bit_ceil(2 * items.size()), kFree); // hash table of indices into `items`
     std::size_t kept = 0;
     for (const BuildItem& item : items) {
         const Form form = form_of(item);

@@ -1,4 +1,4 @@
-// From shapes and instances to a hierarchy of their primitives.
+// Gatherer builds a hierarchy over the primitives of shapes and instances.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,17 +10,19 @@
 
 namespace duet::raytrace {
 
-/// Gathers primitives of all kinds with their boxes, then makes a hierarchy of them. Refers to the shapes until then.
+/// Collects primitives of all kinds with their boxes, then builds a hierarchy over them. It refers to the shapes
+/// until then.
 class Gatherer {
 public:
-    /// threads: 0 = all; the hierarchy does not depend on it.
+    /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it.
     Gatherer(BvhQuality quality, int threads) : quality_(quality), threads_(threads) {}
 
-    /// A shape's primitives, as they are. `object`: what their hits name.
+    /// Adds the primitives of a shape, without a transform. Their hits report `object`.
     void add_shape(const Shape& shape, std::uint32_t object);
-    /// The bounds of a placed shape, over all its time. `index`: of the object.
+    /// Adds the world-space bounds of a transformed shape, over all of its motion. `index` is the index of the
+    /// object.
     void add_instance(const Object& object, std::uint32_t index, const Shape& shape);
-    /// Once, in the end.
+    /// Builds the hierarchy. It must be called only once, after all shapes and instances are added.
     Bvh build();
 
 private:
@@ -39,7 +41,8 @@ private:
         Sphere sphere;
         std::uint32_t object;
     };
-    /// All that decides where a primitive is hit: its kind and the bits of its numbers; an instance's index.
+    /// Holds everything that decides where a primitive is hit: its kind and the bits of its coordinates, or the
+    /// index of an instance.
     using Form = std::array<std::uint32_t, 13>;
 
     template <typename Body> void in_chunks(std::size_t count, const Body& body) const;

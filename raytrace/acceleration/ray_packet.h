@@ -1,4 +1,4 @@
-// Coherent rays, made ready to be tested together against boxes, triangles and spheres, and what they hit.
+// A packet holds coherent rays, prepared to be tested together against boxes, triangles and spheres, and their hits.
 #pragma once
 
 #include "raytrace/acceleration/bvh_traverse.h"
@@ -7,28 +7,30 @@
 
 namespace duet::raytrace {
 
-/// As many rays as the widest batch has lanes, made ready for tests: those of neighbouring pixels, say.
+/// Prepares a packet of as many rays as the widest batch has lanes, such as those of neighboring pixels, prepared
+/// for SIMD tests.
 class RayPacket {
 public:
     static constexpr std::size_t kSize = kMaxSimdLanes;
     using Batch = FloatBatch<kSize>;
     using Values = std::array<float, kSize>;
 
-    /// Of rays for a tree over those bounds.
+    /// Prepares rays for a tree with these bounds.
     RayPacket(std::span<const Ray, kSize> rays, const Box3& bounds) : RayPacket(rays, &bounds) {}
-    /// For a list of primitives: nothing that only boxes are asked for.
+    /// Prepares rays for a list of primitives, without the values that only box tests need.
     explicit RayPacket(std::span<const Ray, kSize> rays) : RayPacket(rays, nullptr) {}
 
-    /// Whether all rays run into the same octant (for a list: the same way) along the same main axis, and can be traced.
-    /// Nothing else may be asked of others.
+    /// Returns whether all rays can be traced, have the same dominant axis, and have directions in the same octant
+    /// (for a list: the same sign along that axis). A packet that is not coherent must not be tested against
+    /// anything.
     bool coherent() const { return coherent_; }
     Batch t_min() const { return t_min_; }
     Batch t_max() const { return t_max_; }
     const Shear<Batch>& shear() const { return shear_; }
     const LineLanes<kSize>& lines() const { return lines_; }
 
-    /// A bit for each child of the node whose box some of the rays may enter before `end`, the last of their ends; and
-    /// for each a distance before which none does.
+    /// Returns a bit mask of the node's children whose box some of the rays may enter before `end`, the greatest of
+    /// their ends, and for each child a lower bound of the distance at which they enter.
     SlabRay::Entered enter_any(const BvhNode& node, float end) const {
         using Boxes = SlabRay::Batch;
         const auto bound = [&](const Interval& interval, std::size_t plane, bool far) {
@@ -44,7 +46,8 @@ public:
         return {near, lane_bits(near <= far)};
     }
 
-    /// Where each ray enters the child's box, and a bit for each ray that does so by its end.
+    /// Holds the distance at which each ray enters a child's box, and a mask of the rays that enter it before their
+    /// end.
     struct Entering {
         Batch distance;
         Batch::batch_bool_type enters;
@@ -60,9 +63,9 @@ public:
         return {near, near <= far};
     }
 
-    /// The origin that all rays have in common, if they do.
+    /// Returns the origin that all rays share, if they do.
     const std::optional<Vec3>& origin() const { return origin_; }
-    /// What some of the rays' shears are, each for its share of the lanes.
+    /// Returns the shears of some of the rays, each repeated in its share of the lanes.
     template <std::size_t N> Shear<Batch> shears(const std::array<std::size_t, N>& rays) const {
         const auto pick = [&](std::size_t k) { return share(lanes_[k], rays); };
         return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5), pick(6)};
@@ -95,7 +98,8 @@ private:
 
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
-    // A range of reciprocals of directions, and the end of the range of origins that makes the bound hold.
+    // Holds the range of the reciprocal directions, and that end of the range of origins which makes the bound
+    // conservative.
     struct Interval {
         float low, high, origin;
     };
@@ -105,7 +109,7 @@ private:
         const std::size_t z_axis = longest_axis(abs(rays[0].direction));
         const Batch largest(kLargestNumber), zero(0.0f);
         constexpr unsigned kAll = kAllRays;
-        if (lane_bits((t_min_ == t_min_) & (t_max_ == t_max_)) != kAll) return false; // some are NaN
+        if (lane_bits((t_min_ == t_min_) & (t_max_ == t_max_)) != kAll) return false; // some distances are NaN
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto in_range = (xsimd::abs(origin[axis]) <= largest) & (xsimd::abs(direction[axis]) <= largest);
             const unsigned negative = lane_bits(direction[axis] < zero);
@@ -122,7 +126,7 @@ private:
         return lane_bits(size[z_axis] >= Batch(1 / kLargestNumber)) == kAll;
     }
 
-    // What ShearedRay computes for one.
+    // Computes for all rays what ShearedRay computes for one.
     Shear<Batch> sheared(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
         const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
         const std::size_t kx = backwards_[kz] ? after : next, ky = backwards_[kz] ? next : after;
@@ -140,7 +144,7 @@ private:
         return shear;
     }
 
-    // As SlabRay does for one, with the widest error of all origins.
+    // Prepares the slabs as SlabRay does for one ray, with the largest error bound of all origins.
     void set_slabs(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
         const Box3 origins = origin_ ? Box3{*origin_, *origin_} : extent_of(origin);
         const Vec3 extents = max(abs(bounds.low - origins.high), abs(bounds.high - origins.low)),
@@ -179,10 +183,10 @@ private:
 
     bool coherent_;
     std::array<bool, 3> backwards_;
-    std::array<std::size_t, 3> near_plane_, far_plane_; // in bytes from the node
+    std::array<std::size_t, 3> near_plane_, far_plane_; // offsets in bytes from the node
     std::optional<Vec3> origin_;
     Shear<Batch> shear_;
-    alignas(64) std::array<Values, 7> lanes_; // the shear's, to be picked from
+    alignas(64) std::array<Values, 7> lanes_; // components of the shears, which shears() reads
     alignas(64) LineLanes<kSize> lines_;
     Batch t_min_, t_max_;
     float first_;
@@ -190,7 +194,7 @@ private:
     std::array<Interval, 3> near_interval_, far_interval_;
 };
 
-/// The nearest hits of a packet's rays so far; t is the ray's end where there is none.
+/// Holds the closest hits so far of a packet's rays. t is the ray's end if there is no hit.
 struct PacketHits {
     static constexpr std::size_t kSize = RayPacket::kSize;
     template <typename T> using PerRay = std::array<T, kSize>;
@@ -198,7 +202,7 @@ struct PacketHits {
     alignas(64) PerRay<float> t, u, v;
     alignas(64) PerRay<std::uint32_t> object, primitive;
 
-    /// None yet.
+    /// Starts without hits. `ends` are the greatest hit distances that count.
     explicit PacketHits(RayPacket::Batch ends) {
         ends.store_aligned(t.data());
         u.fill(0);

@@ -1,4 +1,4 @@
-// Sorting the indices of rays or paths into a few classes, that those of one kind are dealt with together.
+// The indices of rays or paths are sorted into a few classes, so that those of one class are processed together.
 #pragma once
 
 #include <array>
@@ -8,16 +8,21 @@
 
 namespace duet::raytrace {
 
-/// Writes `indices` to `sorted` class after class, in order within each; returns where each class ends. class_of(index): below
-/// kClasses, at most 256. `classes`: room for one of each; it and `sorted` are as long as `indices` at least.
-/// A counting sort of two halves at once: a count that was just written is waited for.
+/// Writes `indices` to `sorted` class by class, in their order within each class, and returns where each class ends.
+/// class_of(index) must be below kClasses, which is at most 256. `classes` is scratch memory; it and `sorted` must
+/// be at least as long as `indices`.
+///
+/// It is a counting sort with separate counts for two halves, because an increment of a count that was just written
+/// has to wait for that store.
 template <std::size_t kClasses, typename ClassOf>
 std::array<std::uint32_t, kClasses> sort_by_class(std::span<const std::uint32_t> indices, const ClassOf& class_of,
                                                   std::span<std::uint8_t> classes, std::span<std::uint32_t> sorted) {
     static_assert(kClasses <= 256);
     const std::size_t size = indices.size(), half = size / 2;
     std::array<std::uint32_t, kClasses> low{}, high{}, ends;
-    const auto count = [&](std::size_t k, auto& counts) { ++counts[classes[k] = static_cast<std::uint8_t>(class_of(indices[k]))]; };
+    const auto count = [&](std::size_t k, auto& counts) {
+        ++counts[classes[k] = static_cast<std::uint8_t>(class_of(indices[k]))];
+    };
     for (std::size_t k = 0; k < half; ++k) count(k, low), count(half + k, high);
     if (size % 2 != 0) count(size - 1, high);
     std::uint32_t begin = 0;

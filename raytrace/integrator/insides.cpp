@@ -11,7 +11,7 @@ const Dielectric& Insides::glass(std::uint32_t material) const {
 
 const Dielectric* Insides::filling(std::int64_t without) const {
     const Dielectric* found = nullptr;
-    for (std::size_t i = count_; i-- > 0;) { // of equal ones the last entered
+    for (std::size_t i = count_; i-- > 0;) { // of equal priorities the last entered counts
         if (static_cast<std::int64_t>(materials_[i]) == without) {
             without = -1;
             continue;
@@ -30,13 +30,13 @@ void Insides::cross(std::uint32_t material, bool inwards) {
             ++deeper_;
         return;
     }
-    if (deeper_ > 0) { // the last entered is left first
+    if (deeper_ > 0) { // the last entered is the first to be left
         --deeper_;
         return;
     }
     const auto end = materials_.begin() + static_cast<std::ptrdiff_t>(count_);
     const auto last = std::find(std::make_reverse_iterator(end), materials_.rend(), material);
-    if (last == materials_.rend()) return; // it started inside
+    if (last == materials_.rend()) return; // the path started inside of it
     std::copy(last.base(), end, last.base() - 1);
     --count_;
 }

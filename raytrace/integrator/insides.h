@@ -1,4 +1,5 @@
-// The dielectrics that a path is inside of: what they absorb, and which of them fills a place where several overlap.
+// Insides is the medium stack of a path: the dielectrics that the path is inside of, what they absorb, and which of
+// them fills a point where several overlap.
 #pragma once
 
 #include "raytrace/plan.h"
@@ -7,37 +8,42 @@
 
 namespace duet::raytrace {
 
-/// Dielectrics with a priority may overlap, as water does the glass it stands in: where they do, the one of the highest
-/// priority is there alone, and boundaries of the others inside it are none (Schmidt and Budge 2002, «Simple Nested
-/// Dielectrics in Ray Traced Images»). Those without one refract as if they stood in the outside by themselves. Light is
-/// absorbed by the one that fills the place. Paths start outside of all.
+/// Dielectrics with a priority may overlap, as water does with the glass that holds it. Where they overlap, only the
+/// one with the highest priority is present, and boundaries of the others inside it are ignored (Schmidt and Budge
+/// 2002, "Simple Nested Dielectrics in Ray Traced Images"). Dielectrics without a priority refract as if the outside
+/// surrounded them. The dielectric that fills a point absorbs the light there. Paths start outside of all
+/// dielectrics.
 class Insides {
 public:
     explicit Insides(const RenderPlan& plan) : plan_(&plan) {}
 
-    /// Follows a ray from its hit on to the first boundary that is one, which is returned; `ray` then ends there. What is
-    /// absorbed on the way is taken from throughput. `passed`: the number of boundaries gone through.
+    /// Follows a ray from its hit to the first boundary that is not ignored, and returns the hit there. `ray`
+    /// becomes the last segment, which ends there. `throughput` is multiplied by the transmittance on the way.
+    /// `passed` is set to the number of ignored boundaries.
     Hit arrive(Ray& ray, Hit hit, Rgb& throughput, int& passed);
-    /// Of the boundary arrived at, as seen from its front: the index inside over outside, or 0: its material's own.
+    /// Returns the relative index of refraction, inside over outside, of the boundary at which arrive() ended, as
+    /// seen from its front. It is 0 if the material's own index applies.
     float relative_index() const { return relative_; }
-    /// What is left of light after a distance through what fills the place; black after an infinite one where any is
-    /// absorbed.
+    /// Returns the transmittance over a distance through the dielectric that fills the current point. At an infinite
+    /// distance it is 0 in the channels that are absorbed.
     Rgb transmittance(float distance) const;
-    /// The path goes through the boundary of a dielectric, inwards or outwards.
+    /// Updates the stack when the path crosses the boundary of a dielectric, inwards or outwards.
     void cross(std::uint32_t material, bool inwards);
 
 private:
     const Dielectric& glass(std::uint32_t material) const;
-    /// The one that fills the place, or null; one entry of `without` does not count.
+    /// Returns the dielectric that fills the current point, or null if there is none. One stack entry of the
+    /// material `without` is ignored.
     const Dielectric* filling(std::int64_t without = -1) const;
 
-    /// Boundaries passed at once: a path that goes nowhere for want of precision has to end.
+    /// arrive() ignores at most this many boundaries in a row. The limit ends paths that make no progress for lack
+    /// of precision.
     static constexpr int kMostPassed = 1000;
 
     const RenderPlan* plan_;
-    std::array<std::uint32_t, 8> materials_{}; ///< as entered
+    std::array<std::uint32_t, 8> materials_{}; ///< in the order of entry
     std::size_t count_ = 0;
-    int deeper_ = 0; ///< those that were entered when the array was full: they fill nothing
+    int deeper_ = 0; ///< number of dielectrics entered while the array was full; they are ignored
     float relative_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The integrators: how much light arrives along a camera ray. Each is a function of the same form, in a file of its
-// own.
+// The integrators estimate how much light arrives along a camera ray. All are functions of the same type, each in a
+// file of its own.
 #pragma once
 
 #include "common/sampling/sampler.h"
@@ -10,10 +10,10 @@
 
 namespace duet::raytrace {
 
-/// Rays sent, and not sent, for the statistics.
+/// Counts traced rays and ended rays and of ended paths, for the statistics.
 struct RayCounts {
     std::int64_t camera = 0, indirect = 0, shadow = 0;
-    std::int64_t ended = 0; ///< paths, by roulette
+    std::int64_t ended = 0; ///< paths that roulette ended
 
     RayCounts& operator+=(const RayCounts& other) {
         camera += other.camera;
@@ -24,15 +24,15 @@ struct RayCounts {
     }
 };
 
-// Dimensions of a sample: the camera's come first, then each vertex of the path has a block of its own. What is left
-// out anywhere moves no number elsewhere.
+// The first dimensions of a sample are the camera's. Each vertex of the path then has a block of its own. A
+// dimension that is not used somewhere does not shift the dimensions elsewhere.
 
-/// The numbers in [0, 1) that a vertex uses.
+/// Holds the random samples in [0, 1) that a vertex uses.
 struct VertexNumbers {
     Vec2 bsdf, light;
     float light_choice, lobe, roulette;
 };
-/// Those of the vertex after `depth` scatterings.
+/// Returns the first sample dimension of the vertex after `depth` scatterings.
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
 }
@@ -43,7 +43,8 @@ inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
     return vertex_numbers(sampler.get_block());
 }
 
-/// An unbiased estimate of the radiance along a camera ray (its direction unit), whose first hit (or none) is given.
+/// Returns an unbiased estimate of the radiance along a camera ray of unit direction. Its first hit is given, and
+/// may be invalid.
 using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
                                  RayCounts& counts);
 
@@ -55,18 +56,20 @@ Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, Ray
 Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 
-/// path_radiance of many camera rays, to the same bits: the paths advance side by side, vertex by vertex, so that the
-/// machine works on several at once where each alone would wait for its own numbers. All spans are of one length; rays,
-/// hits and samplers are used up.
+/// Computes path_radiance of many camera rays, bit-equal. The paths advance together, vertex by vertex (wavefront),
+/// so that the CPU overlaps the work of several paths where one alone would wait for its own results. All spans must
+/// have the same length. The rays, hits and samplers are modified.
 void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
                     std::span<Rgb> radiances, RayCounts&); ///< paths.cpp
 
-/// path_radiance of the same numbers, split: the parts add up to it but for rounding.
+/// Computes path_radiance from the same random samples, split into components. Their sum equals path_radiance except
+/// for rounding.
 LightParts path_parts(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp
 
-/// The function of an integrator. Path, naive and direct are one: they differ in their plans.
+/// Returns the function of an integrator. Path, naive and direct share one function, because they differ only in
+/// their plans.
 RadianceFunction radiance_function(Integrator integrator);
-/// It, of many rays: as path_radiances has it.
+/// Applies the function of an integrator to many rays. The arguments are those of path_radiances.
 void radiances(Integrator integrator, const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits,
                std::span<Sampler> samplers, std::span<Rgb> radiances, RayCounts& counts);
 

@@ -1,4 +1,4 @@
-// Numbers of several paths side by side, a lane each: how they are brought together and taken apart.
+// These types hold values of several paths in SIMD lanes, one path per lane, and convert them to and from scalars.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -20,7 +20,7 @@ using Vecd = Vec3T<Doubles>;
 using Color = RgbT<Floats>;
 using Mask = Floats::batch_bool_type;
 
-// A number of each path, and three.
+// A Column has one number per path, and Columns have three.
 struct Column {
     alignas(sizeof(Doubles)) std::array<float, kLanes> of{};
 
@@ -47,12 +47,13 @@ struct Columns {
 inline Vec rounded(const Vecd& v) { return {to_floats(v.x), to_floats(v.y), to_floats(v.z)}; }
 inline Vecd widened(const Vec& v) { return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)}; }
 
-// Lanes that no path has are filled with the first one's numbers.
+// Calls set(lane, path) for each lane. Lanes beyond the number of paths get the first path, so that their values are
+// valid.
 template <typename Set> void for_lanes(std::span<const PlainPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
 }
 
-// Of each path four numbers that lie one after the other from first(path) on: a column each.
+// Loads four consecutive numbers of each path, starting at first(path), into four batches.
 template <typename First> std::array<Floats, 4> fours(std::span<const PlainPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }

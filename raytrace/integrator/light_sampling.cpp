@@ -31,9 +31,9 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
 
 namespace {
 
-// Where a ray that was aimed at a flat light meets it, by the test that decides all other hits: what lies in the
-// light's plane is then before it or behind it by the same order as for any ray. A ray aimed at its rim may miss it by
-// a rounding.
+// Returns the distance at which a ray toward a flat light hits it. It is computed by the test that decides all
+// other hits, so that surfaces in the light's plane are ordered before or behind the light as for any ray. A ray
+// toward the light's edge may miss it by a rounding error; then the result is `sampled`.
 float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
     if (const auto* quad = std::get_if<Quad>(&light.shape)) {
         if (const auto hit = intersect_quad(ShearedRay(ray), *quad)) return hit->t;
@@ -49,13 +49,14 @@ ShadowEnd::ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& 
     if (arrival.light >= 0)
         light_ = std::get_if<SurfaceLight>(&scene.lights[static_cast<std::size_t>(arrival.light)]);
     if (light_ == nullptr) {
-        // A lamp at a point may lie in a surface, which then does not hide it: the way ends a rounding error before it.
+        // A point light may lie in a surface, which then does not occlude it: the ray ends a rounding error before
+        // it.
         end_.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - p) : arrival.distance;
         return;
     }
     end_.object = light_->object;
     end_.primitive = light_->primitive;
-    // Mostly nothing lies between, nor just behind the light: then its exact distance does not matter.
+    // Mostly nothing is hit before the light or just behind it. Then its exact distance does not matter.
     end_.t = arrival.distance * 1.001f;
 }
 

@@ -1,4 +1,4 @@
-// One light sample at a vertex, and its weight against BSDF sampling.
+// A vertex draws one light sample, which is weighted against BSDF sampling.
 #pragma once
 
 #include "common/light/light_choice.h"
@@ -6,31 +6,34 @@
 
 namespace duet::raytrace {
 
-/// Light that could arrive at a point from a light or the environment.
+/// Holds a light sample: light that arrives at a point from a light or the environment, unless it is occluded.
 struct Arrival {
-    Vec3 wi;                 ///< unit, in the world
-    Rgb radiance;            ///< as LightSample::radiance
-    float pdf = 0;           ///< by solid angle, the choice of the light included; > 0
-    bool delta = false;      ///< BSDF samples cannot find it
+    Vec3 wi;                 ///< unit, in world space
+    Rgb radiance;            ///< see LightSample::radiance
+    float pdf = 0;           ///< by solid angle, including the choice of the light; > 0
+    bool delta = false;      ///< whether BSDF samples cannot find it
     float distance = 0;      ///< infinity for the sun and the environment
     std::int64_t light = -1; ///< index into Scene::lights; −1: the environment
 };
-/// choice in [0, 1) chooses the light, u in [0, 1)² the point on it. Empty where the chosen one sends nothing.
+/// Draws a light sample: `choice` in [0, 1) chooses the light, and `u` in [0, 1)² the point on it. Returns nothing
+/// if the chosen light sends no light to the receiver.
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                                       float choice, Vec2 u);
-/// The same from the light that was chosen.
+/// Draws a sample of the light that was already chosen.
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                                       const LightChoice& chosen, Vec2 u);
 
-/// Where a shadow ray to an arrival's light ends, if it leaves the surface point p.
+/// Computes the end of a shadow ray from the surface point p to a light sample.
 class ShadowEnd {
 public:
     ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& arrival);
-    /// The end, or, of a surface, a place just behind it: where nothing stands before that, nothing is in the way.
+    /// Returns the end of the ray or, for a surface light, a point just behind it. If nothing is hit before that,
+    /// the light is visible.
     const Hit& about() const { return end_; }
+    /// Returns the end at the light's exact distance along the ray.
     Hit exact(const Ray& ray) const;
     bool is_surface() const { return light_ != nullptr; }
-    /// Whether the light is where the ray meets it, if it does.
+    /// Returns whether the light is a flat surface. Then exact() is where the ray itself hits it, if it does.
     bool is_flat() const { return is_surface() && !std::holds_alternative<Sphere>(light_->shape); }
 
 private:
@@ -39,22 +42,22 @@ private:
     Hit end_;
 };
 
-/// Whether nothing stands between the vertex and the light. Sends one shadow ray.
-bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end); ///< the ray to that end
+/// Returns whether the light is visible from the vertex. This counts as one shadow ray.
+bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end); ///< `ray` leads to `end`
 inline bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
     const Ray ray = spawn_ray(vertex, arrival.wi);
     return reaches(plan, ray, ShadowEnd(plan.scene, ray, vertex.point.p, arrival));
 }
 
-/// The density with which sample_arrival returns the direction to `point`, which lies on an emissive surface: 0 where
-/// that is no light that is sampled (it moves, or does not emit towards the receiver).
+/// Returns the density by solid angle with which sample_arrival draws the direction to `point`, which is on an
+/// emissive surface. It is 0 if that is no light that is sampled (it moves, or does not emit toward the receiver).
 float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
                   const SurfacePoint& point);
-/// The same of a direction w to the environment.
+/// Returns the density by solid angle with which sample_arrival draws the direction w to the environment.
 float arrival_pdf(const Environment& environment, const LightChooser& lights, const LightReceiver& receiver, Vec3 w);
 
-/// The weight of a sample that was drawn with density `own` and could have been drawn with density `other`: the power
-/// heuristic, β = 2 (Veach 1997, §9.2.4). own > 0.
+/// Returns the MIS weight of a sample that was drawn with density `own` and could have been drawn with density
+/// `other`: the power heuristic with β = 2 (Veach 1997, §9.2.4). `own` must be positive.
 template <typename T> T mis_weight(T own, T other) { return T(1.0f) / (T(1.0f) + sqr(other / own)); }
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// What paths are walked for: a sum of light, its parts, or an account of each step.
+// Paths are traced for a sum of light, for its components, or for a log of each step.
 #include "raytrace/integrator/path.h"
 
 #include "raytrace/integrator/path_gains.h"
@@ -8,7 +8,8 @@ namespace duet::raytrace {
 
 namespace {
 
-// Of a path the light by the part it belongs to. `bounces` is the number of scatterings between the light and the camera.
+// This sink splits the light of a path into components. `bounces` is the number of scatterings between the light and
+// the camera.
 class Split {
 public:
     static constexpr bool kTold = false;
@@ -31,10 +32,10 @@ private:
     }
 
     LightParts parts_;
-    bool diffuse_ = false, specular_ = false; // the first hit
+    bool diffuse_ = false, specular_ = false; // about the BSDF of the first hit
 };
 
-// The sum, and each step is told.
+// This sink adds up the light and logs each step.
 template <typename Log> class Told : public Sum {
 public:
     static constexpr bool kTold = true;
@@ -46,7 +47,8 @@ private:
 };
 
 template <typename Sink>
-auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts, Sink sink = {}) {
+auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts,
+            Sink sink = {}) {
     if (plan.insides) return Path<Sink, true>(plan, sampler, counts, sink).trace(sampler, ray, hit);
     return Path<Sink, false>(plan, sampler, counts, sink).trace(sampler, ray, hit);
 }

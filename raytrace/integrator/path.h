@@ -1,6 +1,6 @@
-// Unidirectional path tracing with next event estimation: at each vertex a light sample and a BSDF sample, combined by
-// multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples (plan.lights is null)
-// it is the naive path tracer, in which only chance finds the lights.
+// Path is unidirectional path tracing with next event estimation. Each vertex draws a light sample and a BSDF
+// sample, combined by multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples
+// (plan.lights is null) it is the naive path tracer, in which only BSDF samples find the lights.
 #pragma once
 
 #include "raytrace/integrator/insides.h"
@@ -14,10 +14,10 @@
 
 namespace duet::raytrace {
 
-// What becomes of the light that a path finds: in a picture it is added up, whatever way it came.
+// A sink receives the light that a path finds. For images, this one adds up all light, from any source.
 class Sum {
 public:
-    static constexpr bool kTold = false; // whether it has a log that is told of all
+    static constexpr bool kTold = false; // whether the sink has a log() of all events
     void start(const Bsdf&) {}
     void add(Rgb light, LightSource, int) { total_ += light; }
     void add_shadowed(Rgb, LightSource, int) {}
@@ -27,32 +27,33 @@ private:
     Rgb total_;
 };
 
-// What a path keeps where no dielectric knows of others: nothing.
+// Replaces the medium stack in scenes where no dielectric absorbs or has a priority. It is empty.
 struct NoInsides {
     explicit NoInsides(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
 };
 
-// The numbers of the vertex that a ray has found, if it is one that uses any.
+// Returns the random samples of the vertex that a ray has hit, if it uses any.
 inline VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
     return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
 }
 
-/// One path. kInsides: in scenes with dielectrics that know of each other.
+/// Traces one path. kInsides is true in scenes where dielectrics absorb or have priorities, so that it has a medium
+/// stack.
 template <typename Sink, bool kInsides> class Path {
 public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
         : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan, sampler.sample()) {}
 
-    /// The light along a camera ray, as the sink keeps it.
+    /// Traces a camera ray, and returns the result of the sink.
     auto trace(Sampler& sampler, Ray ray, Hit hit) {
         for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
         return result();
     }
 
-    /// What the ray has found after `depth` scatterings: adds the light, and turns the ray into the one that goes on from
-    /// there. False where the path ends.
+    /// Processes what the ray has hit after `depth` scatterings: adds the light found there, and replaces the ray by
+    /// the one that continues. Returns false if the path ends.
     bool advance(Ray& ray, const Hit& nearest, int depth, const VertexNumbers& u) {
         Hit reached;
         if constexpr (kInsides) reached = arrive(ray, nearest);
@@ -77,9 +78,9 @@ public:
     }
     auto result() const { return sink_.result(); }
 
-    /// What those change that scatter it in its place.
+    /// Returns the state, which batched scattering changes in place of advance().
     PathState& state() { return state_; }
-    /// Light that they find.
+    /// Adds light that batched scattering has found.
     void add(Rgb light) { sink_.add(light, LightSource::kLight, 0); }
 
 private:
@@ -120,7 +121,7 @@ private:
             sink_.add_shadowed(state_.throughput * scattered / arrival->pdf, source, bounces + 1);
             return;
         }
-        // The environment and all still emitters are found by BSDF samples, too.
+        // BSDF samples find the environment and all emitters at rest, too.
         const float bsdf_pdf = arrival->delta ? 0 : pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi));
         const float weight = mis_weight(arrival->pdf, bsdf_pdf);
         const Rgb light = state_.throughput * scattered * (weight / arrival->pdf);
@@ -128,14 +129,14 @@ private:
         sink_.add(light, source, bounces + 1);
     }
 
-    // Asked for the sink that splits alone: a sum need not know.
+    // Only the sink that splits the light needs the source, so that a sum does not look it up.
     LightSource source_of(const SurfacePoint& point) const {
         if constexpr (std::is_same_v<Sink, Sum>) return LightSource::kLight;
         const bool sampled = surface_light_index(plan_.scene, point.object, point.primitive) >= 0;
         return sampled ? LightSource::kLight : LightSource::kOther;
     }
 
-    // Chooses the next direction by the BSDF; false where the path ends.
+    // Samples the next direction from the BSDF. Returns false if the path ends.
     bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
         const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
         if (!s || is_black(s->weight)) return tell_end("the surface absorbs it");
@@ -145,8 +146,8 @@ private:
         if (s->transmitted) note_refraction(vertex);
         if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_);
         footprint_.scatter(s->pdf, s->specular);
-        // Each number is written where it is read from next: a whole ray copied right after it was put together would
-        // wait for its parts.
+        // Each number is written to where it is read next. If a whole ray were copied right after its components
+        // were written, that load would wait for their stores.
         state_.departure.certain = s->specular || plan_.lights == nullptr;
         if (!state_.departure.certain) {
             state_.departure.receiver = vertex.receiver();
@@ -158,7 +159,7 @@ private:
         return true;
     }
 
-    // Entering glass scales the throughput by 1/η², leaving it by η²: no reason to end or to favour a path.
+    // Entering glass scales the throughput by 1/η², and leaving it by η². Roulette must ignore both.
     void note_refraction(const Vertex& vertex) {
         const float eta = refraction_index(vertex.bsdf);
         state_.refraction *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
@@ -166,12 +167,13 @@ private:
             if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
     }
 
-    // Goes on to where the ray meets something that is there, in scenes with dielectrics that know of each other.
+    // Continues the ray to the first boundary that is not ignored, in scenes with a medium stack.
     Hit arrive(Ray& ray, const Hit& nearest) {
         int passed = 0;
         const Hit hit = insides_.arrive(ray, nearest, state_.throughput, passed);
         counts_.indirect += passed;
-        if (passed > 0) state_.departure.certain = true; // shadow rays end at any boundary
+        // No light sample competes beyond an ignored boundary, because shadow rays end at any boundary.
+        if (passed > 0) state_.departure.certain = true;
         return hit;
     }
 
@@ -180,7 +182,8 @@ private:
         return glass != nullptr && !glass->thin;
     }
 
-    // Of a light sample's light, what is not absorbed by what the vertex, or its other side, is inside of.
+    // Returns the transmittance of a light sample through the dielectric that the vertex is inside of, or the
+    // dielectric on the other side of its surface.
     Rgb left_on_the_way(const Vertex& vertex, const Arrival& arrival) const {
         if (same_hemisphere(vertex.wo, vertex.frame.to_local(arrival.wi)) || !crosses(vertex))
             return insides_.transmittance(arrival.distance);
@@ -191,7 +194,7 @@ private:
 
     bool survives(float u) {
         const float probability = survival(state_.throughput, state_.refraction, plan_.worth);
-        if (!(probability < 1)) return true; // nor is what is no number dropped: it is to be counted
+        if (!(probability < 1)) return true; // NaN survives, too, so that it is counted as invalid
         if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
         if (!(u < probability)) {
             ++counts_.ended;

@@ -17,7 +17,7 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
         first_ = false;
         footprint_ = pixel_->at(ray, t) * part_;
         width_ = mean_width(footprint_);
-        // Straight rays widen in proportion to their length, but for an orthographic camera's, which don't.
+        // The footprint of a ray widens in proportion to its length, but that of an orthographic camera does not.
         spread_ = (mean_width(pixel_->at(ray, 2 * t) * part_) - width_) / t;
         return &footprint_;
     }
@@ -28,7 +28,7 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
 }
 
 void PathFootprint::spread(float pdf) {
-    constexpr float kWidest = 0.5f; // radians: what is seen by way of diffuse surfaces keeps some of its detail
+    constexpr float kWidest = 0.5f; // radians; textures behind diffuse bounces retain some detail
     const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * part_;
     spread_ = max(spread_, min(angle, kWidest));
 }

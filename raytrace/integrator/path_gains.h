@@ -1,4 +1,4 @@
-// What the steps of a path were worth: the light that it gathered after each, and the rays that this took.
+// PathGains records what each step of a path gained: the light found after it, and the rays that this took.
 #pragma once
 
 #include "raytrace/integrator/light_sampling.h"
@@ -8,16 +8,16 @@
 
 namespace duet::raytrace {
 
-/// A scattering that a path went on from. Its numbers are those of the path as it would be without roulette.
+/// Records a scattering from which a path continued. Its values are those of the path without roulette.
 struct PathStep {
-    bool first = false;   ///< at what the camera sees: there is no roulette
-    float throughput = 0; ///< after it, as survival() counts it
-    float weight = 1;     ///< 1 / the chance that roulette left the path to get to here and go on
-    float light = 0;      ///< found from here on: the mean of the channels
-    float next_rays = 0;  ///< from here to the next step, shadow rays too
+    bool first = false;   ///< at the first hit, where there is no roulette
+    float throughput = 0; ///< throughput after the scattering, without the effect of refraction (see survival())
+    float weight = 1;     ///< 1 / the probability that roulette let the path get here and continue
+    float light = 0;      ///< light found from here on; the mean of the channels
+    float next_rays = 0;  ///< rays from here to the next step, including shadow rays
 };
 
-/// Told of what happens along one path, as PathLog is, it keeps the steps.
+/// Logs one path, like PathLog, which records its steps.
 class PathGains {
 public:
     void vertex(const Vertex&, const Hit&, int depth) {
@@ -42,8 +42,8 @@ public:
     void end(const char*) {}
 
     const std::vector<PathStep>& steps() const { return steps_; }
-    double light() const { return light_; }               ///< of the whole path
-    double camera_rays() const { return camera_rays_; }   ///< before the first step
+    double light() const { return light_; }               ///< light of the whole path, mean of the channels
+    double camera_rays() const { return camera_rays_; }   ///< rays before the first step
 
 private:
     void send() {
@@ -64,7 +64,7 @@ private:
     bool first_ = false;
 };
 
-/// Traces the path of a camera ray, and tells it.
-void follow_path(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathGains& gains); ///< path.cpp
+/// Traces the path of a camera ray and logs it in `gains` (path.cpp).
+void follow_path(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathGains& gains);
 
 } // namespace duet::raytrace

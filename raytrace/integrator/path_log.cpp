@@ -58,8 +58,9 @@ void PathLog::found(Rgb emission, float weight, Rgb light) {
 void PathLog::no_light_sample(const char* why) { out_ << "  light sample none: " << why << "\n"; }
 
 void PathLog::light_sample(const Arrival& arrival, Rgb scattered, bool visible, float weight, Rgb light) {
-    out_ << "  light sample " << light_name(scene_, arrival.light) << " towards " << text_of(arrival.wi) << ", distance "
-         << arrival.distance << ", density " << arrival.pdf << (arrival.delta ? " (from this direction only)" : "")
+    out_ << "  light sample " << light_name(scene_, arrival.light) << " towards " << text_of(arrival.wi)
+         << ", distance " << arrival.distance << ", density " << arrival.pdf
+         << (arrival.delta ? " (from this direction only)" : "")
          << "\n               scatters " << text_of(scattered)
          << (visible ? message(", weight ", weight, ": adds ", text_of(light)) : ", hidden: adds nothing") << "\n";
 }

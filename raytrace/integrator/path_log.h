@@ -1,4 +1,4 @@
-// A path in words, event by event: for who wants to know why a pixel looks as it does.
+// PathLog describes a path in words, event by event, to show why a pixel has its color.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -11,17 +11,19 @@
 
 namespace duet::raytrace {
 
-/// Told of what happens along one path, it writes a line or more of each.
+/// Logs one path. It writes at least one line of text for each event.
 class PathLog {
 public:
     explicit PathLog(const Scene& scene) : scene_(scene) {}
 
     void vertex(const Vertex& vertex, const Hit& hit, int depth);
     void escape(const Ray& ray, int depth);
-    /// Light found by the ray itself, which counts with `weight` against light samples, and adds `light`.
+    /// Logs light that the ray itself has found. `weight` is its MIS weight against light samples, and `light` is
+    /// what it adds.
     void found(Rgb emission, float weight, Rgb light);
     void no_light_sample(const char* why);
-    /// A light sample that reaches the vertex or does not; with `weight` against BSDF samples it adds `light`.
+    /// Logs a light sample and whether it is visible. `weight` is its MIS weight against BSDF samples, and `light`
+    /// is what it adds.
     void light_sample(const Arrival& arrival, Rgb scattered, bool visible, float weight, Rgb light);
     void scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state);
     void roulette(float probability, bool survived);
@@ -34,7 +36,7 @@ private:
     std::ostringstream out_;
 };
 
-/// As path_radiance, and tells the log.
+/// Returns what path_radiance returns, and logs the path.
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log);
 
 } // namespace duet::raytrace

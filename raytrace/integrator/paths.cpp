@@ -1,4 +1,4 @@
-// Paths side by side: those that stand at plain surfaces of one kind advance several at once.
+// Paths advance together. Those at batched surfaces (PlainSurfaces) of one kind are scattered with SIMD.
 #include "raytrace/acceleration/sort_by_class.h"
 #include "raytrace/integrator/path.h"
 #include "raytrace/integrator/plain_vertices.h"
@@ -13,7 +13,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// The numbers of the vertices of some paths, by path; two at a time.
+// Draws all random samples of the vertices of the paths `which`, two paths at a time. `numbers` is indexed by path.
 void draw_all_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> which, int depth,
                       std::vector<VertexNumbers>& numbers) {
     std::size_t k = 0;
@@ -26,11 +26,11 @@ void draw_all_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t
     if (k < which.size()) numbers[which[k]] = vertex_numbers(samplers[which[k]].get_block());
 }
 
-// Of those, what is used alone.
+// Draws only the sample dimensions that the vertices consume.
 class UsedNumbers {
 public:
-    void draw(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, int depth, const NumbersUsed& used,
-              std::vector<VertexNumbers>& numbers) {
+    void draw(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, int depth,
+              const NumbersUsed& used, std::vector<VertexNumbers>& numbers) {
         const std::uint32_t first = vertex_dimension(depth);
         std::array<std::uint32_t, 4> dimensions;
         std::size_t count = 0;
@@ -59,12 +59,12 @@ private:
     std::vector<Vec2> pairs_;
 };
 
-// Paths by the class of what their rays have found (PlainSurfaces).
+// Sorts paths by the class of what their rays have hit (PlainSurfaces).
 class ByClass {
 public:
     explicit ByClass(std::size_t most) : classes_(most), sorted_(most) {}
 
-    /// class_of(path): below kClasses.
+    /// Sorts `paths`. class_of(path) must be below kClasses.
     template <typename ClassOf> void sort(std::span<const std::uint32_t> paths, const ClassOf& class_of) {
         ends_ = sort_by_class<kClasses>(paths, class_of, classes_, sorted_);
     }
@@ -82,7 +82,8 @@ private:
 
 template <bool kInsides> class Paths {
 public:
-    Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers, RayCounts& counts)
+    Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+          RayCounts& counts)
         : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), by_class_(rays.size()),
           numbers_(rays.size()), shadows_(plan) {
         DUET_CHECK_EQ(rays.size(), hits.size());
@@ -106,7 +107,7 @@ public:
 
 private:
     using Kind = PlainSurfaces::Kind;
-    static constexpr std::size_t kFewest = 3; // to go side by side
+    static constexpr std::size_t kFewest = 3; // fewest paths that are scattered as a batch
 
     void find_hits() {
         const Accelerator& accelerator = plan_.prepared.accelerator;
@@ -125,7 +126,7 @@ private:
         for (std::size_t k = 0; k < Kind::kCount; ++k)
             if (!by_class_.of(k).empty()) scatter(Kind::of_index(k), by_class_.of(k), depth);
     }
-    // All are as long as they may be.
+    // Ends all paths, which have reached the greatest depth.
     void end(int depth) {
         for (const std::uint32_t i : going_) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
         going_.clear();
@@ -143,7 +144,8 @@ private:
         }
         for (const std::uint32_t i : which) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
     }
-    // As Path::add_environment, of one that has no light samples, in a loop without a call.
+    // Does what Path::add_environment does, for an environment that is not sampled as a light, in a loop without
+    // calls.
     template <typename Sky> void escape_to(const Sky& sky, std::span<const std::uint32_t> which) {
         for (const std::uint32_t i : which) {
             const PathState& state = paths_[i].state();

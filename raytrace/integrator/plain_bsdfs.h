@@ -1,6 +1,7 @@
-// The scattering of plain surfaces for paths side by side: what the Bsdfs of common/material do, a path a lane, to the same
-// bits. All have one form: whether there is anything but delta lobes (kLit) and whether light goes through (kThrough), which
-// random numbers sample uses (kDirection: two for the direction, kLobe: one), eval and pdf for light samples, and sample.
+// These classes are the BSDFs of batched surfaces (PlainSurfaces) with one path per lane, bit-equal to those of
+// common/material. All have the same interface: kLit says whether there is any lobe other than delta lobes, kThrough
+// whether light is transmitted, kDirection whether sample() uses two random samples for the direction, and kLobe
+// whether it uses one for the lobe; eval() and pdf() are for light samples.
 #pragma once
 
 #include "common/material/fresnel.h"
@@ -13,20 +14,20 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
-/// The numbers of the vertices.
+/// Holds the random samples of the vertices.
 struct Numbers {
     Vec2T<Floats> bsdf;
     Floats lobe;
 };
 
-/// As BsdfSample; `some`: where there is one.
+/// Holds a BSDF sample per lane; see BsdfSample. `some` marks the lanes that have one.
 struct LaneSample {
     Vec wi;
     Color weight;
     Floats pdf;
     Mask some;
-    Mask transmitted; ///< for those that have kThrough
-    Floats refraction; ///< and what transmission scales the throughput's refraction by
+    Mask transmitted; ///< valid only with kThrough
+    Floats refraction; ///< valid only with kThrough: factor of PathState::refraction if transmitted
 };
 
 inline Mask is_black_lane(const Color& c) {
@@ -35,16 +36,18 @@ inline Mask is_black_lane(const Color& c) {
 }
 inline Floats negated_where(const Mask& condition, Floats x) { return select(condition, -x, x); }
 
-/// Brings a colour of each path's Bsdf together.
+/// Loads a color of each path's BSDF.
 template <typename BsdfType> Color colors(std::span<const PlainPath> paths, Rgb BsdfType::* color) {
     Columns columns;
-    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { columns.set(i, std::get<BsdfType>(*path.bsdf).*color); });
+    for_lanes(paths,
+              [&](std::size_t i, const PlainPath& path) { columns.set(i, std::get<BsdfType>(*path.bsdf).*color); });
     return columns.colors();
 }
-/// And a number of it.
+/// Loads a number of each path's BSDF.
 template <typename BsdfType> Floats floats(std::span<const PlainPath> paths, float BsdfType::* number) {
     Column column;
-    for_lanes(paths, [&](std::size_t i, const PlainPath& path) { column.of[i] = std::get<BsdfType>(*path.bsdf).*number; });
+    for_lanes(paths,
+              [&](std::size_t i, const PlainPath& path) { column.of[i] = std::get<BsdfType>(*path.bsdf).*number; });
     return column.floats();
 }
 
@@ -56,7 +59,7 @@ public:
     explicit MattLanes(std::span<const PlainPath> paths)
         : albedo_(colors(paths, &DiffuseBsdf::albedo)) {}
 
-    /// Where wo and wi are on one side, as the caller sees to.
+    /// `wo` and `wi` must be on the same side of the surface.
     Color eval(const Vec&, const Vec&) const { return albedo_ * Floats(kInvPi); }
     Floats pdf(const Vec&, const Vec& wi) const { return cosine_hemisphere_pdf(abs(wi.z)); }
     LaneSample sample(const Vec& wo, const Numbers& u) const {
@@ -70,11 +73,12 @@ private:
     Color albedo_;
 };
 
-/// MetalBsdf's Fresnel term.
+/// Computes the Fresnel term of MetalBsdf.
 class MetalFresnel {
 public:
     explicit MetalFresnel(std::span<const PlainPath> paths)
-        : normal_(colors(paths, &MetalBsdf::reflectance)), n_(colors(paths, &MetalBsdf::n)), named_(n_.r != Floats(0.0f)) {
+        : normal_(colors(paths, &MetalBsdf::reflectance)), n_(colors(paths, &MetalBsdf::n)),
+          named_(n_.r != Floats(0.0f)) {
         if (any(named_)) k_ = colors(paths, &MetalBsdf::k);
     }
 
@@ -91,7 +95,7 @@ private:
     static bool any(const Mask& mask) { return lane_bits(mask) != 0; }
 
     Color normal_, n_, k_;
-    Mask named_; // conductors
+    Mask named_; // lanes of conductors, which use n and k
 };
 
 class MirrorLanes {
@@ -102,7 +106,8 @@ public:
     explicit MirrorLanes(std::span<const PlainPath> paths) : fresnel_(paths) {}
 
     LaneSample sample(const Vec& wo, const Numbers&) const {
-        return {{-wo.x, -wo.y, wo.z}, fresnel_(abs(wo.z)), Floats(1.0f), wo.z != Floats(0.0f), Mask(false), Floats(0.0f)};
+        return {{-wo.x, -wo.y, wo.z}, fresnel_(abs(wo.z)), Floats(1.0f),
+                wo.z != Floats(0.0f), Mask(false),         Floats(0.0f)};
     }
 
 private:
@@ -135,7 +140,9 @@ public:
         Vec wi = normalize(reflect(above, ggx_sample_visible_normal(above, alpha_, u.bsdf)));
         if (lane_bits(several) != 0) wi = select(several, cosine_hemisphere(u.bsdf), wi);
         const Mask some = (wo.z != zero) & (wi.z > zero);
-        const MicrofacetT<Floats> h = microfacet(above, wi); // of one side; those that are not count not
+        // The microfacets of lanes whose directions are on different sides are not valid, and `some` excludes those
+        // lanes.
+        const MicrofacetT<Floats> h = microfacet(above, wi);
         const Floats density = pdf(above, wi, h, lost_there);
         const Color weight = eval(above, wi, h, lost_there) * (wi.z / density);
         wi.z = negated_where(wo.z < zero, wi.z);
@@ -151,7 +158,7 @@ private:
         const Floats several = select(single_, Floats(0.0f), lost_at_wo);
         return ggx_reflections_pdf(wo, wi, h.normal, alpha_, several);
     }
-    // As ggx_lost, where any lane needs it.
+    // Returns ggx_lost of each lane, or 0 if no lane has multiple scattering.
     Floats lost(Floats cosine) const {
         if (!any_multiple_) return Floats(0.0f);
         const Column cosines(cosine), alphas(alpha_);
@@ -162,7 +169,7 @@ private:
 
     MetalFresnel fresnel_;
     Color multiple_;
-    Mask single_; // no light of further reflections
+    Mask single_; // lanes without multiple scattering
     bool any_multiple_;
     Floats alpha_;
 };

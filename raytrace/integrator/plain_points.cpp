@@ -10,32 +10,34 @@ namespace duet::raytrace::lanes {
 
 namespace {
 
-// What `fours` reads from one member on.
+// `fours` reads consecutive numbers across these members.
 static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(float) &&
               offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
 static_assert(offsetof(Sphere, radius) == offsetof(Sphere, center) + 3 * sizeof(float));
 
-// The magnitude of the terms that p was made of bounds its error, as surface_point has it.
+// The error of p is bounded by the magnitude of the terms that it was computed from, as in surface_point.
 FlatPoints points(const Vecd& p, const Vecd& magnitude, const Vecd& n) {
     constexpr double kRounding = 2 * static_cast<double>(kRoundoff<float>);
     return {rounded(p), rounded(magnitude * Doubles(kRounding)), rounded(n)};
 }
 
-// As the last steps of surface_point.
+// Performs the last steps of surface_point: the choice of the shading normal, and the shading-terminator fix
+// (`lift`).
 SmoothPoints bent(const FlatPoints& flat, Vec ns, Vec lift) {
     const Floats zero(0.0f), infinite(kInfinity);
-    const Mask finite = (abs(ns.x) < infinite) & (abs(ns.y) < infinite) & (abs(ns.z) < infinite); // and not NaN
+    const Mask finite = (abs(ns.x) < infinite) & (abs(ns.y) < infinite) & (abs(ns.z) < infinite); // false for NaN
     ns = select(finite, ns, flat.ng);
     ns = select(dot(ns, flat.ng) < zero, -ns, ns);
     const Mask bulges = abs(dot(lift, flat.ng)) > dot(abs(flat.ng), flat.p_error);
-    return {flat.p, flat.p_error, flat.ng, ns, select(bulges, ns, flat.ng), select(bulges, lift, Vec(zero, zero, zero))};
+    return {
+        flat.p, flat.p_error, flat.ng, ns, select(bulges, ns, flat.ng), select(bulges, lift, Vec(zero, zero, zero))};
 }
 
 } // namespace
 
 Vec SmoothPoints::origin(const Vec& w) const {
     const Floats zero(0.0f), seen = dot(lift, ng);
-    const Mask lifted = dot(w, above) * seen > zero; // no lift: seen is 0
+    const Mask lifted = dot(w, above) * seen > zero; // `seen` is 0 if there is no lift
     const Mask below = select(lifted, seen, dot(w, ng)) < zero;
     return offset_origin(select(lifted, p + lift, p), p_error, select(below, -ng, ng));
 }
@@ -68,9 +70,12 @@ FlatPoints flat_points(std::span<const PlainPath> paths) {
 
 FlatPoints round_points(std::span<const PlainPath> paths) {
     const auto sphere = [](const PlainPath& path) -> const Sphere& { return std::get<Sphere>(*path.shape); };
-    const auto [ox, oy, oz, dx] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->origin.x; });
-    const auto [wx, wy, wz, t_min] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
-    const auto [cx, cy, cz, radius] = fours(paths, [&](const PlainPath& path) -> const float& { return sphere(path).center.x; });
+    const auto [ox, oy, oz, dx] =
+        fours(paths, [](const PlainPath& path) -> const float& { return path.ray->origin.x; });
+    const auto [wx, wy, wz, t_min] =
+        fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
+    const auto [cx, cy, cz, radius] =
+        fours(paths, [&](const PlainPath& path) -> const float& { return sphere(path).center.x; });
     Column t;
     for_lanes(paths, [&](std::size_t i, const PlainPath& path) { t.of[i] = path.hit->t; });
     const Vecd center = widened(Vec(cx, cy, cz));

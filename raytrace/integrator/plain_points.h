@@ -1,5 +1,5 @@
-// The points of plain surfaces that paths side by side stand at: of a SurfacePoint, what such a surface has, to the same
-// bits.
+// These are the surface points of paths at batched surfaces (PlainSurfaces), one path per lane. They have the
+// members of SurfacePoint that such surfaces need, bit-equal.
 #pragma once
 
 #include "common/geometry/surface_point.h"
@@ -10,28 +10,29 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
-/// Where the shading normal is the geometric one.
+/// Holds points whose shading normal is the geometric normal.
 struct FlatPoints {
     Vec p, p_error, ng;
 
     const Vec& ns() const { return ng; }
     const Vec& horizon() const { return ng; }
-    /// As offset_origin of a SurfacePoint.
+    /// Returns the origin of a ray toward w, like offset_origin of a SurfacePoint.
     Vec origin(const Vec& w) const {
         return offset_origin(p, p_error, select(dot(w, ng) < Floats(0.0f), -ng, ng));
     }
 };
 
-/// Of meshes with normals of their own.
+/// Holds points of meshes with vertex normals.
 struct SmoothPoints {
-    Vec p, p_error, ng, shading, above, lift; ///< as SurfacePoint has ns and horizon
+    Vec p, p_error, ng, shading, above, lift; ///< `shading` and `above` are SurfacePoint's ns and horizon
 
     const Vec& ns() const { return shading; }
     const Vec& horizon() const { return above; }
     Vec origin(const Vec& w) const;
 };
 
-/// All of one kind of PlainSurfaces: on quads and meshes without normals, on meshes with them, on spheres.
+/// These compute the points of paths at surfaces of one PlainSurfaces::Form: quads and meshes without vertex
+/// normals, meshes with vertex normals, and spheres.
 FlatPoints flat_points(std::span<const PlainPath> paths);
 SmoothPoints smooth_points(std::span<const PlainPath> paths);
 FlatPoints round_points(std::span<const PlainPath> paths);

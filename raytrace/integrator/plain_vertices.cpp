@@ -18,7 +18,7 @@ using namespace lanes;
 
 namespace {
 
-// What `fours` reads from one member on.
+// `fours` reads consecutive numbers across these members.
 static_assert(offsetof(Ray, direction) == 3 * sizeof(float) && offsetof(Ray, t_min) == 6 * sizeof(float));
 static_assert(offsetof(PathState, refraction) == offsetof(PathState, throughput) + 3 * sizeof(float));
 static_assert(offsetof(VertexNumbers, light) == offsetof(VertexNumbers, bsdf) + 2 * sizeof(float) &&
@@ -30,8 +30,10 @@ template <typename Points, typename Scattering> class Block {
 public:
     Block(const RenderPlan& plan, std::span<PlainPath> paths, const Points& points)
         : plan_(plan), paths_(paths), points_(points), bsdf_(paths), frame_(frame_from_normal(points.ns())) {
-        const auto [dx, dy, dz, t_min] = fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
-        const auto [r, g, b, refraction] = fours(paths, [](const PlainPath& path) -> const float& { return path.state->throughput.r; });
+        const auto [dx, dy, dz, t_min] =
+            fours(paths, [](const PlainPath& path) -> const float& { return path.ray->direction.x; });
+        const auto [r, g, b, refraction] =
+            fours(paths, [](const PlainPath& path) -> const float& { return path.state->throughput.r; });
         const Vec w = -Vec(dx, dy, dz);
         const Floats side = select(dot(w, points.ng) < Floats(0.0f), Floats(-1.0f), Floats(1.0f));
         wo_ = lifted_above_horizon(frame_.to_local(w), side);
@@ -39,7 +41,7 @@ public:
         refraction_ = refraction;
     }
 
-    // As Path::add_light_sample.
+    // Draws light samples as Path::add_light_sample does. Their shadow rays are traced later.
     void add_light_samples(ShadowRays& shadows, RayCounts& counts) {
         Arrivals arrivals;
         receivers();
@@ -70,10 +72,12 @@ public:
         }
     }
 
-    // As Path::scatter and survives. (Flat: batches are handed to functions by memory.)
+    // Does what Path::scatter and Path::survives do. It is flattened, because functions take batches by memory.
     [[gnu::flatten]] void scatter(int depth, RayCounts& counts) {
-        const auto [ux, uy, lx, ly] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->bsdf.x; });
-        const auto [y, choice, lobe, roulette] = fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->light.y; });
+        const auto [ux, uy, lx, ly] =
+            fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->bsdf.x; });
+        const auto [y, choice, lobe, roulette] =
+            fours(paths_, [](const PlainPath& path) -> const float& { return path.numbers->light.y; });
         const Floats zero(0.0f), one(1.0f);
         const LaneSample s = bsdf_.sample(wo_, {{ux, uy}, lobe});
         const Vec wi = normalize(frame_.to_world(s.wi));
@@ -93,7 +97,8 @@ public:
             on = on & survives;
             throughput = throughput * select(stays, one, one / probability);
         }
-        const Columns origins(points_.origin(wi)), directions(wi), throughputs(Vec(throughput.r, throughput.g, throughput.b));
+        const Columns origins(points_.origin(wi)), directions(wi),
+            throughputs(Vec(throughput.r, throughput.g, throughput.b));
         const Column pdfs(s.pdf), refractions(refraction);
         const unsigned going = lane_bits(on);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -114,7 +119,7 @@ public:
 private:
     struct Arrivals {
         std::array<Arrival, kLanes> all;
-        unsigned some = 0; // a bit for each path that has one
+        unsigned some = 0; // bit mask of the paths that have a light sample
         Columns wi, radiance;
         Column pdf, delta;
 
@@ -130,9 +135,10 @@ private:
         }
     };
 
-    // Light samples of paths whose light is a rectangle that they are not near: those are drawn by area. As sample_arrival
-    // has them; a bit for each path that is done.
-    unsigned sample_rectangles(const std::array<std::optional<LightChoice>, kLanes>& choices, Arrivals& arrivals) const {
+    // Draws the light samples of paths whose light is a rectangle that is not near, because those are sampled by
+    // area. The results equal those of sample_arrival. Returns a bit mask of the paths that are done.
+    unsigned sample_rectangles(const std::array<std::optional<LightChoice>, kLanes>& choices,
+                               Arrivals& arrivals) const {
         if (plan_.scene.needs.lamp_textures) return 0;
         unsigned rectangles = 0;
         Columns corner, edge_u, edge_v;
@@ -149,7 +155,8 @@ private:
             two_sided.of[i] = light->two_sided ? 1.0f : 0.0f;
         }
         if (rectangles == 0) return 0;
-        const Vecd du = edge_u.doubles(), dv = edge_v.doubles(), to_plane = corner.doubles() - Columns(points_.p).doubles();
+        const Vecd du = edge_u.doubles(), dv = edge_v.doubles(),
+                   to_plane = corner.doubles() - Columns(points_.p).doubles();
         const AreaSeen<Doubles> seen{cross(du, dv), to_plane};
         rectangles &= ~lane_bits(seen.near(to_plane + (du + dv) * Doubles(0.5)));
         const Vecd w = to_plane + du * ux.doubles() + dv * uy.doubles();
@@ -171,10 +178,12 @@ private:
         return choice.index < lights.size() ? std::get_if<SurfaceLight>(&lights[choice.index]) : nullptr;
     }
 
-    // The side from which the surface is seen gathers light; it is what the next ray departs from, too.
+    // Sets the light receivers of the paths, on the visible side of the surface. Each is also the previous vertex of
+    // the next ray, which MIS needs.
     void receivers() {
         const Columns p(points_.p), n(select(wo_.z < Floats(0.0f), -points_.ng, points_.ng));
-        const std::size_t count = std::min(paths_.size(), kLanes); // GCC 12 fears for more than there can be
+        // The minimum avoids a GCC 12 warning about an overrun that cannot occur.
+        const std::size_t count = std::min(paths_.size(), kLanes);
         for (std::size_t i = 0; i < count; ++i) paths_[i].state->departure.receiver = {p.vec(i), n.vec(i)};
     }
 
@@ -189,15 +198,15 @@ private:
 };
 
 template <typename Scattering, typename Points>
-void scatter_at(const Points& points, const RenderPlan& plan, std::span<PlainPath> paths, int depth, ShadowRays& shadows,
-                RayCounts& counts) {
+void scatter_at(const Points& points, const RenderPlan& plan, std::span<PlainPath> paths, int depth,
+                ShadowRays& shadows, RayCounts& counts) {
     Block<Points, Scattering> block(plan, paths, points);
     if constexpr (Scattering::kLit)
         if (plan.lights != nullptr) block.add_light_samples(shadows, counts);
     if (depth + 1 < plan.max_depth || plan.hits_find_light) block.scatter(depth, counts);
 }
 
-// visit(the type of lanes that a scattering has).
+// Calls `visit` with the type that implements a scattering in lanes.
 template <typename Lanes> struct TypeOf {
     using Type = Lanes;
 };
@@ -234,7 +243,7 @@ void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<P
     }
 }
 
-#else // too few lanes: RenderPlan::plain has no surfaces
+#else // without AVX, RenderPlan::plain has no surfaces
 
 NumbersUsed numbers_used(const RenderPlan&, PlainSurfaces::Scattering, int) { return {}; }
 void scatter_plain(const RenderPlan&, PlainSurfaces::Kind, std::span<PlainPath>, int, ShadowRays&, RayCounts&) {}

@@ -1,4 +1,4 @@
-// Path vertices on plain surfaces, several side by side: each number of theirs is a lane of a batch.
+// Path vertices on batched surfaces (PlainSurfaces) are processed with SIMD, one vertex per lane.
 #pragma once
 
 #include "common/vec/simd.h"
@@ -10,31 +10,32 @@
 
 namespace duet::raytrace {
 
-/// As many go side by side as the machine has lanes of doubles.
+/// This is the number of paths in a batch, which is the number of lanes of doubles.
 inline constexpr std::size_t kPathLanes = kDoubleLanes;
 
-/// One of the paths that stand at such vertices. Refers to what the caller keeps.
+/// Describes one path of a batch. It refers to data of the caller.
 struct PlainPath {
-    std::uint32_t index; ///< by which its shadow rays are known
-    Ray* ray;       ///< that has arrived; if the path goes on, the one that goes on
-    const Hit* hit; ///< that it has found
-    const Shape* shape; ///< there
-    const Bsdf* bsdf;   ///< of it
+    std::uint32_t index; ///< identifies the path of a shadow ray
+    Ray* ray;       ///< the ray that has hit; the next ray if the path continues
+    const Hit* hit; ///< the hit of that ray
+    const Shape* shape; ///< shape at the hit
+    const Bsdf* bsdf;   ///< BSDF at the hit
     const VertexNumbers* numbers;
     PathState* state;
     bool goes_on = false;
 };
 
-/// Which pairs of VertexNumbers are drawn for them.
+/// Says which pairs of VertexNumbers that are drawn for a batch.
 struct NumbersUsed {
     bool direction = false, light = false, lobe = false, roulette = false;
 };
-/// Of paths at surfaces that scatter so, after `depth` scatterings.
+/// Returns what paths at surfaces of this scattering use after `depth` scatterings.
 NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth);
 
-/// Scatters up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth scatterings;
-/// shadow rays are left to be sent. What happens to each is what happens to it alone (path.h), to the same bits: all that is
-/// used is rounded the same in every lane, and most of it is the very same functions, written over their number type.
+/// Scatters up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth
+/// scatterings. Shadow rays are added to `shadows`, to be traced later. The result for each path is bit-equal to
+/// that for the path alone (path.h): all operations are rounded the same in every lane, and most of the functions
+/// are the same templates over the number type.
 void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<PlainPath> paths, int depth,
                   ShadowRays& shadows, RayCounts& counts);
 

@@ -13,7 +13,7 @@ void ShadowRays::look() {
     all_.resize(rays_.size());
     std::iota(all_.begin(), all_.end(), 0u);
     plan_.prepared.accelerator.closest_of_scattered(rays_, all_, hits_);
-    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may lie behind
+    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may be beyond about()
 }
 
 bool ShadowRays::reached(std::size_t i) const {
@@ -24,7 +24,8 @@ bool ShadowRays::reached(std::size_t i) const {
     if (!nearest.valid()) return true;
     if (!end.is_surface()) return false;
     if (!end.is_flat()) return !plan_.prepared.accelerator.occluded(ray, end.exact(ray));
-    // The ray meets the light where any other would: nothing is before it that is not before all others.
+    // exact() is where the ray itself hits a flat light. The light is visible if and only if the closest hit does
+    // not precede it.
     const bool is_end = nearest.object == end.about().object && nearest.primitive == end.about().primitive;
     return is_end || !precedes(nearest, end.exact(ray));
 }

@@ -1,4 +1,4 @@
-// Shadow rays that wait to be sent together.
+// ShadowRays collects shadow rays, to trace them together.
 #pragma once
 
 #include "raytrace/integrator/light_sampling.h"
@@ -11,12 +11,13 @@ class ShadowRays {
 public:
     explicit ShadowRays(const RenderPlan& plan) : plan_(plan) {}
 
-    /// A ray that leaves the surface point p to an arrival's light, and what it brings to which path.
+    /// Adds a ray from the surface point p to a light sample, and the light that it adds to a path if it is not
+    /// occluded.
     void add(std::uint32_t path, const Ray& ray, Vec3 p, const Arrival& arrival, Rgb light) {
         waiting_.push_back({path, light, ShadowEnd(plan_.scene, ray, p, arrival)});
         rays_.push_back(ray);
     }
-    /// Sends all. Calls arrived(path, light) for each that nothing stands in the way of, in order; none is left.
+    /// Traces all rays. Calls arrived(path, light) for each that is not occluded, in order. Then the list is empty.
     template <typename Arrived> void send(const Arrived& arrived) {
         look();
         for (std::size_t i = 0; i < waiting_.size(); ++i)
@@ -33,13 +34,13 @@ private:
     };
 
     void look();
-    bool reached(std::size_t i) const; ///< as `reaches`
+    bool reached(std::size_t i) const; ///< see `reaches`
 
     const RenderPlan& plan_;
     std::vector<Waiting> waiting_;
-    std::vector<Ray> rays_;  ///< parallel to it
-    std::vector<Hit> hits_;  ///< the nearest, where they have been looked for
-    std::vector<std::uint32_t> all_; ///< indices of all
+    std::vector<Ray> rays_;  ///< parallel to waiting_
+    std::vector<Hit> hits_;  ///< the closest hits, where they have been traced
+    std::vector<std::uint32_t> all_; ///< indices of all rays
 };
 
 } // namespace duet::raytrace

@@ -1,4 +1,5 @@
-// One part of the light alone, for a look at it, and for its price: paths go on only where they can find it.
+// These integrators compute one component of the light alone, to show it and to measure its cost. Paths continue
+// only where they can find this component.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/vertex.h"
 

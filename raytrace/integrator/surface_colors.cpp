@@ -1,4 +1,4 @@
-// Surfaces without light: their normals and their base colours.
+// These integrators show surfaces without light: their normals and their base colors.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/vertex.h"
 

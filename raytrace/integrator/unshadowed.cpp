@@ -1,5 +1,5 @@
-// Emission, and direct light as if nothing stood in its way: what the rasterizer computes in closed form, by light
-// sampling.
+// This integrator computes emission, and direct light without occlusion, by light sampling. The rasterizer computes
+// the same quantity in closed form.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
 
@@ -7,7 +7,8 @@ namespace duet::raytrace {
 
 namespace {
 
-// The environment as BSDF samples find it, and none of what stands before it: all that mirrors and glass show.
+// Returns the environment's light as BSDF samples find it, without occlusion. At mirrors and glass there is no other
+// light.
 Rgb environment_found(const RenderPlan& plan, const Vertex& vertex, const VertexNumbers& u) {
     if (plan.environment == nullptr) return Rgb();
     const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);

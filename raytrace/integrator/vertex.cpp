@@ -7,11 +7,11 @@ namespace {
 const RayFootprint* pointer(const std::optional<RayFootprint>& footprint) { return footprint ? &*footprint : nullptr; }
 
 Vec3 towards_viewer(const Frame& frame, Vec3 ng, Vec3 direction) {
-    const Vec3 wo = -direction; // unit: all rays in the world are
+    const Vec3 wo = -direction; // unit, as all rays in world space
     return lifted_above_horizon(frame.to_local(wo), dot(wo, ng) < 0 ? -1.0f : 1.0f);
 }
 
-/// A dielectric in another one.
+/// Returns a dielectric with the relative index that it has inside another one.
 Material with_index(const Material& material, float eta) {
     Dielectric other = std::get<Dielectric>(material);
     other.ior = eta;
@@ -29,7 +29,8 @@ const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, con
 
 } // namespace
 
-std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample) {
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit,
+                                             std::uint32_t sample) {
     return plan.pixel ? std::optional(plan.pixel->at(ray, hit.t) * footprint_width(sample)) : std::nullopt;
 }
 
@@ -40,7 +41,8 @@ SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample)
     : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit, sample))) {}
 
-Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index)
+Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+               float relative_index)
     : Vertex(plan, ray, hit, footprint, relative_index, material_index(plan.scene, hit.object, hit.primitive)) {}
 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,

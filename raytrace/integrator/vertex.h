@@ -1,4 +1,4 @@
-// A vertex of a path: a surface point with its material ready for use.
+// A vertex of a path is a surface point with its BSDF.
 #pragma once
 
 #include "common/vec/frame.h"
@@ -11,39 +11,40 @@ namespace duet::raytrace {
 
 class Vertex {
 public:
-    /// The vertex at a valid hit of a ray, with the ray's footprint there, or null where the plan needs none. Refers to
-    /// the plan.
-    /// `relative_index`: of a dielectric that stands in another one, Insides'.
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index = 0);
-    /// Of the camera ray of a pixel's `sample`.
+    /// Makes the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan needs
+    /// none. `relative_index` is Insides::relative_index() for a dielectric inside another one, else 0. The vertex
+    /// refers to the plan.
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+           float relative_index = 0);
+    /// Makes the vertex at a valid hit of the camera ray of a pixel's `sample`.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
-    Vertex(const Vertex&) = delete; // bsdf may point into it
+    Vertex(const Vertex&) = delete; // bsdf may point into the vertex
     Vertex& operator=(const Vertex&) = delete;
 
     const SurfacePoint point;
     const Material& material;
-    const Frame frame; ///< about the shading normal: the space in which the BSDF works
-    const Vec3 wo;     ///< back along the ray, unit, in that space
+    const Frame frame; ///< local space of the BSDF, around the shading normal
+    const Vec3 wo;     ///< direction back along the ray; unit, in the local space
 
 private:
-    std::optional<Bsdf> made_; // where a texture varies it
+    std::optional<Bsdf> made_; // the BSDF, where it is not constant
 
 public:
     const Bsdf& bsdf;
 
-    /// f(wo, wi)·|cos θᵢ| for wi in the world (unit); black where wi lies between the geometric and the shading
-    /// horizon: light must not leak through the surface.
+    /// Returns f(wo, wi)·|cos θᵢ| for wi in world space (unit). It is black where the geometric and the shading
+    /// normal disagree about the side of wi, because light must not leak through the surface.
     Rgb scattered(Vec3 wi) const {
         const Vec3 local = frame.to_local(wi);
         return consistent(wi, local) ? eval(bsdf, wo, local) * abs_cos_theta(local) : Rgb();
     }
-    /// Where it gathers light: on the side from which it is seen, if it only reflects.
+    /// Returns the light receiver: on the visible side of the surface, or on both sides if the BSDF transmits.
     LightReceiver receiver() const {
         if (is_transmissive(bsdf)) return {point.p, Vec3()};
         return {point.p, wo.z < 0 ? -point.ng : point.ng};
     }
-    /// Whether wi is on the same side of the surface as it is seen with the shading normal, `local` being wi in the
-    /// frame. On the viewer's side a surface that bulges has a horizon of its own.
+    /// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in
+    /// the frame. On the viewer's side, `horizon` takes the place of the geometric normal (shading-terminator fix).
     bool consistent(Vec3 wi, Vec3 local) const {
         return dot(wi, same_hemisphere(wo, local) ? point.horizon : point.ng) * local.z > 0;
     }
@@ -53,15 +54,17 @@ private:
            std::uint32_t material_index);
 };
 
-/// The part of a pixel's width that its `sample` stands for: the samples up to it share the pixel's area. So it is the same
-/// however many come after it: films that go on, and shards, have the bits of one run; and in the end nothing is blurred.
+/// Returns the fraction of a pixel's width that its `sample` covers: the samples up to it share the pixel's area. It
+/// does not depend on how many samples follow, so that continued films and shards have the bits of a single run. In
+/// the limit nothing is blurred.
 inline float footprint_width(std::uint32_t sample) { return 1 / std::sqrt(static_cast<float>(sample) + 1); }
-/// The footprint of the camera ray of a pixel's `sample` at its hit; empty where the plan needs none.
-std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
-/// The surface point that it hits.
+/// Returns the footprint of the camera ray of a pixel's `sample` at its hit, or nothing if the plan needs none.
+std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit,
+                                             std::uint32_t sample);
+/// Returns the surface point that this camera ray hits.
 SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
 
-/// A ray that leaves the vertex towards w (world, unit), starting off the surface.
+/// Returns a ray that leaves the vertex toward w (world space, unit). Its origin is offset from the surface.
 inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {
     Ray ray{offset_origin(vertex.point, w), w};
     ray.time = vertex.point.time;

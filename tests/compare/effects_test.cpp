@@ -1,4 +1,4 @@
-// Each light effect of the rasterizer against the path tracer's truth of the same quantity.
+// These tests compare each light effect of the rasterizer with the path tracer's value of the same quantity.
 #include "compare/metrics/error_metrics.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
@@ -39,14 +39,15 @@ ImageRgb traced(const Scene& scene, const View& view, raytrace::Integrator integ
 
 double error(const Scene& scene, const View& view, const raster::Settings& settings, const ImageRgb& truth) {
     Control control;
-    return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth).relmse;
+    return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth)
+        .relmse;
 }
 
 View small(const Scene& scene, int width) { return {scene.camera, width, width * scene.height / scene.width}; }
 
 } // namespace
 
-// Bounds are well above the ratios found; seeds are fixed, so nothing is left to chance.
+// The bounds are well above the measured ratios. The seeds are fixed, so the results are deterministic.
 TEST_SUITE("statistical") {
 
     TEST_CASE("shadows of the Cornell box: a twentieth of the error of unshadowed light at most") {
@@ -58,7 +59,8 @@ TEST_SUITE("statistical") {
         settings.shadows = false;
         const double without = error(scene, view, settings, truth);
         MESSAGE("relmse ", with, ", unshadowed ", without);
-        CHECK(with < 0.05 * without); // most of what is left is the lamp's outline, sampled elsewhere in the pixel
+        // Most of the remaining error is on the light's silhouette, where sample positions differ.
+        CHECK(with < 0.05 * without);
     }
 
     TEST_CASE("shadows of sun, spot, point and surfaces with lens and motion: a tenth of the error at most") {
@@ -112,7 +114,9 @@ TEST_SUITE("statistical") {
         raster::Settings settings = sixteen(kReflection);
         const auto trimmed = [&] {
             Control control;
-            return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth).relmse_trimmed;
+            return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance,
+                                 truth)
+                .relmse_trimmed;
         };
         const double with = trimmed();
         settings.screen_refractions = false;
@@ -133,7 +137,8 @@ TEST_SUITE("statistical") {
             scene.objects.push_back(object);
         };
         add(QuadList{{{Vec3(-3, 0, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}}, Metal{{Rgb(0.9f, 0.7f, 0.4f)}, 0.4f});
-        add(QuadList{{{Vec3(-1, 1, -2), Vec3(2, 0, 0), Vec3(0, 1, 0)}}}, Emissive{.radiance = Rgb(3.0f), .two_sided = true});
+        add(QuadList{{{Vec3(-1, 1, -2), Vec3(2, 0, 0), Vec3(0, 1, 0)}}},
+            Emissive{.radiance = Rgb(3.0f), .two_sided = true});
         add(Sphere{Vec3(1.5f, 0.7f, 0), 0.3f}, Emissive{Rgb(5.0f)});
         scene.camera.eye = {0, 2, 4};
         finish_scene(scene);
@@ -148,9 +153,10 @@ TEST_SUITE("statistical") {
         CHECK(cosines < centers / 3);
     }
 
-    // But for the worst pixel in a thousand: in pictures as small as these a lamp's reflection is a pixel or none.
+    // The worst pixel in a thousand is trimmed: in such small images a light's reflection covers one pixel or none.
     TEST_CASE("all effects together bring the picture nearer to the path tracer's, in each scene") {
-        const auto trimmed = [](const Scene& scene, const View& view, const raster::Settings& settings, const ImageRgb& truth) {
+        const auto trimmed = [](const Scene& scene, const View& view, const raster::Settings& settings,
+                                const ImageRgb& truth) {
             Control control;
             const Rendering picture = raster::render(raster::prepare(scene, settings), view, settings, control);
             return error_metrics(picture.radiance, truth).relmse_trimmed;

@@ -24,7 +24,7 @@ std::string decode_base64(const std::string& text) {
     return bytes;
 }
 
-/// What decode.js does.
+/// Decodes a plane as decode.js does.
 std::vector<std::uint32_t> decode_plane(const std::string& text, std::size_t pixels, std::size_t width,
                                         std::size_t bytes) {
     const std::string packed = decode_base64(text);

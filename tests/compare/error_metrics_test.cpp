@@ -12,7 +12,7 @@ using compare::ErrorMetrics;
 
 namespace {
 
-/// The same figures by another road: E[(a − b)²] = E[a²] − 2 E[ab] + E[b²], in long double.
+/// Computes the MSE independently as E[(a − b)²] = E[a²] − 2 E[ab] + E[b²], in long double.
 long double mse_from_moments(const ImageRgb& a, const ImageRgb& b) {
     long double aa = 0, ab = 0, bb = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -35,14 +35,14 @@ TEST_SUITE("unit") {
         b(0, 0) = {0.5f, 0.5f, 0.25f};
         a(1, 0) = {0.0f, 2.0f, 1.0f};
         b(1, 0) = {0.0f, 1.0f, 1.0f};
-        // Differences: 0.5, 0, −0.25; 0, 1, 0.
+        // The differences are 0.5, 0, −0.25 and 0, 1, 0.
         const ErrorMetrics m = error_metrics(a, b);
         CHECK(m.mse == doctest::Approx((0.25 + 0.0625 + 1.0) / 6));
         CHECK(m.rmse == doctest::Approx(std::sqrt(1.3125 / 6)));
         CHECK(m.mae == doctest::Approx(1.75 / 6));
         CHECK(m.psnr == doctest::Approx(10 * std::log10(6 / 1.3125)));
         CHECK(m.relmse == doctest::Approx((0.25 / 0.26 + 0.0625 / 0.0725 + 1.0 / 1.01) / 6));
-        CHECK(m.relmse_trimmed == m.relmse); // 0.1 % of two pixels is none
+        CHECK(m.relmse_trimmed == m.relmse); // 0.1 % of two pixels rounds to zero pixels
         CHECK(m.smape == doctest::Approx((0.5 / 1.51 + 0.25 / 0.26 + 1.0 / 3.01) / 6));
         CHECK(m.mean_signed_error.r == doctest::Approx(0.25));
         CHECK(m.mean_signed_error.g == doctest::Approx(0.5));

@@ -21,7 +21,7 @@ Vec3d random_vector(Random& random, double size = 1) {
     return {x, y, z};
 }
 
-/// Triangles of all sizes in [−1, 1]³.
+/// Returns triangles of all sizes in [−1, 1]³.
 Mesh triangle_soup(Random& random, int count) {
     Mesh mesh;
     for (int i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ Mesh triangle_soup(Random& random, int count) {
     return mesh;
 }
 
-/// Another formulation: the plane, then the sides of the three edges within it.
+/// Intersects a triangle in a different way: first the plane, then the sides of the three edges.
 std::optional<double> hit_triangle(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d n = cross(b - a, c - a);
     const double t = dot(a - ray.origin, n) / dot(ray.direction, n);
@@ -44,7 +44,7 @@ std::optional<double> hit_triangle(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     return inside && t > ray.t_min && t <= ray.t_max ? std::optional(t) : std::nullopt;
 }
 
-/// Every primitive of every object, carried into the world.
+/// Tests every primitive of every object in world space.
 ExactHit brute_force(const Scene& scene, float time, const Rayd& ray) {
     ExactHit best;
     const auto offer = [&](std::uint32_t object, std::uint32_t primitive, std::optional<double> t) {
@@ -69,7 +69,7 @@ ExactHit brute_force(const Scene& scene, float time, const Rayd& ray) {
                 const auto first = hit_triangle(ray, a, b, c);
                 offer(o, i, first ? first : hit_triangle(ray, a, c, d));
             }
-        if (const auto* sphere = std::get_if<Sphere>(&shape)) { // under translations only
+        if (const auto* sphere = std::get_if<Sphere>(&shape)) { // with translations only
             const Vec3d f = ray.origin - transform_point(map, Vec3d(sphere->center));
             const double b = dot(f, ray.direction),
                          root = b * b - length_squared(f) + sqr(static_cast<double>(sphere->radius));
@@ -117,7 +117,7 @@ TEST_SUITE("unit") {
                 const ExactHit again = tracer.intersect(ray, found.object, found.primitive);
                 CHECK(again.t == doctest::Approx(found.t).epsilon(1e-12));
             }
-            CHECK(hits > 1000); // or the test would show nothing
+            CHECK(hits > 1000); // otherwise the test covers nothing
         }
     }
 

@@ -34,7 +34,7 @@ TEST_SUITE("unit") {
         ImageRgb a(100, 1), b(100, 1);
         for (int x = 0; x < 100; ++x) a(x, 0) = Rgb(0.003f);
         CHECK(difference_range(a, b) == doctest::Approx(0.005));
-        a(7, 0) = Rgb(100.0f); // one in a hundred does not set the scale
+        a(7, 0) = Rgb(100.0f); // one outlier in a hundred does not set the scale
         CHECK(difference_range(a, b) == doctest::Approx(0.005));
         CHECK(difference_range(a, a) == doctest::Approx(0.001));
         CHECK(difference_range(ImageRgb(1, 1, Rgb(0.02f)), ImageRgb(1, 1)) == doctest::Approx(0.02).epsilon(1e-5));

@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A pair that is not ours and lies beside the checkout; absent, the tests of it are left out.
+/// This folder beside the checkout contains an external image pair. The tests that use it are skipped if it is missing.
 const fs::path kPair = fs::path(DUET_SOURCE_DIR) / ".." / "shared" / "flip";
 const bool kNoPair = !fs::exists(kPair / "a_ref.exr");
 
-/// The values as stored.
+/// Returns the values as stored in the file.
 ImageRgb stored(const fs::path& path) {
     const PixelFile file = read_pixel_file(path);
     REQUIRE(file.channels == 3);
@@ -85,7 +85,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("FLIP of black and white is all but 1; of pictures beyond [0, 1] that of clamped ones") {
         const ImageRgb black(30, 30), white(30, 30, Rgb(1)), bright(30, 30, Rgb(7)), negative(30, 30, Rgb(-1));
-        CHECK(flip(black, white).min > 0.96); // of all pairs, green and blue are the furthest apart
+        CHECK(flip(black, white).min > 0.96); // green and blue differ most of all color pairs
         CHECK(flip(negative, bright).map.pixels() == flip(black, white).map.pixels());
     }
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 const fs::path kMesh = fs::path(DUET_SOURCE_DIR) / "models/meshes/pear.obj";
 
-/// Whether llvmpipe runs here: else there is nothing to compare with.
+/// Returns whether llvmpipe is available here. Otherwise there is nothing to compare with.
 bool has_peer(const Scene& scene) {
     if (!Peer::built()) return false;
     try {
@@ -68,7 +68,8 @@ TEST_SUITE("unit") {
         settings.burst = 1e-4;
         const raster::Prepared prepared = raster::prepare(scene, {});
         for (const FrameView view : {FrameView::kWhole, FrameView::kClose})
-            for (const FrameRow& row : measure_frames(scene, prepared, view, 1, {FrameWork::kPhong, FrameWork::kDepth}, settings)) {
+            for (const FrameRow& row :
+                 measure_frames(scene, prepared, view, 1, {FrameWork::kPhong, FrameWork::kDepth}, settings)) {
                 REQUIRE(row.difference.has_value());
                 CAPTURE(row.difference->coverage);
                 CAPTURE(row.difference->mean);
@@ -80,11 +81,12 @@ TEST_SUITE("unit") {
                 CHECK(row.ratio.median <= row.ratio.max);
                 CHECK(row.peer_name.find("llvmpipe") != std::string::npos);
             }
-        // The rasterizer under another sun: a picture that can't pass for the peer's.
+        // The rasterizer renders a weaker sun, so its image must fail the comparison with the peer.
         Scene darker = frame_scene(kMesh);
         std::get<SunLight>(darker.lights[0]).irradiance = Rgb(2.0f);
         const raster::Prepared other = raster::prepare(darker, {});
-        const std::vector<FrameRow> rows = measure_frames(scene, other, FrameView::kWhole, 1, {FrameWork::kPhong}, settings);
+        const std::vector<FrameRow> rows =
+            measure_frames(scene, other, FrameView::kWhole, 1, {FrameWork::kPhong}, settings);
         CHECK_FALSE(rows.at(0).difference->same());
     }
 

@@ -1,4 +1,5 @@
-// tests/golden/image-metrics.csv: figures of other programs on the pairs of test_pictures.h.
+// This header reads tests/golden/image-metrics.csv: metrics that other programs compute for the pairs of
+// test_pictures.h.
 #pragma once
 
 #include "common/system/error.h"
@@ -9,7 +10,7 @@
 
 namespace duet::compare {
 
-/// Throws Error where the file has no line `pair,metric,…`.
+/// Throws Error if the file has no line `pair,metric,…`.
 inline double golden_figure(const std::string& pair, const std::string& metric) {
     std::ifstream file(std::string(DUET_SOURCE_DIR) + "/tests/golden/image-metrics.csv");
     const std::string wanted = pair + "," + metric + ",";

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kWidth = 64, kHeight = 64;
 
-/// A camera at z = 10 that looks along −z, 64 pixels over 64 units at z = 0, so that pixel (x, y) is centred at (x
-/// − 31.5, 31.5 − y).
+/// Returns a view with the camera at z = 10 looking along −z. 64 pixels cover 64 units at z = 0, so pixel (x, y) is
+/// centered at (x − 31.5, 31.5 − y).
 View plain_view() {
     View view;
     view.width = kWidth;
@@ -27,7 +27,7 @@ View plain_view() {
 
 Quad facing(float x0, float x1, float y0, float y1, float z) { return {{x0, y0, z}, {x1 - x0, 0, 0}, {0, y1 - y0, 0}}; }
 
-/// What a faultless pipeline returns.
+/// Returns the hits of an exact pipeline.
 Image<Hit> perfect_hits(const Scene& scene, const View& view) {
     const ExactTracer tracer(scene, 0);
     const Pinhole pinhole = CameraModel(view).through();
@@ -67,7 +67,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("an edge that passes the pixel's centre within 1/128 pixel explains; one a little further off does not") {
-        // The boundary between two quads lies at x = offset; pixel 32's centre at 0.5.
+        // The boundary between two quads is at x = offset, and the center of pixel 32 is at 0.5.
         for (const double side : {-1.0, 1.0})
             for (const double distance : {0.0077, 0.0079}) {
                 const float boundary = static_cast<float>(0.5 + side * distance);
@@ -87,7 +87,7 @@ TEST_SUITE("unit") {
     TEST_CASE("an edge of something else close by explains nothing") {
         Scene scene = test::empty_scene();
         test::add(scene, QuadList{{facing(-20, 0.5f, -20, 20, 0), facing(0.5f, 20, -20, 20, 0)}});
-        test::add(scene, QuadList{{facing(-20, 20, -20, 20, -5)}}); // wholly hidden by the two
+        test::add(scene, QuadList{{facing(-20, 20, -20, 20, -5)}}); // fully hidden by the two
         const Image<Hit> raytrace = perfect_hits(scene, plain_view());
         Image<Hit> raster = raytrace;
         set(raster, 32, 30, 1, 0, 15);
@@ -104,7 +104,8 @@ TEST_SUITE("unit") {
     TEST_CASE("a silhouette: hit and miss are an edge; a miss in the middle of a surface is not") {
         Scene scene = test::empty_scene();
         test::add(scene,
-                  Sphere{{0.5f, 0.5f, 0}, 10.001f}); // its rightmost point is 0.001 right of the centre of pixel 42
+                  // Its rightmost point is 0.001 to the right of the center of pixel 42.
+                  Sphere{{0.5f, 0.5f, 0}, 10.001f});
         const Image<Hit> raytrace = perfect_hits(scene, plain_view());
         REQUIRE(raytrace(42, 31).valid());
         Image<Hit> raster = raytrace;
@@ -115,7 +116,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a sliver far thinner than the disk is found, if it is seen") {
-        for (const float depth : {1.0f, -1.0f}) { // before the wall, behind it
+        for (const float depth : {1.0f, -1.0f}) { // in front of the wall, behind it
             Scene scene = test::empty_scene();
             test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
             const float x = 0.505f;
@@ -131,14 +132,15 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a hidden face counts where it meets the one before it, at the edge, and nowhere else") {
-        // A block's front and, seen through it from above, its bottom: they meet at y = 0.5 ± offset, z = 0.
+        // The quads are a block's front and its bottom, which is visible through the open top. They meet at y = 0.5 ±
+        // offset, z = 0.
         for (const double offset : {-1e-4, 0.1}) {
             Scene scene = test::empty_scene();
             const float edge = static_cast<float>(0.5 - offset);
             test::add(scene, QuadList{{facing(-20, 20, edge, 20, 0), Quad{{-20, edge, 0}, {40, 0, 0}, {0, 5, -5}}}});
             const Image<Hit> raster = perfect_hits(scene, plain_view());
             CAPTURE(offset);
-            REQUIRE(raster(20, 31).valid() == (offset > 0)); // pixel row 31 is centred at y = 0.5
+            REQUIRE(raster(20, 31).valid() == (offset > 0)); // pixel row 31 is centered at y = 0.5
             Image<Hit> raytrace = raster;
             set(raytrace, 20, 31, 0, 1);
             const bool at_edge = offset < 0;
@@ -191,13 +193,13 @@ TEST_SUITE("unit") {
         const Mat4 start = translation(Vec3(-10, 0, 0)), end = translation(Vec3(10, 0, 0));
         test::add(scene, QuadList{{facing(-2, 2, -2, 2, 0)}}, start, &end);
         View view = plain_view();
-        view.camera.shutter_open = 0.25; // at x = −5 then
+        view.camera.shutter_open = 0.25; // the object is then at x = −5
         const Pinhole pinhole = CameraModel(view).through();
         const ExactTracer tracer(scene, CameraModel(view).time(0));
         CHECK(tracer.nearest(pinhole.ray({32 - 5.0, 32})).valid());
         CHECK_FALSE(tracer.nearest(pinhole.ray({32 - 10.0, 32})).valid());
         Image<Hit> raster(kWidth, kHeight), raytrace(kWidth, kHeight);
-        set(raster, 22, 32, 0); // seen where it stands at time 0, not at 0.25
+        set(raster, 22, 32, 0); // its position at time 0, not at 0.25
         check_counts(compare_hits(scene, view, raster, raytrace), 0, 0, 1);
     }
 

@@ -20,8 +20,9 @@ void check_figure(double value, double expected, double rounding = 0) {
     CHECK(std::abs(value - expected) < 1e-4 * std::abs(expected) + rounding);
 }
 
-/// Each figure that another program gives on the pair, to 1e-4 of it. The smallest FLIP is one pixel's, a small
-/// difference of colours up to 100 in float: a rounding of these is 1.5e-7 of the largest distance, and several add up.
+/// Compares each metric with another program's value, to a relative tolerance of 1e-4. The smallest FLIP value is
+/// that of one pixel, a small difference of float colors up to 100. Their rounding error is 1.5e-7 of the largest
+/// distance, and several errors add up.
 void check_golden(const std::string& pair, const ImageMetrics& metrics) {
     for (const Figure& figure : figures(metrics)) {
         if (figure.name.rfind("z_", 0) == 0 || figure.name == "nan" || figure.name == "infinite" ||
@@ -89,7 +90,7 @@ TEST_SUITE("unit") {
         CHECK(std::isnan(ssim(ImageRgb(10, 40), ImageRgb(10, 40))));
         CHECK(std::isnan(ssim(ImageRgb(40, 10), ImageRgb(40, 10))));
         CHECK_THROWS_AS(ssim(ImageRgb(20, 30), ImageRgb(30, 20)), Error);
-        // Flat pictures have no variance, however bright: what remains is the term of the means.
+        // Constant images have no variance at any brightness, so only the term of the means remains.
         for (const float bright : {1.0f, 3e4f, 3e8f}) {
             const double a = static_cast<double>(bright), b = static_cast<double>(bright * 1.25f), c1 = 1e-4;
             const double expected = (2 * a * b + c1) / (a * a + b * b + c1);
@@ -103,7 +104,7 @@ TEST_SUITE("unit") {
         const double one = ssim(pair.test, pair.reference, 1);
         CHECK(ssim(pair.test, pair.reference, 2) == one);
         CHECK(ssim(pair.test, pair.reference, 7) == one);
-        // With the left half gone the value is that of the right half alone.
+        // If the left half is masked out, the value is that of the right half alone.
         ImageRgb right_a(30, 40), right_b(30, 40);
         for (int y = 0; y < 40; ++y)
             for (int x = 0; x < 30; ++x) {

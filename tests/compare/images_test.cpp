@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Two files of the folder compared without a table; the figures go to m.json.
+/// Returns options that compare two files of the folder without a table and write the metrics to m.json.
 ImagesOptions comparison(const ScratchFolder& scratch, const char* a, const char* b) {
     ImagesOptions options;
     options.a = scratch / a;
@@ -35,7 +35,7 @@ json figures_of(const ImagesOptions& options) {
     return json::parse(read_file(options.stats));
 }
 
-/// What the comparison is refused with.
+/// Returns the error message of the comparison.
 std::string refusal(const ImagesOptions& options) {
     try {
         compare_images(options);
@@ -59,7 +59,8 @@ TEST_SUITE("unit") {
         options.limits = {"rmse=0.26", "mae=0.25", "psnr=12", "mean_signed_error=0.25", "nan=0", "flip=1"};
         CHECK(compare_images(options) == 0);
         for (const char* const over : {"rmse=0.24", "psnr=13", "mean_signed_error=0.2", "flip=0", "smape=0.3",
-                                       "ssim=0.5"}) { // a picture of 4 × 4 has no SSIM: that is over any limit
+                                       // An image of 4 × 4 pixels has no SSIM, which exceeds any limit.
+                                       "ssim=0.5"}) {
             options.limits = {"mae=0.25", over};
             CAPTURE(over);
             CHECK(compare_images(options) == 1);
@@ -91,7 +92,7 @@ TEST_SUITE("unit") {
         CHECK(said("mse=0.125")[0] == "mse is 0.25, the limit 0.125: above it by 0.125");
         CHECK(said("psnr=25").at(0) == "psnr is 20, the limit 25: below it by 5");
         CHECK(said("ssim=1").size() == 1);
-        CHECK(said("z_p=0").size() == 1); // no z-test: no number
+        CHECK(said("z_p=0").size() == 1); // no z-test, so no value
         metrics.errors.psnr = std::numeric_limits<double>::infinity();
         CHECK(exceeded({parse_limit("psnr=1000")}, figures(metrics)).empty());
     }

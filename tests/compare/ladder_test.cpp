@@ -1,4 +1,4 @@
-// The ladder: scenes in which one approximation alone is wrong, and the command.
+// These tests check the ladder with scenes in which only one approximation is wrong, and the ladder command.
 #include "compare/ladder/ladder.h"
 
 #include "common/image/image_file.h"
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr int kSize = 48;
 constexpr float kAlbedo = 0.6f;
 
-/// A camera straight above that sees the square [−2, 2]² of the plane y = 0, whose pixels are 1/12 wide.
+/// Puts the camera straight above the square [−2, 2]² of the plane y = 0, with pixels 1/12 wide.
 void look_down(Scene& scene) {
     Camera& camera = scene.camera;
     camera.projection = Camera::Projection::kOrthographic;
@@ -39,7 +39,8 @@ void look_down(Scene& scene) {
     camera.height = 4;
 }
 
-/// A floor, seen from above, and a square that reflects nothing between it and its light; the camera stands below that.
+/// Returns a floor viewed from above, with an optional black square between it and its light. The camera is below the
+/// square.
 SceneBuilder floor_scene(const Material& material, bool blocker) {
     SceneBuilder builder;
     builder.add(quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}), builder.material(material));
@@ -71,7 +72,7 @@ double share_of(const Shares& shares, const char* id) {
     return NAN;
 }
 
-/// All but the named rung's share, in size: what the test scene does not have.
+/// Returns the sum of the absolute shares of all rungs but the named one. The scene has none of these effects.
 double others(const Shares& shares, const char* id) {
     double sum = 0;
     for (std::size_t k = 0; k < kRungCount; ++k)
@@ -102,8 +103,8 @@ json without_times(json report) {
 
 TEST_SUITE("unit") {
 
-    // A point light 2 above, a square of side 1 halfway: its shadow is a square of side 2, in which D is all of the
-    // unshadowed light I cos θ / d² · albedo/π.
+    // A point light is 2 above the floor, and a square of side 1 is halfway. Its shadow is a square of side 2, in
+    // which D is the whole unshadowed light I cos θ / d² · albedo/π.
     TEST_CASE("where shadows alone are missing their share is 1, and the light they take the closed form's") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.lights.push_back(PointLight{{0, 2, 0}, Rgb(10)});
@@ -125,7 +126,7 @@ TEST_SUITE("unit") {
         CHECK(taken == doctest::Approx(expected).epsilon(1e-3));
         const CauseMap map = map_causes(pictures);
         CHECK(map.cause(kSize / 2, kSize / 2) == 3);
-        CHECK(map.visible == doctest::Approx(0.25).epsilon(0.01)); // the shadow's part of the picture
+        CHECK(map.visible == doctest::Approx(0.25).epsilon(0.01)); // the shadow's fraction of the image
     }
 
     TEST_CASE("with shadow maps the rungs below are told what they take: the sum stays the light, the error is small") {
@@ -141,11 +142,12 @@ TEST_SUITE("unit") {
             after += sqr(static_cast<double>(with.first[i].g - last[i].g));
             change += std::abs(static_cast<double>(with.picture(3)[i].g - with.picture(2)[i].g));
         }
-        CHECK(after < 0.02 * before); // what is left is the shadow's edge, blurred over some texels
-        CHECK(change < 1e-3 * static_cast<double>(last.size())); // rung 3 replaces unshadowed light by the same
+        CHECK(after < 0.02 * before); // the remainder is the shadow's edge, blurred over some texels
+        // Rung 3 replaces unshadowed light by equal unshadowed light.
+        CHECK(change < 1e-3 * static_cast<double>(last.size()));
     }
 
-    // The square hides a part of a constant sky from the floor: in the middle as much as its form factor.
+    // The square hides a fraction of a constant sky from the floor. At the center this fraction is its form factor.
     TEST_CASE("where the environment's occlusion alone is missing its share is 1, and what is hidden the form factor") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
@@ -166,7 +168,7 @@ TEST_SUITE("unit") {
                 expected +=
                     1.5 * static_cast<double>(kAlbedo) / kPiDouble * polygon_form_factor_times_pi(p, {0, 1, 0}, square);
             }
-        // 16,384 samples of which a fifth is hidden: a standard error of 1.6 % at most, stratification left out.
+        // Of 16,384 samples a fifth is occluded, so the standard error is at most 1.6 %, ignoring stratification.
         CHECK(hidden == doctest::Approx(expected).epsilon(0.08));
     }
 
@@ -179,12 +181,12 @@ TEST_SUITE("unit") {
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "reflections") > 0.999);
         CHECK(others(s, "reflections") < 1e-3);
-        // The mirror shows the square where it is: 12 pixels a side, black.
+        // The mirror shows the square as black with a side of 12 pixels.
         CHECK(map_causes(pictures).visible == doctest::Approx(144.0 / (kSize * kSize)).epsilon(1e-6));
         CHECK(pictures.picture(7)(kSize / 2, kSize / 2).g == 0);
     }
 
-    // Floor and wall light each other, and nothing stands between them and the sun.
+    // The floor and the wall illuminate each other, and nothing occludes the sun.
     TEST_CASE("where indirect light alone is missing its share is 1 but for noise") {
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{{Rgb(kAlbedo)}});
@@ -268,7 +270,7 @@ TEST_SUITE("unit") {
                     pictures.push_back(message(k + 1, '-', q["name"].get<std::string>(), side));
             }
         }
-        // The Cornell box has no environment, no metal and no glass: those rungs say so, and have no pictures.
+        // The Cornell box has no environment, metal or glass. The report of these rungs says so and has no images.
         for (const std::size_t k : {std::size_t{4}, std::size_t{5}}) {
             CHECK(report["rungs"][k]["quantities"].empty());
             CHECK(report["rungs"][k]["note"].get<std::string>().find("The scene has no") == 0);

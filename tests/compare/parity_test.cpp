@@ -1,4 +1,4 @@
-// The two pipelines against each other: the same hits, the same direct light.
+// These tests compare the two pipelines: their hits and their direct light must be equal.
 
 #include "compare/hits/hit_agreement.h"
 #include "compare/pipeline.h"
@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scenes of models/, and the meshes of the folder that DUET_MODELS names, or that lies beside the checkout; none
-/// where there is neither.
+/// Returns the scenes of models/ and the meshes of the folder DUET_MODELS or the one beside the checkout. Without
+/// such a folder there are no meshes.
 std::vector<fs::path> all_scenes() {
     std::vector<fs::path> paths;
     const auto collect = [&](const fs::path& folder, const std::string& ending) {
@@ -40,7 +40,7 @@ std::vector<fs::path> all_scenes() {
     return paths;
 }
 
-/// The scene's own view, its longer side `side` pixels.
+/// Returns the scene's own view, scaled so that its longer side has `side` pixels.
 View reduced_view(const Scene& scene, int side) {
     const double scale = static_cast<double>(side) / std::max(scene.width, scene.height);
     const auto pixels = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
@@ -85,14 +85,14 @@ TEST_SUITE("image") {
             INFO(path.filename().string(), ": ", describe(agreement));
             CHECK(agreement.unexplained == 0);
             CHECK(agreement.distance_violations == 0);
-            CHECK(agreement.same > agreement.pixels * 9 / 10); // the reasons are exceptions
+            CHECK(agreement.same > agreement.pixels * 9 / 10); // explained differences are exceptions
         }
     }
 }
 
 namespace {
 
-/// Sums of radiance over the pixels of one object.
+/// Holds sums of radiance over the pixels of one object.
 struct LightOnObject {
     Rgbd raster, raytrace, variance;
     int pixels = 0;
@@ -102,9 +102,10 @@ struct LightOnObject {
 
 TEST_SUITE("statistical") {
 
-    // The path tracer's means have a standard error of some 1e-6 here (checked below to be at most a ninth of the
-    // tolerance), the closed form none. So a false alarm is an event of nine standard errors: odds below 10^-17 for all
-    // objects and channels together; and a bias of 0.25 % would go unnoticed with odds below 2 %, in practice never.
+    // The path tracer's means have a standard error of about 1e-6 here (checked below to be at most a ninth of the
+    // tolerance), and the closed form has none. A false alarm is therefore an event of nine standard errors, with
+    // odds below 10^-17 for all objects and channels together. A bias of 0.25 % would remain undetected with odds
+    // below 2 %, in practice never.
     TEST_CASE("Cornell box: direct light in closed form equals light sampling without visibility") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         const View view{scene.camera, 96, 96};
@@ -121,7 +122,7 @@ TEST_SUITE("statistical") {
         const Rendering a = raster::render(raster::prepare(scene, closed), view, closed, control);
         const Rendering b = raytrace::render(raytrace::prepare(scene, sampled), view, sampled, control);
 
-        // By object, and each face of an object by itself, so that errors of opposite sign cannot cancel.
+        // Sums are separate for each object and each face, so that errors of opposite sign cannot cancel.
         std::map<std::pair<std::uint32_t, std::uint32_t>, LightOnObject> objects;
         for (std::size_t i = 0; i < a.hit.size(); ++i) {
             if (!a.hit[i].valid() || a.hit[i].object != b.hit[i].object || a.hit[i].primitive != b.hit[i].primitive)
@@ -132,7 +133,7 @@ TEST_SUITE("statistical") {
             object.variance += Rgbd(b.variance[i]);
             ++object.pixels;
         }
-        CHECK(objects.size() >= 7); // five walls, two blocks; the lamp too
+        CHECK(objects.size() >= 7); // five walls, two blocks, and the light
         constexpr double kTolerance = 0.002;
         int lit = 0;
         for (const auto& entry : objects) {

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-/// What the page's scripts are given.
+/// Returns the data that the page's scripts receive.
 json data_of(const std::string& page) {
     const std::string begin = "<script type=\"application/json\" id=\"data\">";
     const std::size_t from = page.find(begin) + begin.size();
@@ -65,7 +65,8 @@ std::string without_scripts_and_styles(std::string text) {
     return text;
 }
 
-/// Every element is closed in order; void elements and self-closing ones need no end. Returns what is wrong, or "".
+/// Checks that every element is closed in order. Void and self-closing elements need no end tag. Returns the fault,
+/// or "".
 std::string tag_fault(const std::string& html) {
     const std::vector<std::string> empty = {"meta", "input", "br", "link"};
     std::vector<std::string> open;
@@ -170,7 +171,7 @@ TEST_SUITE("unit") {
         CHECK(page.text.find("alert(1)</script>") == std::string::npos);
         CHECK(page.data()["hits"]["objects"][0] == "</script><script>alert(1)</script>");
         CHECK(tag_fault(without_scripts_and_styles(page.text)).empty());
-        const Page marks("{{js}} {{data}} {{css}}"); // what a name says is no mark of the template
+        const Page marks("{{js}} {{data}} {{css}}"); // names are data: template marks in them are not replaced
         CHECK(marks.data()["hits"]["objects"][0] == "{{js}} {{data}} {{css}}");
     }
 

@@ -33,7 +33,7 @@ json without_times(json report) {
         report[side].erase("seconds");
         report[side].erase("stages");
         report[side].erase("threads");
-        report[side].erase("memory_bytes"); // threads have working memory of their own
+        report[side].erase("memory_bytes"); // each thread has its own working memory
     }
     return report;
 }

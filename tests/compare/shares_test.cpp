@@ -1,4 +1,4 @@
-// Shares of a difference: pictures made by hand, whose shares are known.
+// These tests compute the shares of a difference for simple images whose shares are known.
 #include "compare/ladder/shares.h"
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using namespace duet::compare;
 
 namespace {
 
-/// A ladder of one picture at all steps.
+/// Returns a ladder with the same image at all steps.
 LadderPictures level(const ImageRgb& picture) {
     LadderPictures pictures;
     pictures.first = picture;
@@ -19,7 +19,7 @@ LadderPictures level(const ImageRgb& picture) {
     return pictures;
 }
 
-/// Light added to steps k and above (k from 1), in one half or both.
+/// Adds light to steps k and above (k from 1), in one half or both.
 void rise(LadderPictures& pictures, std::size_t k, Rgb by, std::size_t pixel, int half = -1) {
     for (int h = 0; h < 2; ++h)
         for (std::size_t step = k; (half < 0 || half == h) && step <= kRungCount; ++step)
@@ -79,7 +79,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("what the halves do not agree on is noise: ±n about a change d have shares d² and n² of d² + … each") {
-        // Half A is too bright by n, half B too dark by n: D = d, ⟨Dᴬ, Dᴮ⟩ = d² − n².
+        // Half A is too bright by n and half B too dark by n, so D = d and ⟨Dᴬ, Dᴮ⟩ = d² − n².
         const double d = 2, n = 0.5;
         LadderPictures pictures = level(ImageRgb(3, 3, Rgb(4)));
         for (std::size_t i = 0; i < 9; ++i) {
@@ -101,7 +101,7 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < pictures.first.size(); ++i)
             for (int half = 0; half < 2; ++half) rise(pictures, 7, Rgb(noise(generator)), i, half);
         const Shares s = shares(pictures);
-        // ‖(A − B)/2‖² and ‖(A + B)/2‖² are sums of 4096 independent squares of equal variance: their ratio has a
+        // ‖(A − B)/2‖² and ‖(A + B)/2‖² are sums of 4096 independent squares of equal variance, so their ratio has a
         // standard error of 3 %.
         CHECK(s.share[kNoise] == doctest::Approx(1).epsilon(0.15));
         CHECK(std::abs(s.share[6]) < 0.15);
@@ -137,7 +137,7 @@ TEST_SUITE("unit") {
         CHECK(map.cause(2, 2) == 3);
         CHECK(map.pixels[3] == 1);
         CHECK(shares(pictures).share[5] == doctest::Approx(1.0 / 25));
-        rise(pictures, 6, Rgb(1.5f), 12); // 2² outweighs 8 · 0.5², and reaches as far as the neighbours
+        rise(pictures, 6, Rgb(1.5f), 12); // 2² outweighs 8 · 0.5², also at the neighboring pixels
         map = map_causes(pictures);
         for (int y = 0; y < 5; ++y)
             for (int x = 0; x < 5; ++x) CHECK(map.cause(x, y) == (x % 4 > 0 && y % 4 > 0 ? 5 : 3));

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path kModels = fs::path(DUET_SOURCE_DIR) / "models";
 
-/// Four tori, one of them out of sight, and some triangles that are one line on the grid.
+/// Returns four tori, one of them not visible, and some triangles that degenerate to a line on the grid.
 Scene tori() {
     Scene scene;
     test::add(scene, test::torus(60, 30));
@@ -70,7 +70,7 @@ SkipMeasurement measured(const SkipCase& skip, const View& view, const MeasureOp
     return measure_skip(skip, view, options, control);
 }
 
-/// The same skip, but for what `change` does to the picture with it.
+/// Returns the same skip case, but applies `change` to the image that is rendered with the skip.
 template <typename Change> SkipCase planted(const SkipCase& skip, const Change& change) {
     SkipCase result = skip;
     result.render = [skip, change](const View& view, std::uint64_t seed, bool with, Control& control) {
@@ -111,10 +111,11 @@ TEST_SUITE("unit") {
             const SkipCase skip = find_case(skip_cases(scene, {}), "raster", name);
             const std::int64_t without = count_of(skip.render(view, 0, false, control), skip.statistic);
             CHECK(count_of(skip.render(view, 0, true, control), skip.statistic) > without);
-            if (std::string(name) != "frustum") CHECK(without == 0); // clipping leaves some out, too
+            // Clipping removes some triangles, too.
+            if (std::string(name) != "frustum") CHECK(without == 0);
             if (skip.proof == SkipProof::kSameBits) CHECK(measured(skip, view, quick()).pixels_differ == 0);
         }
-        for (const char* const name : {"lens", "motion"}) { // one pass for all samples, or one each
+        for (const char* const name : {"lens", "motion"}) { // one pass for all samples, or one pass per sample
             const SkipCase skip = find_case(skip_cases(scene, {}), "raster", name);
             CHECK(skip.render(view, 0, true, control).statistics.passes == 1);
             CHECK(skip.render(view, 0, false, control).statistics.passes == 4);
@@ -132,7 +133,7 @@ TEST_SUITE("unit") {
                                return options;
                            }())
                       .rays_saved > 0);
-        // Only light samples find a point light: a depth of one needs no indirect ray.
+        // Only light samples find a point light, so a depth of one needs no indirect rays.
         const Scene scene = tori();
         raytrace::Settings settings;
         settings.samples_per_pixel = 2;
@@ -157,25 +158,26 @@ TEST_SUITE("unit") {
             });
         const SkipMeasurement m = measured(wrong, view, quick());
         CHECK_FALSE(m.proved);
-        CHECK(m.pixels_differ == 2); // one a picture
+        CHECK(m.pixels_differ == 2); // one per image
         CHECK_FALSE(m.bias.has_value());
     }
 
     TEST_CASE("the bias test, computed by hand") {
         BiasTest test;
         CHECK(std::isinf(test.detectable()));
-        for (int i = 0; i < 200; ++i) { // differences of ±0.02 around 0.01 in red, always 0 in green; blue is black
+        // Red differences are ±0.02 around 0.01, green ones are 0, and blue is black.
+        for (int i = 0; i < 200; ++i) {
             test.add({1.01 + (i % 2 == 0 ? 0.02 : -0.02), 2, 0}, {1, 2, 0});
             if (i < kFewestPairs - 1) CHECK(std::isinf(test.detectable()));
         }
         CHECK(test.bias().r == doctest::Approx(0.01));
         CHECK(test.bias().g == 0);
         CHECK(test.bias().b == 0);
-        // No skewness: T = √200 · 0.01 / σ, S = T / √(1 + T²/200)
+        // Without skewness, T = √200 · 0.01 / σ and S = T / √(1 + T²/200).
         const double sigma = 0.02 * std::sqrt(200.0 / 199), t = std::sqrt(200.0) * 0.01 / sigma;
         CHECK(test.p() ==
               doctest::Approx(3 * std::erfc(t / std::sqrt(1 + t * t / 200) / std::sqrt(2.0))).epsilon(1e-6));
-        // S > 2.9342 from T₀ = 2.9342 / √(1 − 2.9342²/200) on
+        // S exceeds 2.9342 if T is above T₀ = 2.9342 / √(1 − 2.9342²/200).
         const double t0 = 2.9342 / std::sqrt(1 - 2.9342 * 2.9342 / 200), upper = 1 + 2.3263 / std::sqrt(398.0);
         CHECK(test.detectable() == doctest::Approx((t0 + 2.3263) * sigma * upper / std::sqrt(200)).epsilon(1e-4));
         CHECK(test.pairs_needed(test.detectable()) == doctest::Approx(200));
@@ -239,8 +241,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // 1000 tests each at the level 0.01, of normal noise and of noise as skewed as Russian roulette's in small pictures
-    // (γ = 1.4): 10 false alarms are expected at most; more than 25 have odds below 2e-5.
+    // There are 1000 tests each at level 0.01, with normal noise and with noise as skewed as that of Russian roulette
+    // in small images (γ = 1.4). At most 10 false alarms are expected; more than 25 have odds below 2e-5.
     TEST_CASE("the bias test gives few false alarms") {
         std::mt19937_64 random(21);
         std::normal_distribution<double> normal;
@@ -261,8 +263,8 @@ TEST_SUITE("statistical") {
         CHECK(skewed_alarms <= 25);
     }
 
-    // Of 300 tests of each sign at most 3 are expected to miss a bias of the size called detectable; more than 10 have
-    // odds below 3e-4.
+    // Of 300 tests of each sign, at most 3 are expected to miss a bias of the detectable size. More than 10 misses
+    // have odds below 3e-4.
     TEST_CASE("a bias of the size called detectable is found, with skewed noise, too") {
         std::mt19937_64 random(22);
         std::gamma_distribution<double> skewed(2);
@@ -280,7 +282,7 @@ TEST_SUITE("statistical") {
         }
     }
 
-    // Odds of a false alarm: 0.01 for each of the two that are as they should be, seeds fixed.
+    // A false alarm has odds of 0.01 for each of the two unbiased cases; the seeds are fixed.
     TEST_CASE("Russian roulette and culled back faces are proved, with a planted bias of 0.3 % they are found out") {
         const Scene cornell = load_scene(kModels / "cornell.json");
         const SkipCase roulette = find_case(skip_cases(cornell, {1, 4, 0}), "raytrace", "russian_roulette");

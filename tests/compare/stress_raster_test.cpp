@@ -1,5 +1,5 @@
-// The oracles of the stress suite's raster tests: right where the answer is known by hand, and able to see what is
-// wrong.
+// These tests check the oracles of the stress suite's raster tests. The oracles must be right in known cases and must
+// detect errors.
 #include "compare/stress/book_raster.h"
 #include "compare/stress/book_trace.h"
 #include "compare/stress/coverage_meshes.h"
@@ -15,7 +15,7 @@ using namespace duet::compare;
 
 namespace {
 
-/// Sum of the windings of the triangles that cover a grid point.
+/// Returns the sum of the windings of the triangles that cover a grid point.
 int turns(const std::vector<GridTriangle>& mesh, std::int64_t x, std::int64_t y) {
     int sum = 0;
     for (const GridTriangle& triangle : mesh) sum += covers(triangle, x, y) ? winding(triangle) : 0;
@@ -36,7 +36,7 @@ TEST_SUITE("unit") {
             CHECK(covers(t, 0, 0));
             CHECK(covers(t, 5, 0));
             CHECK(covers(t, 0, 9));
-            CHECK_FALSE(covers(t, 5, 5)); // on the common edge: it is the lower one's left edge
+            CHECK_FALSE(covers(t, 5, 5)); // on the shared edge, which is the lower triangle's left edge
             CHECK_FALSE(covers(t, 10, 0));
             CHECK_FALSE(covers(t, 0, 10));
             CHECK_FALSE(covers(t, -1, 0));
@@ -72,20 +72,20 @@ TEST_SUITE("unit") {
                 return once;
             };
             REQUIRE(all_once());
-            // A triangle that covers some sample of the window.
+            // Find a triangle that covers some sample of the window.
             const std::int64_t x = window.grid_x(window.rect.x0), y = window.grid_y(window.rect.y0);
             const auto hit = std::find_if(mesh.begin(), mesh.end(), [&](const auto& t) { return covers(t, x, y); });
             REQUIRE(hit != mesh.end());
             GridTriangle& one = *hit;
             const GridTriangle taken = one;
-            one = {taken[0], taken[2], taken[1]}; // turned over
+            one = {taken[0], taken[2], taken[1]}; // reversed winding
             REQUIRE_FALSE(all_once());
-            one = {taken[0], taken[0], taken[0]}; // gone
+            one = {taken[0], taken[0], taken[0]}; // removed
             REQUIRE_FALSE(all_once());
-            one = {{{taken[0].x + 300, taken[0].y}, taken[1], taken[2]}}; // its neighbours keep the old corner
+            one = {{{taken[0].x + 300, taken[0].y}, taken[1], taken[2]}}; // its neighbors keep the old vertex
             moved_seen += !all_once();
         }
-        CHECK(moved_seen > 30); // seen where a sample lies between
+        CHECK(moved_seen > 30); // visible if a sample is in between
     }
 
     TEST_CASE("the probe tells the triangle drawn last, and what it does not cover") {
@@ -93,7 +93,7 @@ TEST_SUITE("unit") {
         CoverageProbe probe(window);
         probe.draw({{{0, 0}, {4096, 0}, {0, 4096}}});
         CHECK(probe.covers(4, 4));
-        probe.draw({{{6 * 256, 0}, {6 * 256, 4096}, {4096, 0}}}); // counter-clockwise
+        probe.draw({{{6 * 256, 0}, {6 * 256, 4096}, {4096, 0}}}); // counterclockwise
         CHECK_FALSE(probe.covers(4, 4));
         CHECK(probe.covers(6, 4));
         probe.draw({{{0, 0}, {0, 0}, {9, 9}}});
@@ -109,7 +109,7 @@ TEST_SUITE("unit") {
         CHECK(t.at({60, 20}).u == doctest::Approx(1).epsilon(1e-5));
         CHECK(t.at({20, 60}).v == doctest::Approx(1).epsilon(1e-5));
         CHECK(t.at({20, 60}).depth == doctest::Approx(4).epsilon(1e-5));
-        // Halfway in the picture between depths 2 and 4 the depth is 8/3, and two thirds of the way is still to go.
+        // In the middle of the image between depths 2 and 4 the depth is 8/3, and two thirds of the distance remain.
         CHECK(t.at({20, 40}).depth == doctest::Approx(8.0 / 3).epsilon(1e-5));
         CHECK(t.at({20, 40}).v == doctest::Approx(1.0 / 3).epsilon(1e-5));
         CHECK(displacement(t, {30, 30}, true) == 0);
@@ -120,11 +120,13 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a projected triangle ends at the near plane, and is right with corners behind the eye or on its plane") {
         const Pinhole pinhole = CameraModel(kView).through();
-        // A floor half a metre below the eye from z = 5 (behind) to −5: beyond the near plane it is seen below y = 50.
+        // The floor is half a meter below the eye, from z = 5 (behind) to −5. Beyond the near plane it is visible
+        // below y = 50.
         const ProjectedTriangle floor(pinhole, {Vec3(-100, -0.5f, 5), Vec3(100, -0.5f, 5), Vec3(0, -0.5f, -5)});
         CHECK(floor.inside({50, 40}) < 0); // above the horizon
         CHECK(floor.inside({50, 80}) > 0);
-        CHECK(floor.at({50, 75}).depth == doctest::Approx(1)); // 45 degrees down at the lower edge: y 75 is half of it
+        // The lower edge is 45 degrees down, and y = 75 is half of that.
+        CHECK(floor.at({50, 75}).depth == doctest::Approx(1));
         CHECK(floor.inside({50, 99}) == doctest::Approx(1));   // the near plane's line is y = 100
         CHECK(floor.inside({50, 101}) == doctest::Approx(-1));
         const ProjectedTriangle on_eye_plane(pinhole, {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, -1, -10)});
@@ -143,13 +145,13 @@ TEST_SUITE("unit") {
                                 book_project(matrix, corners[2])};
         CHECK(book_covers(book, {30, 30}));
         CHECK_FALSE(book_covers(book, {15, 30}));
-        CHECK(book_covers(book, {20, 30})); // on an edge: of both triangles that share it
-        // Affine: half of v where perspective has 1/101.
+        CHECK(book_covers(book, {20, 30})); // on an edge: covered by both triangles that share it
+        // The interpolation is affine: it gives half of v where perspective gives 1/101.
         CHECK(book_barycentrics(book, {20, 40}).z == doctest::Approx(0.5f).epsilon(1e-4));
         CHECK(ProjectedTriangle(pinhole, corners).at({20, 40}).v == doctest::Approx(1.0 / 101).epsilon(1e-4));
         CHECK(book_z(0.1f, 0.1f, 1e5f) == doctest::Approx(-1.0f));
         CHECK(book_z(1e5f, 0.1f, 1e5f) == doctest::Approx(1.0f));
-        CHECK(book_z(9e4f, 0.1f, 1e5f) == book_z(9.01e4f, 0.1f, 1e5f)); // a hundred metres lost
+        CHECK(book_z(9e4f, 0.1f, 1e5f) == book_z(9.01e4f, 0.1f, 1e5f)); // 100 meters apart, but equal depths
     }
 
     TEST_CASE("random scenes are the same for the same numbers, and seen from both outside and within") {

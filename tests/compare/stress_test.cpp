@@ -1,4 +1,5 @@
-// The stress suite's own machinery: what counts as a failure, the same rows for any number of threads, names.
+// These tests check the stress suite's framework: what counts as a failure, equal rows for any thread count, and
+// names.
 #include "common/system/error.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/naive.h"
@@ -25,7 +26,7 @@ StressTest test_of(double bound, std::string_view naive = "the naive way") {
     return {"suite/test", "something holds", bound, "unit", "derived", naive, 1000, nullptr};
 }
 
-/// Errors are uniform in [0, 1), those of the naive way twice as large.
+/// Returns errors that are uniform in [0, 1), and twice as large for the naive method.
 StressResult uniform_errors(double bound, const StressSetting& setting) {
     return run_trials(test_of(bound), setting, [](Trial& trial) {
         const double error = static_cast<double>(trial.random.uniform());
@@ -93,7 +94,7 @@ TEST_SUITE("unit") {
         CHECK(run(0.99, 0.9, 1).failed());
         CHECK(run(0.99, 0.9, 1).least_trials > 970);
         CHECK_FALSE(run(0.99, 1, 1).failed());
-        CHECK_FALSE(run(0.5, 0.5, 1).failed()); // 500 of 1000 expected, 420 demanded
+        CHECK_FALSE(run(0.5, 0.5, 1).failed()); // 500 of 1000 expected, 420 required
         CHECK(run(0.5, 0.3, 1).failed());
         CHECK_FALSE(run(0.5, 0.5, 0.03).failed());
     }
@@ -124,7 +125,7 @@ TEST_SUITE("unit") {
         CHECK(uniform_errors(0.9, other).careful.worst != a.careful.worst);
         StressSetting more = many;
         more.factor = 10;
-        const StressResult ten = uniform_errors(0.9, more); // begins with the same trials
+        const StressResult ten = uniform_errors(0.9, more); // starts with the same trials
         CHECK(ten.trials == 10'000);
         CHECK(ten.careful.first_failure == a.careful.first_failure);
         CHECK(ten.careful.worst >= a.careful.worst);
@@ -172,7 +173,7 @@ TEST_SUITE("unit") {
             CHECK(all[i].trials > 0);
             for (std::size_t j = 0; j < i; ++j) CHECK(all[j].name != all[i].name);
         }
-        for (const Sabotage& sabotage : sabotages()) { // each guard is missed by a test that exists
+        for (const Sabotage& sabotage : sabotages()) { // each mutation names an existing test that detects it
             CAPTURE(sabotage.name);
             CHECK(select_stress_tests({std::string(sabotage.test)}).size() == 1);
             CHECK(static_cast<std::size_t>(sabotage.guard) == static_cast<std::size_t>(&sabotage - sabotages().data()));
@@ -191,7 +192,7 @@ TEST_SUITE("unit") {
     TEST_CASE("errors in ulp, relative, and as odds") {
         CHECK(ulps(1.0f, 1.0L) == 0);
         CHECK(ulps(next_up(1.0f), 1.0L) == 1);
-        CHECK(ulps(next_down(2.0f), 2.0L) == 0.5); // the binade below is twice as fine
+        CHECK(ulps(next_down(2.0f), 2.0L) == 0.5); // the spacing below 2 is half as large
         CHECK(ulps(0.0f, 1e-45L) == doctest::Approx(1e-45 / 0x1p-149));
         CHECK(ulps(3.0, 3.0L + 0x1p-53L) == 0.25);
         CHECK(std::isnan(ulps(std::numeric_limits<float>::quiet_NaN(), 1.0L)));

@@ -1,4 +1,5 @@
-// Pairs of pictures made by code, in whole numbers, so that other programs can make the same: tests/golden/README.md.
+// This header generates pairs of images in integer arithmetic, so that other programs can reproduce them
+// (tests/golden/README.md).
 #pragma once
 
 #include "common/image/image.h"
@@ -11,7 +12,7 @@ struct TestPair {
     ImageRgb test, reference;
 };
 
-/// 0 to 2^24 − 1, even.
+/// Returns an even number from 0 to 2^24 − 1.
 inline std::uint32_t pixel_noise(std::uint32_t x, std::uint32_t y, std::uint32_t c) {
     std::uint32_t h = (x * 73856093u) ^ (y * 19349663u) ^ (c * 83492791u);
     h = h * 1664525u + 1013904223u;
@@ -21,12 +22,12 @@ inline std::uint32_t pixel_noise(std::uint32_t x, std::uint32_t y, std::uint32_t
     return h >> 8;
 }
 
-/// A checkerboard of slopes of different colours, 0 to 255.
+/// Returns a checkerboard of gradients in different colors, 0 to 255.
 inline int pattern(int x, int y, int c) {
     return ((x / 12 + y / 9) % 2 * 110 + x * (1 + c) / 2 + y * (3 - c) / 2) % 256;
 }
 
-/// 8-bit values / 255; the test picture has noise of up to ±24 added.
+/// Returns 8-bit values / 255. The test image has additional noise of up to ±24.
 inline TestPair encoded_pair(int width = 96, int height = 70) {
     TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
     for (int y = 0; y < height; ++y)
@@ -41,7 +42,7 @@ inline TestPair encoded_pair(int width = 96, int height = 70) {
     return pair;
 }
 
-/// Linear values up to 4, and a lamp of 30; the test picture's are these times 0.5 to 1.5.
+/// Returns linear values up to 4 and a light of 30. The test image is scaled by factors of 0.5 to 1.5.
 inline TestPair linear_pair(int width = 96, int height = 70) {
     TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
     for (int y = 0; y < height; ++y)

@@ -1,11 +1,11 @@
-// Scenes built by hand for the tests of compare/.
+// This header builds simple scenes for the tests of compare/.
 #pragma once
 
 #include "common/scene/scene.h"
 
 namespace duet::test {
 
-/// A scene of one grey material, to which shapes are added.
+/// Returns a scene with one gray material and no shapes.
 inline Scene empty_scene(int width = 64, int height = 48) {
     Scene scene;
     scene.path = "test.json";
@@ -16,7 +16,7 @@ inline Scene empty_scene(int width = 64, int height = 48) {
     return scene;
 }
 
-/// Adds a shape under a transform, and its end where it moves; returns the object's index.
+/// Adds a shape with a transform, and with an end transform if it moves. Returns the object's index.
 inline std::uint32_t add(Scene& scene, Shape shape, const Mat4& to_world = {}, const Mat4* to_world_end = nullptr) {
     Object object;
     object.shape = static_cast<std::uint32_t>(scene.shapes.size());

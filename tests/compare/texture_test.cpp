@@ -1,5 +1,5 @@
-// Textures, maps and holes in both pipelines: the same footprints, the same normals, the same hits; and how far each
-// filter is from the truth.
+// These tests check textures, maps and alpha masks in both pipelines: equal footprints, normals and hits, and each
+// filter's error.
 #include "common/camera/pixel_footprint.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
@@ -13,7 +13,8 @@ using namespace duet;
 
 namespace {
 
-/// A plane to the horizon, in squares of a quarter of a picture of `size`² texels; seen aslant.
+/// Returns a plane that extends to the horizon, viewed at a slant. Its checkerboard has squares of a quarter of an
+/// image of `size`² texels.
 Scene slanted_checker(TextureFilter filter, int size = 100, double shift = 0) {
     Scene scene;
     ImageRgb checker(size, size);
@@ -46,7 +47,7 @@ ImageRgb raytrace_picture(const Scene& scene, raytrace::Integrator integrator, S
     return raytrace::render(raytrace::prepare(scene, settings), view_of(scene), settings, control).radiance;
 }
 
-/// Root of the mean square of differences, below the rows of the horizon itself.
+/// Returns the root mean square difference below the rows of the horizon.
 double error(const ImageRgb& a, const ImageRgb& b) {
     double sum = 0;
     int count = 0;
@@ -58,8 +59,8 @@ double error(const ImageRgb& a, const ImageRgb& b) {
     return std::sqrt(sum / count);
 }
 
-/// How much pixels change while the camera moves sideways by a texel (2 cm) a step, ten times: the mean over pixels of
-/// the standard deviation, near the horizon, where the truth hardly changes.
+/// Returns how much pixels change while the camera moves sideways by one texel (2 cm) per step, ten times. The value
+/// is the mean standard deviation of the pixels near the horizon, where the exact image hardly changes.
 double shimmer(TextureFilter filter, int samples = 1) {
     constexpr int kSteps = 10;
     std::vector<ImageRgb> frames;
@@ -81,17 +82,19 @@ double shimmer(TextureFilter filter, int samples = 1) {
 TEST_SUITE("image") {
 
     TEST_CASE("a slanted plane to the horizon: filters against the truth, integrated over pixels") {
-        const ImageRgb truth = raytrace_picture(slanted_checker(TextureFilter::kBilinear), raytrace::Integrator::kAlbedo,
-                                                SamplerKind::kSobol, 1024);
-        const auto error_of = [&](TextureFilter filter) { return error(raster_albedo(slanted_checker(filter)), truth); };
+        const ImageRgb truth = raytrace_picture(slanted_checker(TextureFilter::kBilinear),
+                                                raytrace::Integrator::kAlbedo, SamplerKind::kSobol, 1024);
+        const auto error_of = [&](TextureFilter filter) {
+            return error(raster_albedo(slanted_checker(filter)), truth);
+        };
         const double bilinear = error_of(TextureFilter::kBilinear), trilinear = error_of(TextureFilter::kTrilinear),
                      anisotropic = error_of(TextureFilter::kAnisotropic);
-        MESSAGE("error of nearest ", error_of(TextureFilter::kNearest), ", bilinear ", bilinear, ", trilinear ", trilinear,
-                ", anisotropic ", anisotropic);
+        MESSAGE("error of nearest ", error_of(TextureFilter::kNearest), ", bilinear ", bilinear, ", trilinear ",
+                trilinear, ", anisotropic ", anisotropic);
         CHECK(anisotropic < 0.025);
         CHECK(anisotropic < 0.4 * trilinear);
         CHECK(trilinear < 0.7 * bilinear);
-        // More samples of smaller footprints converge to the truth.
+        // More samples with smaller footprints must converge to the reference.
         CHECK(error(raster_albedo(slanted_checker(TextureFilter::kAnisotropic), 64), truth) < 0.01);
     }
 
@@ -99,7 +102,7 @@ TEST_SUITE("image") {
         const double bilinear = shimmer(TextureFilter::kBilinear), anisotropic = shimmer(TextureFilter::kAnisotropic),
                      truth = shimmer(TextureFilter::kAnisotropic, 64);
         MESSAGE("change of bilinear ", bilinear, ", anisotropic ", anisotropic, ", the truth ", truth);
-        CHECK(bilinear > 0.1); // else nothing was tested
+        CHECK(bilinear > 0.1); // otherwise the test covers nothing
         CHECK(anisotropic < truth + 0.01);
     }
 
@@ -110,7 +113,7 @@ TEST_SUITE("image") {
                                                                                    SamplerKind::kCenter, 1);
             int far = 0;
             for (std::size_t i = 0; i < drawn.size(); ++i) far += std::abs(drawn[i].g - traced[i].g) > 5e-3f;
-            CHECK(far <= static_cast<int>(drawn.size()) / 1000); // the horizon's own pixels
+            CHECK(far <= static_cast<int>(drawn.size()) / 1000); // pixels on the horizon
         }
     }
 
@@ -123,7 +126,7 @@ TEST_SUITE("image") {
         Diffuse material;
         material.albedo = {Rgb(1.0f), 0};
         test::add(scene, Sphere{{0, 0, 0}, 1}, Mat4(), material);
-        scene.camera = test::look({0, 0, 6}, {0, 0, 0}, 20); // sees a half of it: u from 1/4 to 3/4
+        scene.camera = test::look({0, 0, 6}, {0, 0, 0}, 20); // half of the sphere is visible: u from 1/4 to 3/4
         finish_scene(scene);
         for (const ImageRgb& picture :
              {raster_albedo(scene), raytrace_picture(scene, raytrace::Integrator::kAlbedo, SamplerKind::kCenter, 1)}) {
@@ -143,7 +146,7 @@ TEST_SUITE("image") {
             test::add(scene, shape);
             scene.camera = test::look({0.4, 0.7, 3}, {0, 0, 0}, 30);
             finish_scene(scene);
-            const View view{scene.camera, 4000, 4000}; // so fine that steps are differentials
+            const View view{scene.camera, 4000, 4000}; // so fine that steps approximate differentials
             const CameraModel camera(view);
             const PixelFootprint pixel(camera.through(), 1);
             raytrace::Settings settings;
@@ -162,7 +165,8 @@ TEST_SUITE("image") {
                 const bool same = hit.valid() && hit_x.valid() && hit_y.valid() && hit.primitive == hit_x.primitive &&
                                   hit.primitive == hit_y.primitive;
                 const Ray ray = camera.ray(at);
-                if (!same || std::abs(dot(point.ng, ray.direction)) < 0.2f || std::abs(point.uv.x - 0.5f) > 0.49f) continue;
+                if (!same || std::abs(dot(point.ng, ray.direction)) < 0.2f || std::abs(point.uv.x - 0.5f) > 0.49f)
+                    continue;
                 SurfacePoint with = point;
                 set_footprint(pixel.at(ray, hit.t), ray.direction, with);
                 const Vec2 dx = right.uv - point.uv, dy = below.uv - point.uv;
@@ -184,7 +188,8 @@ TEST_SUITE("image") {
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 32; ++x) {
                 const double a = 2 * kPiDouble * x / 32, b = 2 * kPiDouble * y / 32;
-                bumps(x, y) = {static_cast<float>(0.5 + 0.3 * std::sin(a)), static_cast<float>(0.5 + 0.3 * std::sin(b)), 0.9f};
+                bumps(x, y) = {static_cast<float>(0.5 + 0.3 * std::sin(a)), static_cast<float>(0.5 + 0.3 * std::sin(b)),
+                               0.9f};
                 disc(x, y) = Rgb(std::hypot(x - 15.5, y - 15.5) < 11 ? 1.0f : 0.0f);
             }
         scene.textures = {{ImageTexture{0, {3, 3}}, ImageTexture{1, {4, 2}}}, {bumps, disc}};
@@ -213,7 +218,8 @@ TEST_SUITE("image") {
         Control control;
         const Rendering b = raytrace::render(raytrace::prepare(scene, traced), view_of(scene), traced, control);
         int other_hit = 0, other_normal = 0, leaf = 0, veil = 0;
-        // Before the veil normals are blended, or those of what stopped the ray.
+        // Skip pixels covered by the partly transparent object: one pipeline blends normals there, the other uses
+        // the hit that stopped the ray.
         const CameraModel camera(view_of(scene));
         const auto veiled = [&](std::size_t i) {
             const Ray ray = camera.ray({static_cast<double>(i % 192) + 0.5, static_cast<double>(i / 192) + 0.5});
@@ -232,7 +238,7 @@ TEST_SUITE("image") {
         }
         CHECK(leaf > 500);
         CHECK(veil > 200);
-        CHECK(other_hit <= 4); // on outlines
+        CHECK(other_hit <= 4); // on silhouettes
         CHECK(other_normal <= 4);
     }
 }

@@ -12,13 +12,13 @@ using namespace duet::compare;
 
 namespace {
 
-/// A picture of two replicates and the variance they estimate, as the film makes them.
+/// Holds an image of two replicates and the variance estimated from them, as Film does.
 struct Noisy {
     ImageRgb values, variance;
     operator NoisyImage() const { return {values, variance}; }
 };
 
-/// draw(x, y, c) is one replicate of one value.
+/// Calls draw(x, y, c) for one replicate of one value.
 template <typename Draw> Noisy noisy(int width, int height, const Draw& draw) {
     Noisy noisy{ImageRgb(width, height), ImageRgb(width, height)};
     for (int y = 0; y < height; ++y)
@@ -31,7 +31,7 @@ template <typename Draw> Noisy noisy(int width, int height, const Draw& draw) {
     return noisy;
 }
 
-/// Noise whose size changes by a factor of 1000 over the picture, and in single columns by 30 more.
+/// Returns a standard deviation that varies by a factor of 1000 over the image, and by another 30 in single columns.
 double uneven_sigma(int x, int y) { return 0.01 * std::pow(1000.0, (x + y) / 126.0) * (x % 16 == 5 ? 30 : 1); }
 
 Noisy normal_picture(std::mt19937_64& random, double shift = 0) {
@@ -39,7 +39,7 @@ Noisy normal_picture(std::mt19937_64& random, double shift = 0) {
     return noisy(64, 64, [&](int x, int y, std::size_t) { return 1 + shift + uneven_sigma(x, y) * normal(random); });
 }
 
-/// Light that one replicate in eight sees, as of a small mirror: mean 1.
+/// Returns light that one of eight replicates finds, like that of a small mirror, with mean 1.
 Noisy rare_picture(std::mt19937_64& random) {
     std::bernoulli_distribution seen(0.125);
     return noisy(64, 64, [&](int, int, std::size_t) { return seen(random) ? 8.0 : 0.0; });
@@ -61,14 +61,14 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the sums of a z-test, computed by hand") {
-        // One value a channel differs by 3; variances 4 there: V = (4 + 9) / 2.
+        // One value per channel differs by 3, with variance 4 there, so V = (4 + 9) / 2.
         ImageRgb a(1, 1, Rgb(5, 2, 2)), b(1, 1, Rgb(2, 2, 2)), variance(1, 1, Rgb(4));
         const ZTest test = z_test({a, variance}, {b, {}});
         CHECK(test.mean_z.r == doctest::Approx(3 / std::sqrt(6.5)));
         CHECK(test.mean_z.g == 0);
         CHECK(test.tests == 6);
         CHECK(test.pixels == 1);
-        CHECK(test.largest == doctest::Approx(1.5)); // a lone pixel has its own variance only
+        CHECK(test.largest == doctest::Approx(1.5)); // a single pixel has only its own variance
         CHECK(test.channel == 0);
         CHECK(test.p == doctest::Approx(sidak(two_sided_p(3 / std::sqrt(6.5)), 6)));
     }
@@ -123,8 +123,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // 1000 pairs at the level 0.01: 10 false alarms are expected at most (15 correlated tests); more than 25 have odds
-    // below 2e-5 (Poisson).
+    // There are 1000 pairs at level 0.01. At most 10 false alarms are expected (15 correlated tests); more than 25
+    // have odds below 2e-5 (Poisson).
     TEST_CASE("false alarms are as rare as promised, with uneven noise and variances of two replicates") {
         std::mt19937_64 random(11);
         int both = 0, one = 0;
@@ -138,20 +138,23 @@ TEST_SUITE("statistical") {
         CHECK(both <= 17); // of 500: odds below 3e-5
     }
 
-    // The same for light that most replicates miss, where a pixel's own variance is 0 in three of four pixels.
+    // The light is missed by most replicates, so a pixel's own variance is 0 in three of four pixels.
     TEST_CASE("false alarms are rare with noise far from normal, too") {
         std::mt19937_64 random(12);
         int alarms = 0;
         const ImageRgb truth(64, 64, Rgb(1)), none;
         for (int i = 0; i < 500; ++i) alarms += z_test(rare_picture(random), {truth, none}).p < 0.01;
-        CHECK(alarms <= 25); // the skewness may double the 5 that are expected; odds below 1e-4 of 10
+        // Skewness may double the 5 false alarms that are expected; with 10 expected the odds are below 1e-4.
+        CHECK(alarms <= 25);
     }
 
-    // What is called detectable is found in 99 of 100: of 300 pairs more than 10 misses have odds below 3e-4.
+    // A difference of the detectable size is found in 99 of 100 cases. Of 300 pairs, more than 10 misses have odds
+    // below 3e-4.
     TEST_CASE("a difference of the size called detectable is found") {
         std::mt19937_64 random(13);
         const ImageRgb truth(64, 64, Rgb(1)), none;
-        const double shift = z_test(normal_picture(random), {truth, none}).detectable.g * 1.1; // its own noise: 2 %
+        // The noise of the estimate itself is 2 %.
+        const double shift = z_test(normal_picture(random), {truth, none}).detectable.g * 1.1;
         int missed = 0;
         for (int i = 0; i < 300; ++i) missed += !(z_test(normal_picture(random, shift), {truth, none}).p < 0.01);
         CHECK(missed <= 10);

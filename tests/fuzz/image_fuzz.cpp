@@ -1,4 +1,4 @@
-// Any bytes as a picture: each reader returns pixels or throws Error, nothing else.
+// This fuzz target decodes any bytes as an image. Each reader must return pixels or throw Error, nothing else.
 #include "common/image/formats.h"
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const duet::ImageBytes file{"fuzz", {reinterpret_cast<const char*>(data), size}};
     try {
-        // Whatever has no signature is taken for a TGA.
+        // A file without a signature is decoded as a TGA.
         const duet::PixelFile picture = duet::decode_image(file, ".tga");
         const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
         if (picture.width < 1 || picture.height < 1 || picture.channels < 1 || picture.channels > 4 ||
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
 }
 
-// PNG's checksums would turn away nearly every changed input before it is decoded: they are mended first.
+// PNG checksums would reject nearly every mutated input before it is decoded, so they are corrected first.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned seed) {

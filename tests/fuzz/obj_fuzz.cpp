@@ -1,5 +1,5 @@
-// OBJ and MTL files: any bytes either load to a valid mesh or throw Error with one line. What follows the first «%» is
-// the MTL file m.mtl.
+// This fuzz target loads any bytes as OBJ and MTL files. They must load to a valid mesh or throw Error with one line.
+// The text after the first "%" is the MTL file m.mtl.
 #include "common/scene/obj/load_obj.h"
 #include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"

@@ -1,4 +1,5 @@
-// Scene files: any bytes either load or throw Error with one line; nothing crashes, hangs or leaks.
+// This fuzz target loads any bytes as a scene file. It must load or throw Error with one line, without a crash, hang
+// or leak.
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -15,7 +16,7 @@ std::filesystem::path fuzz_folder() {
         std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
     const std::filesystem::path folder = base / ("duet-fuzz-" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
-    // A mesh that scenes may name.
+    // Scenes may reference this mesh.
     std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     return folder;
 }
@@ -30,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     try {
         duet::load_scene(file);
     } catch (const duet::Error& error) {
-        if (std::string(error.what()).find('\n') != std::string::npos) std::abort(); // one clear line
+        if (std::string(error.what()).find('\n') != std::string::npos) std::abort(); // a single line
     }
     return 0;
 }

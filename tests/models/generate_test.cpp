@@ -1,4 +1,4 @@
-// What the generator of models writes is what the repository holds; its parts do what they say.
+// These tests check that the generator writes the files in the repository, and that its components work.
 #include "models/generate.h"
 
 #include "common/image/image_file.h"
@@ -18,14 +18,14 @@ using namespace duet::models;
 
 namespace {
 
-/// A folder for what the tests write.
+/// Returns a folder for the files that the tests write.
 std::filesystem::path scratch() {
     const std::filesystem::path folder = std::filesystem::path(DUET_BINARY_DIR) / "tests/scratch/models";
     std::filesystem::create_directories(folder);
     return folder;
 }
 
-/// Vertices − edges + triangles of a closed mesh: 2 for each ball, 0 for a torus.
+/// Returns vertices − edges + triangles of a closed mesh: 2 for each sphere, 0 for a torus.
 std::ptrdiff_t euler_characteristic(const MeshBuilder& mesh) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const auto& t : mesh.triangles)
@@ -76,7 +76,8 @@ TEST_SUITE("unit") {
             REQUIRE(length(mesh.positions[i]) == doctest::Approx(kRadius).epsilon(1e-3));
             REQUIRE(dot(mesh.normals[i], normalize(mesh.positions[i])) > 0.9999);
         }
-        // Chords of cells of a seventh of the radius: the polyhedron lacks less than 1 % of the ball.
+        // The grid cells are a seventh of the radius, so the polyhedron has less than 1 % less volume than the
+        // sphere.
         const double exact = 4.0 / 3.0 * kPiDouble * std::pow(kRadius, 3);
         CHECK(volume(mesh) < exact);
         CHECK(volume(mesh) > 0.99 * exact);
@@ -135,7 +136,7 @@ TEST_SUITE("unit") {
         REQUIRE(read.width() == 300);
         REQUIRE(read.height() == 5);
         for (std::size_t i = 0; i < image.size(); ++i) {
-            // Eight bits of mantissa, cut off: within 1/128 of the largest channel.
+            // RGBE truncates to eight bits of mantissa, so the error is within 1/128 of the largest channel.
             for (std::size_t k = 0; k < 3; ++k)
                 REQUIRE(std::abs(read[i][k] - image[i][k]) <= max_component(image[i]) / 128);
         }

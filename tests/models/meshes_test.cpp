@@ -1,4 +1,4 @@
-// The meshes of models/ are what they claim: closed, manifold, well shaded, of the size that the project asks for.
+// These tests check the meshes of models/: closed, manifold, with correct normals, and of the required size.
 #include "tests/models/obj_text.h"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,8 @@ Vec3d face(const ObjText& obj, const std::array<ObjText::Corner, 3>& t) {
     return cross(obj.positions[t[1].position] - a, obj.positions[t[2].position] - a);
 }
 
-/// Edges, as directed pairs of positions, that have no single opposite: 0 for a closed manifold surface.
+/// Returns the number of directed edges (pairs of positions) without exactly one opposite edge. It is 0 for a closed
+/// manifold surface.
 std::size_t unmatched_edges(const ObjText& obj) {
     std::vector<std::pair<std::size_t, std::size_t>> there, back;
     for (const auto& t : obj.triangles) {
@@ -50,7 +51,7 @@ void check_mesh(const std::string& file, std::size_t fewest, std::size_t most, b
     std::size_t not_finite = 0, flat = 0, against = 0, not_unit = 0, outside = 0;
     double volume = 0;
     for (const Vec3d& p : obj.positions) not_finite += !is_finite(p);
-    for (const Vec3d& n : obj.normals) not_unit += std::abs(length(n) - 1) > 2e-5; // written to 5 places
+    for (const Vec3d& n : obj.normals) not_unit += std::abs(length(n) - 1) > 2e-5; // written with 5 decimals
     for (const Vec2d& uv : obj.uvs) outside += !(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1);
     for (const auto& t : obj.triangles) {
         const Vec3d normal = face(obj, t);
@@ -65,8 +66,8 @@ void check_mesh(const std::string& file, std::size_t fewest, std::size_t most, b
     CHECK(outside == 0);
     CHECK(obj.uvs.empty() != has_uvs);
     CHECK(flat == 0);
-    CHECK(against == 0); // a triangle that its normals call a back side
-    CHECK(volume > 0);   // outwards
+    CHECK(against == 0); // triangles whose vertex normals disagree with their winding
+    CHECK(volume > 0);   // outward-facing
 }
 
 } // namespace

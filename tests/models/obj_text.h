@@ -1,5 +1,5 @@
-// A strict reader of the OBJ files that models/ writes, for tests: independent of the project's loader and of the
-// writer.
+// This header contains a strict reader of the OBJ files that models/ writes. It is independent of the project's
+// loader and writer.
 #pragma once
 
 #include "common/system/error.h"
@@ -24,8 +24,8 @@ struct ObjText {
     std::vector<std::array<Corner, 3>> triangles;
 };
 
-/// Lines v, vt, vn and triangles "f p/t/n p/t/n p/t/n" or "f p//n …" (uv is then 0); comments, mtllib and usemtl are
-/// passed over. Throws Error on anything else and on an index out of range.
+/// Reads lines v, vt, vn and triangles "f p/t/n p/t/n p/t/n" or "f p//n …" (uv is then 0), and ignores comments,
+/// mtllib and usemtl. Throws Error on anything else and on an index out of range.
 inline ObjText read_obj_text(const std::filesystem::path& path) {
     std::ifstream in(path);
     if (!in) throw Error(path.string() + ": not found; the build's target \"models\" makes it");

@@ -1,4 +1,4 @@
-// The scenes of models/: they load, and hold what they promise.
+// These tests check that the scenes of models/ load and have their documented contents.
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 #include "models/test_ball.h"
@@ -34,11 +34,11 @@ template <typename Set, typename Kind> bool holds(const Set& set) {
 
 bool same(Vec3 a, Vec3d b) { return a == Vec3(b); }
 
-/// The corners of one of the published boxes: (x, z), counter-clockwise from above.
+/// Holds the corners of one of the published boxes as (x, z), counterclockwise from above.
 using Footprint = std::array<Vec2d, 4>;
 
-/// Each vertex of the mesh is one of the box's eight corners, as exactly as floats are; each corner is there; it is
-/// closed.
+/// Checks that each vertex of the mesh is one of the box's eight corners to float precision, that each corner occurs,
+/// and that the mesh is closed.
 void check_box(const Scene& scene, const std::string& name, const Footprint& footprint, double height) {
     CAPTURE(name);
     const Object& object = object_named(scene, name);
@@ -59,7 +59,7 @@ void check_box(const Scene& scene, const std::string& name, const Footprint& foo
     CHECK(mesh.normals.empty());
 }
 
-/// The quad's corner and edges, exactly, and its normal: it faces into the box.
+/// Checks the quad's corner and edges exactly, and that its normal points into the box.
 void check_wall(const Scene& scene, const std::string& name, const std::array<Vec3d, 4>& corners, Vec3d normal) {
     CAPTURE(name);
     const Object& object = object_named(scene, name);
@@ -84,7 +84,8 @@ void check_albedo(const Scene& scene, const std::string& name, Rgb albedo) {
 } // namespace
 
 TEST_SUITE("unit") {
-    // Bitterli's version of the box, as Mitsuba, Tungsten and pbrt know it (Rendering Resources, 2016).
+    // The reference is Bitterli's version of the box, as Mitsuba, Tungsten and pbrt use it (Rendering Resources,
+    // 2016).
     TEST_CASE("cornell.json is the published box") {
         const Scene scene = load("cornell.json");
         CHECK(scene.camera.eye == Vec3d(0, 1, 6.8));
@@ -140,7 +141,8 @@ TEST_SUITE("unit") {
             metal += std::holds_alternative<Metal>(material_of(scene, object));
             glass += std::holds_alternative<Dielectric>(material_of(scene, object));
         }
-        // 80, 15 and 5 % of the small ones, within four standard deviations of 480 draws (8.8, 7.8, 4.8).
+        // The fractions are 80, 15 and 5 % of the small spheres, within four standard deviations of 480 draws (8.8,
+        // 7.8, 4.8).
         CHECK(std::abs(static_cast<double>(diffuse) - 0.80 * 480) < 36);
         CHECK(std::abs(static_cast<double>(metal) - 0.15 * 480) < 32);
         CHECK(std::abs(static_cast<double>(glass) - 0.05 * 480) < 20);
@@ -176,12 +178,13 @@ TEST_SUITE("unit") {
         for (int i = 1; i <= 4; ++i) {
             const Object& plate = object_named(scene, message("plate ", i));
             const auto& metal = std::get<Metal>(material_of(scene, plate));
-            CHECK(metal.roughness.value > roughness); // each rougher than the one before
+            CHECK(metal.roughness.value > roughness); // each is rougher than the one before
             roughness = metal.roughness.value;
             const Quad& quad = std::get<QuadList>(scene.shapes[plate.shape]).quads.at(0);
             const Vec3d normal = normalize(cross(Vec3d(quad.u), Vec3d(quad.v)));
             for (const Vec3d& lamp : lamps) {
-                // The lamp's image behind the plate is seen from the camera through the plate's rectangle.
+                // The light's mirror image behind the plate must be visible from the camera through the plate's
+                // rectangle.
                 const Vec3d image = lamp - normal * (2 * dot(lamp - Vec3d(quad.corner), normal));
                 const Vec3d way = image - scene.camera.eye;
                 const double t = dot(Vec3d(quad.corner) - scene.camera.eye, normal) / dot(way, normal);
@@ -219,17 +222,18 @@ TEST_SUITE("unit") {
         }
         CHECK(flat == 0);
         CHECK(Box3d{Vec3d(scene.bounds.low), Vec3d(scene.bounds.high)}.contains(scene.camera.eye));
-        // The far wall meets the vault corner to corner: other corners would leave gaps, and the sky between.
+        // The far wall must share its vertices with the vault. Different vertices would leave gaps with sky.
         std::set<float> on_vaults_edge;
         for (const Vec3 p : mesh.positions)
             if (p.z == -18 && p.y >= 8 && std::abs(std::hypot(p.x, p.y - 8) - 5) < 1e-4f) on_vaults_edge.insert(p.x);
         CHECK(on_vaults_edge.size() == 2 * 40 + 1);
-        // The arches' feet, open below, stand on the capitals with their corners, too.
+        // The vertices at the arches' open lower ends must match those of the capitals, too.
         std::set<std::pair<float, float>> rim;
         const double corner = std::hypot(0.25, 0.6);
         for (const Vec3 p : mesh.positions) {
             const double beside = std::hypot(p.x - 5, static_cast<double>(p.z));
-            if (std::abs(p.y - 4.2f) < 1e-5f && beside < 1 && beside * std::cos(kPiDouble / 64) > corner) rim.insert({p.x, p.z});
+            if (std::abs(p.y - 4.2f) < 1e-5f && beside < 1 && beside * std::cos(kPiDouble / 64) > corner)
+                rim.insert({p.x, p.z});
         }
         CHECK(rim.size() == 64);
     }
@@ -281,12 +285,14 @@ TEST_SUITE("unit") {
         CHECK(checker_solid);
         CHECK(noise);
         CHECK(marble);
-        CHECK(std::ranges::any_of(scene.objects, [](const Object& o) { return o.materials.size() >= 3; })); // MTL
+        // A mesh must have several MTL materials.
+        CHECK(std::ranges::any_of(scene.objects, [](const Object& o) { return o.materials.size() >= 3; }));
     }
 
     TEST_CASE("every test ball's scene loads, and shows a material of its own") {
         std::size_t count = 0;
-        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(DUET_SOURCE_DIR) / "models/balls")) {
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::filesystem::path(DUET_SOURCE_DIR) / "models/balls")) {
             CAPTURE(entry.path());
             const Scene scene = load("balls/" + entry.path().filename().string());
             CHECK(scene.objects.size() >= 4);

@@ -1,4 +1,4 @@
-// The environment's occlusion against form factors.
+// These tests compare the occlusion of the environment with form factors.
 #include "tests/raster/scenes.h"
 
 #include "raster/lanes.h"
@@ -11,7 +11,7 @@ using namespace duet::test;
 
 namespace {
 
-/// What a white floor in a constant environment of radiance 1 shows is the part of it that it sees.
+/// Returns the visible fraction of a constant environment of radiance 1, as the radiance of a white floor.
 ImageRgb visible(const Scene& scene, const View& view, raster::AmbientOcclusion kind, int spp = 4, int threads = 0) {
     raster::Settings settings;
     settings.ambient_occlusion = kind;
@@ -50,7 +50,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    // A wall of height 1 hides ½ (1 − x/√(x² + 1)) of the sky at a distance x.
+    // At distance x, a wall of height 1 hides ½ (1 − x/√(x² + 1)) of the sky.
     TEST_CASE("at the foot of a long wall: the form factor of the strip, to 0.05 by horizons") {
         Scene scene = white_scene();
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
@@ -70,7 +70,9 @@ TEST_SUITE("unit") {
                 CAPTURE(z);
                 if (kind == raster::AmbientOcclusion::kGtao)
                     CHECK(std::abs(1 - mean - hidden) < 0.05);
-                else // points at one distance a direction miss what is nearer or farther: too little, never too much
+                // Samples at one distance per direction miss nearer and farther occluders, so they find too little
+                // occlusion, never too much.
+                else
                     CHECK((1 - mean < hidden + 0.02 && (z > 0.3 || 1 - mean > 0.25 * hidden)));
                 ++rows;
             }
@@ -78,7 +80,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    // What is hidden is found by looking: of the directions over a point, those that meet the wall.
+    // The expected hidden direction is the mean of the directions above the point that hit the wall.
     TEST_CASE("horizons converge to the strip's form factor as steps grow, and what is hidden to its directions: to 0.01 with 400") {
         Scene scene = white_scene();
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}});
@@ -88,7 +90,9 @@ TEST_SUITE("unit") {
         depths.output = raster::Output::kNearness;
         const raster::Screen screen(CameraModel(view).through(), {}, render(scene, view, depths).nearness);
         for (const double z : {0.2, 0.7, 1.5}) {
-            const auto all = [](Vec3 v) { return Vec3T<raster::Floats>{raster::Floats(v.x), raster::Floats(v.y), raster::Floats(v.z)}; };
+            const auto all = [](Vec3 v) {
+                return Vec3T<raster::Floats>{raster::Floats(v.x), raster::Floats(v.y), raster::Floats(v.z)};
+            };
             const Vec3 p = screen.relative(Vec3(Vec3d(0.01, 0, z)));
             raster::SkySeen mean{0, {}};
             constexpr int kPatterns = raster::OcclusionPattern::kPatterns;
@@ -102,9 +106,10 @@ TEST_SUITE("unit") {
             CAPTURE(z);
             CHECK(std::abs(static_cast<double>(mean.visible) - (1 - (1 - z / std::sqrt(z * z + 1)) / 2)) < 0.01);
             Vec3d hidden;
-            constexpr int kSide = 400; // of cells of equal cos·dw/π: Malley's disk
+            constexpr int kSide = 400; // the number of cells of equal cos·dw/π per side, by Malley's method
             for (int i = 0; i < kSide * kSide; ++i) {
-                const double x = 2 * (i % kSide + 0.5) / kSide - 1, back = 2 * (i / kSide + 0.5) / kSide - 1, r2 = x * x + back * back;
+                const double x = 2 * (i % kSide + 0.5) / kSide - 1, back = 2 * (i / kSide + 0.5) / kSide - 1,
+                             r2 = x * x + back * back;
                 if (r2 >= 1 || back >= 0) continue;
                 const double up = std::sqrt(1 - r2);
                 if (up * z / -back < 1) hidden += Vec3d(x, up, back) * (4 / (kPiDouble * kSide * kSide));
@@ -125,7 +130,8 @@ TEST_SUITE("unit") {
             double sum = 0, worst = 0;
             for (int y = 60; y < 116; ++y)
                 for (int x = 40; x < 120; ++x) {
-                    const double step = std::abs(static_cast<double>(found(x, y).g) - static_cast<double>(found(x + 1, y).g));
+                    const double step =
+                        std::abs(static_cast<double>(found(x, y).g) - static_cast<double>(found(x + 1, y).g));
                     sum += step / (56 * 80), worst = std::max(worst, step);
                 }
             CAPTURE(worst);
@@ -134,8 +140,9 @@ TEST_SUITE("unit") {
         }
     }
 
-    // What hides a little of the sky from many points is met by few of their looks each: where it comes and goes with them
-    // the ground shows its steps. Second differences over two pixels are 0 where shade changes evenly.
+    // An occluder that hides a little of the sky from many points is hit by few samples of each. If such hits appear
+    // and disappear between pixels, the ground shows banding. Second differences over two pixels are 0 where
+    // occlusion changes linearly.
     TEST_CASE("no steps: around a thin pole shade changes evenly, to 0.001 from pixel to pixel; nor from a size of picture to the next") {
         Scene scene = white_scene();
         add(scene, QuadList{box_quads(Vec3(-0.1f, 0, -0.1f), Vec3(0.1f, 1.5f, 0.1f))}, Mat4(), Diffuse{{Rgb(0.0f)}});
@@ -144,15 +151,17 @@ TEST_SUITE("unit") {
         for (const int height : {480, 400, 399, 320}) {
             const View view{look({0, 3, 4}, {0, 0.3, 0.7}, 50), height * 4 / 3, height};
             const ImageRgb found = visible(scene, view, raster::AmbientOcclusion::kGtao, 1);
-            const int left = height * 380 / 480, right = height * 600 / 480, top = height * 200 / 480, bottom = height * 460 / 480;
+            const int left = height * 380 / 480, right = height * 600 / 480, top = height * 200 / 480,
+                      bottom = height * 460 / 480;
             double sum = 0, worst = 0;
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x) {
-                    const double bend = std::abs(static_cast<double>(found(x - 2, y).g) - 2 * static_cast<double>(found(x, y).g) +
-                                                 static_cast<double>(found(x + 2, y).g));
+                    const double bend =
+                        std::abs(static_cast<double>(found(x - 2, y).g) - 2 * static_cast<double>(found(x, y).g) +
+                                 static_cast<double>(found(x + 2, y).g));
                     sum += bend / ((bottom - top) * (right - left)), worst = std::max(worst, bend);
                 }
-            const double larger = sqr(480.0 / height); // what curves within two pixels
+            const double larger = sqr(480.0 / height); // factor for the curvature over two pixels
             CAPTURE(height);
             CHECK(sum < 0.001 * larger);
             CHECK(worst < 0.01 * larger);
@@ -161,8 +170,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    // Pictures of up to 160 pixels take the mean of 4 × 4 pixels, of which fewer would leave grain by the pole, and of 8 × 8
-    // of which the shade about the slab is lost: rms 0.022 and 0.041 against 0.012 and 0.022.
+    // Images up to 160 pixels high average 4 × 4 pixels. A smaller average would leave noise near the pole, and 8 × 8
+    // would lose the occlusion around the slab: rms 0.022 and 0.041, compared with 0.012 and 0.022.
     TEST_CASE("small pictures show what large ones do: about a thin pole and a low slab, to what four times four of their pixels see") {
         const auto rms = [](QuadList box) {
             Scene scene = white_scene();
@@ -190,14 +199,15 @@ TEST_SUITE("unit") {
         CHECK(rms(box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 0.1f, 0.5f))) < 0.03);
     }
 
-    // A white wall over a black floor under a sky that is black below: what the floor hides was black.
+    // The scene is a white wall over a black floor under a sky that is black below the horizon. The floor therefore
+    // hides only black environment.
     TEST_CASE("what is hidden of a sky is what it would have given") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-20, 0, 20), Vec3(40, 0, 0), Vec3(0, 0, -40)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
         scene.environment = SkyEnvironment{Rgb(0.0f), Rgb(1.0f)};
         finish_scene(scene);
-        const View view{look({0, 8, 8}, {0, 0.5, 2}, 50), 96, 64}; // all of the floor that is near
+        const View view{look({0, 8, 8}, {0, 0.5, 2}, 50), 96, 64}; // all of the floor near the wall
         const ImageRgb found = visible(scene, view, raster::AmbientOcclusion::kGtao, 4);
         const Pinhole pinhole = CameraModel(view).through();
         int rows = 0;
@@ -205,8 +215,8 @@ TEST_SUITE("unit") {
             const Rayd ray = pinhole.ray({48, y + 0.5});
             const double height = ray.at(-ray.origin.z / ray.direction.z).y;
             if (height < 0.1 || height > 1) continue;
-            // ½ ∫ (1 + w·y) cos dw / π over the upper half of the wall's hemisphere, where ∫ w·y cos dw is 2/3. As much
-            // of all as is visible would be 0.25.
+            // The expected radiance is ½ ∫ (1 + w·y) cos dw / π over the upper half of the wall's hemisphere, where ∫
+            // w·y cos dw is 2/3. Scaling the whole irradiance by the visible fraction would give 0.25.
             const double all = 0.5 * (0.5 + 2.0 / 3 / kPiDouble);
             CAPTURE(height);
             CHECK(std::abs(static_cast<double>(found(48, y).g) - all) < 0.06);
@@ -215,14 +225,15 @@ TEST_SUITE("unit") {
         CHECK(rows >= 4);
     }
 
-    // Those of no depth have a distance of their own, which must not reach their neighbours.
+    // Pixels without depth have a special distance, which must not affect their neighbors.
     TEST_CASE("pixels that see nothing spoil nothing: near a silhouette all is finite, wherever the near plane is") {
         for (const raster::AmbientOcclusion kind : kBoth)
             for (const double size : {1.0, 100.0, 1e4}) {
                 const float s = static_cast<float>(size);
                 Scene scene;
                 add(scene, Sphere{Vec3(0, 0, 0), s}, Mat4(), Diffuse{{Rgb(1.0f)}});
-                add(scene, QuadList{box_quads(Vec3(-2 * s, -s, -s), Vec3(-0.5f * s, 0.5f * s, s))}, Mat4(), Diffuse{{Rgb(1.0f)}});
+                add(scene, QuadList{box_quads(Vec3(-2 * s, -s, -s), Vec3(-0.5f * s, 0.5f * s, s))}, Mat4(),
+                    Diffuse{{Rgb(1.0f)}});
                 scene.environment = SkyEnvironment{{1, 0.5f, 0.2f}, {0.1f, 0.3f, 1}};
                 finish_scene(scene);
                 View view{look(Vec3d(1, 2, 5) * size, {0, 0, 0}), 100, 75};

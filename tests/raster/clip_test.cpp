@@ -23,14 +23,14 @@ std::set<Key> corners(const ClippedPolygon& p) {
     return result;
 }
 
-/// Vertices before and behind the eye, inside and far outside the picture.
+/// Generates vertices in front of and behind the eye, inside and far outside the image.
 class Random {
 public:
     explicit Random(unsigned seed) : engine_(seed) {}
     PixelVertex vertex() {
         std::uniform_real_distribution<double> depth(-5, 5), place(-3000, 3000);
         const double w = depth(engine_);
-        const double scale = engine_() % 4 == 0 ? 200 : 1; // some beyond the guard band
+        const double scale = engine_() % 4 == 0 ? 200 : 1; // some are beyond the guard band
         return {.xw = place(engine_) * scale, .yw = place(engine_) * scale, .w = w, .depth = w};
     }
 
@@ -38,7 +38,8 @@ private:
     std::mt19937 engine_;
 };
 
-/// Whether a homogeneous point lies between the triangle's corners, within rounding: all three barycentrics >= −1e-9.
+/// Returns the least of the three barycentric coordinates of a homogeneous point. It is at least −1e-9 if the point
+/// is inside the triangle within rounding.
 double least_barycentric(const PixelVertex& p, const PixelVertex& a, const PixelVertex& b, const PixelVertex& c) {
     const auto v = [](const PixelVertex& q) { return Vec3d(q.xw, q.yw, q.w); };
     const double det = dot(v(a), cross(v(b), v(c)));
@@ -84,10 +85,11 @@ TEST_SUITE("unit") {
         Random random(2);
         int cut_edges = 0;
         for (int i = 0; i < 20000; ++i) {
-            // Two triangles that share the edge ab and run it in opposite directions.
+            // The two triangles share the edge ab and traverse it in opposite directions.
             const PixelVertex a = random.vertex(), b = random.vertex(), c = random.vertex(), d = random.vertex();
             const std::set<Key> left = corners(clip(a, b, c, kViewport)), right = corners(clip(b, a, d, kViewport));
-            // A third, degenerate triangle aba has no other edges: its corners are the cuts of ab alone.
+            // A third, degenerate triangle aba has no other edges, so its vertices are exactly the intersections of
+            // ab.
             for (const Key& vertex : corners(clip(a, b, a, kViewport))) {
                 REQUIRE(left.count(vertex) == 1);
                 REQUIRE(right.count(vertex) == 1);

@@ -1,4 +1,4 @@
-// Coverage by fixed-point edge functions against an oracle in wider integers.
+// These tests compare the coverage of fixed-point edge functions with an oracle in wider integers.
 #include "compare/stress/drawing.h"
 
 #include <doctest/doctest.h>
@@ -12,14 +12,14 @@ using namespace duet::raster;
 
 namespace {
 
-constexpr int kSize = 48; // pixels a side of the test picture
+constexpr int kSize = 48; // pixels per side of the test image
 const PixelRect kPicture{0, 0, kSize, kSize};
 
 using compare::CoverageProbe, compare::GridTriangle;
 
 bool has_area(const GridTriangle& t) { return doubled_area(t[0], t[1], t[2]) != 0; }
 
-/// How often the triangles cover each sample of the picture.
+/// Returns how many triangles cover each sample of the image.
 Image<int> covered(const std::vector<GridTriangle>& triangles, SampleOffset offset) {
     Image<int> count(kSize, kSize, 0);
     CoverageProbe probe({kPicture, offset});
@@ -40,7 +40,7 @@ Image<int> expected(const std::vector<GridTriangle>& triangles, SampleOffset off
     return count;
 }
 
-/// A picture of the difference: '.' right, digits where more is covered than expected, '-' where less.
+/// Returns a text image of the difference: '.' correct, a digit where more is covered than expected, '-' where less.
 std::string difference_map(const Image<int>& found, const Image<int>& wanted) {
     std::string map;
     for (int y = 0; y < kSize; ++y) {
@@ -79,7 +79,8 @@ TEST_SUITE("unit") {
     TEST_CASE("coverage equals the exact oracle: triangles of all sizes") {
         Random random(1);
         for (int i = 0; i < 1500; ++i) {
-            // From sub-pixel ones over those about the picture to the largest that the guard band lets through.
+            // Triangle sizes range from sub-pixel to the size of the image and the largest that the guard band
+            // allows.
             const int reach = std::array{200, 2000, kFull, 20 * kFull,
                                          static_cast<int>(kGuardBand) * kSubPixels}[static_cast<std::size_t>(i) % 5];
             const FixedPoint near = random.point(0, kFull);
@@ -96,7 +97,7 @@ TEST_SUITE("unit") {
     TEST_CASE("coverage equals the exact oracle: edges and corners through samples") {
         Random random(2);
         for (int i = 0; i < 1500; ++i) {
-            const SampleOffset offset; // all corners on sample points: every edge runs through some
+            const SampleOffset offset; // all vertices are on sample points, so every edge passes through some
             const auto corner = [&] {
                 return FixedPoint{random.integer(-4, kSize + 4) * kSubPixels + offset.x,
                                   random.integer(-4, kSize + 4) * kSubPixels + offset.y};
@@ -119,7 +120,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a sample beside a sliver sees the sliver's nearest point, not one of its ends") {
-        // 8e-8 pixels wide, 8 long, deeper to the upper end; the sample lies 3e-4 pixels beside it.
+        // The triangle is 8e-8 pixels wide and 8 pixels long, with larger depth at the upper end. The sample is 3e-4
+        // pixels beside it.
         const auto vertex = [](double x, double y, double depth) {
             return PixelVertex{.xw = x * depth, .yw = y * depth, .w = depth, .depth = depth};
         };
@@ -132,7 +134,7 @@ TEST_SUITE("unit") {
             (at.b0 * 19.9046225 * 5.91187377 + at.b1 * 17.0116565 * 7.53373377 + at.b2 * 19.755635 * 5.97815284) /
             at.depth_sum;
         CHECK(std::abs(x - 18.5) < 1.0 / 128);
-        CHECK(depth == doctest::Approx(6.62).epsilon(0.01)); // the ends are at 5.91 and 7.53
+        CHECK(depth == doctest::Approx(6.62).epsilon(0.01)); // the ends have depths 5.91 and 7.53
     }
 
     TEST_CASE("a fan around a vertex covers each sample once") {
@@ -145,7 +147,7 @@ TEST_SUITE("unit") {
                                             {-500, kFull + 500},
                                             {-900, kFull / 2}};
         for (int i = 0; i < 60; ++i) {
-            // The hub lies on a sample every other time, which all triangles of the fan then touch.
+            // Every second hub is on a sample, so all triangles of the fan touch that sample.
             const FixedPoint hub = i % 2 == 0 ? FixedPoint{128 + 256 * random.integer(2, kSize - 3),
                                                            128 + 256 * random.integer(2, kSize - 3)}
                                               : random.point(500, kFull - 500);
@@ -185,14 +187,16 @@ TEST_SUITE("unit") {
 
     TEST_CASE("drawing into the tiles of a grid covers what the oracle says") {
         Random random(6);
-        constexpr int kWidth = 300, kHeight = 270; // three by three tiles, those at the edges smaller
+        constexpr int kWidth = 300, kHeight = 270; // three by three tiles, smaller ones at the edges
         const TileGrid grid{{0, 0, kWidth, kHeight}};
         for (int i = 0; i < 100; ++i) {
             const auto place = [&] { return random.integer(-kFull, 4 * kFull); };
             std::vector<GridTriangle> one{{FixedPoint{place(), place()}, FixedPoint{place(), place()},
                                            FixedPoint{place(), place()}}};
-            if (i % 2 == 0) one[0][1] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
-            if (i % 2 == 0) one[0][2] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
+            if (i % 2 == 0)
+                one[0][1] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
+            if (i % 2 == 0)
+                one[0][2] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
             const SampleOffset offset{random.integer(0, 256), random.integer(0, 256)};
             int wrong = 0;
             for (std::size_t k = 0; k < grid.size(); ++k) {
@@ -240,7 +244,8 @@ TEST_SUITE("unit") {
                 for (const TileLists::Item& item : outlines.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k) found.push_back(batch.order[item.first + k]);
                 for (const TileLists::Item& item : patches.tile(tile))
-                    for (std::uint32_t k = 0; k < item.count; ++k) found_patches.push_back(batch.patch_order[item.first + k]);
+                    for (std::uint32_t k = 0; k < item.count; ++k)
+                        found_patches.push_back(batch.patch_order[item.first + k]);
                 for (const TileLists::Item& item : fragments.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k)
                         found_fragments.push_back(batch.fragments[item.first + k].id);
@@ -257,7 +262,8 @@ TEST_SUITE("unit") {
         for (int trial = 0; trial < 30'000; ++trial) {
             const int reach = std::array{40, 300, 3000, 16000}[static_cast<std::size_t>(trial) % 4];
             const int low = trial % 3 == 0 ? reach / 50 : reach;
-            std::array<FixedPoint, 3> p{random.point(0, reach), random.point(0, reach), {random.integer(0, reach), random.integer(0, low)}};
+            std::array<FixedPoint, 3> p{
+                random.point(0, reach), random.point(0, reach), {random.integer(0, reach), random.integer(0, low)}};
             if (doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
             if (doubled_area(p[0], p[1], p[2]) == 0) continue;
             DrawTriangle triangle;
@@ -265,26 +271,28 @@ TEST_SUITE("unit") {
             const std::array<std::int64_t, 3> margins = edge_margins(triangle);
             for (int i = 0; i < 10; ++i) { // samples, most of them close to an edge
                 const auto near = static_cast<std::size_t>(random.integer(0, 2));
-                const double t = random.integer(0, 1000) / 1000.0, depth = random.integer(0, 100) * random.integer(0, 100) * 1e-6;
+                const double t = random.integer(0, 1000) / 1000.0,
+                             depth = random.integer(0, 100) * random.integer(0, 100) * 1e-6;
                 const FixedPoint &a = p[near], &b = p[(near + 1) % 3], &c = p[(near + 2) % 3];
                 const auto mixed = [&](int u, int v, int w) {
                     return static_cast<std::int32_t>(std::lround((u * (1 - t) + v * t) * (1 - depth) + w * depth));
                 };
                 const FixedPoint s{mixed(a.x, b.x, c.x), mixed(a.y, b.y, c.y)};
-                bool all = true, half = true; // beyond the margins, and beyond half of them
+                bool all = true, half = true; // beyond the margins, and beyond half the margins
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::int64_t value = doubled_area(p[k], p[(k + 1) % 3], s);
                     all = all && value >= margins[k];
                     half = half && 2 * value >= margins[k];
                 }
                 if (!half) continue;
-                bool inside = true; // wherever in their squares the corners were, counted in half grid points
+                bool inside = true; // for all vertex positions within their grid squares, in units of half grid points
                 for (std::size_t k = 0; k < 3; ++k)
                     for (int moves = 0; moves < 16; ++moves) {
                         const auto moved = [&](const FixedPoint& q, int bits) {
                             return FixedPoint{2 * q.x + (bits & 1) * 2 - 1, 2 * q.y + (bits >> 1 & 1) * 2 - 1};
                         };
-                        inside = inside && doubled_area(moved(p[k], moves), moved(p[(k + 1) % 3], moves >> 2), {2 * s.x, 2 * s.y}) >= 0;
+                        inside = inside && doubled_area(moved(p[k], moves), moved(p[(k + 1) % 3], moves >> 2),
+                                                        {2 * s.x, 2 * s.y}) >= 0;
                     }
                 beyond += all;
                 outside += all && !inside;
@@ -293,7 +301,7 @@ TEST_SUITE("unit") {
         }
         CHECK(beyond > 100'000);
         CHECK(outside == 0);
-        CHECK(outside_half > 100); // half of the margins would not do
+        CHECK(outside_half > 100); // half the margins would not suffice
     }
 
     TEST_CASE("of coincident surfaces the lower number wins in any order") {

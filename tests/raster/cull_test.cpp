@@ -1,4 +1,5 @@
-// What is left out can't be seen: pictures with and without culling, and the cases in which back faces must stay.
+// These tests check that culling removes only invisible primitives. They compare images with and without culling, and
+// cover the cases in which back faces must remain.
 #include "tests/raster/scenes.h"
 
 #include "raster/geometry/cull.h"
@@ -17,9 +18,9 @@ std::int64_t skipped(const Rendering& rendering, const std::string& what) {
     return 0;
 }
 
-/// The number of pixels whose hits differ. A sample that only the snapped outline of a silhouette covers belongs to a
-/// front and a back face, both seen at their common edge, where rounding says which is nearer: there culling may change
-/// the primitive, but nothing else.
+/// Counts the pixels whose hits differ. A sample that only a snapped silhouette edge covers belongs to a front and
+/// a back face at their common edge, where rounding decides which is nearer. Culling may change the primitive there,
+/// but nothing else.
 struct Difference {
     int coverage = 0, object = 0, distance = 0, primitive = 0;
 };
@@ -39,7 +40,7 @@ Scene tori() {
     add(scene, torus(60, 30));
     add_instance(scene, 0, Mat4(translation(Vec3(1.2f, 0.5f, 0)) * rotation(Vec3(1, 0, 0), 1.2f)));
     add_instance(scene, 0, Mat4(translation(Vec3(-1, 0.2f, 0.5f)) * scaling(Vec3(-0.7f, 0.7f, 0.7f)))); // mirrored
-    add_instance(scene, 0, Mat4(translation(Vec3(0, 80, 0))));                                          // out of sight
+    add_instance(scene, 0, Mat4(translation(Vec3(0, 80, 0))));                                          // not visible
     finish_scene(scene);
     return scene;
 }
@@ -62,7 +63,7 @@ TEST_SUITE("unit") {
             CHECK(d.coverage == 0);
             CHECK(d.object == 0);
             CHECK(d.distance == 0);
-            CHECK(d.primitive <= 12); // of 43200 pixels
+            CHECK(d.primitive <= 12); // of 43,200 pixels
             double sum_with = 0, sum_without = 0;
             for (std::size_t k = 0; k < with.radiance.size(); ++k) {
                 sum_with += static_cast<double>(luminance(with.radiance[k]));
@@ -94,7 +95,7 @@ TEST_SUITE("unit") {
         add(scene, torus(40, 20));
         finish_scene(scene);
         View view{look({0, 0.3, 4}, {0, 0, 0}, 40), 96, 72};
-        view.camera.near = 3.9; // through the torus
+        view.camera.near = 3.9; // the near plane cuts the torus
         const Rendering rendering = render(scene, view, hits_only());
         CHECK(skipped(rendering, "backfaces") == 0);
         const Agreement agreement = compare_hits(scene, view, rendering.hit);
@@ -142,11 +143,12 @@ TEST_SUITE("unit") {
 
     TEST_CASE("six quads are closed where they enclose a space and face outwards, not for being six") {
         QuadList box = box_quads(Vec3(-0.1f, 0.3f, 7), Vec3(1, 0.7f, 7.3f)), open = box, inside_out = box, twice = box;
-        open.quads[2].corner.y -= 0.1f; // a box whose lid is off
+        open.quads[2].corner.y -= 0.1f; // an open box
         for (Quad& quad : inside_out.quads) std::swap(quad.u, quad.v);
         twice.quads[1] = twice.quads[0];
-        QuadList sheets = box; // six beside each other
-        for (std::size_t i = 0; i < 6; ++i) sheets.quads[i] = {Vec3(static_cast<float>(i), 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+        QuadList sheets = box; // six boxes side by side
+        for (std::size_t i = 0; i < 6; ++i)
+            sheets.quads[i] = {Vec3(static_cast<float>(i), 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
         Scene scene;
         for (const QuadList& quads : {box, open, inside_out, twice, sheets}) add(scene, quads);
         finish_scene(scene);
@@ -163,12 +165,12 @@ TEST_SUITE("unit") {
             return raster::outside_frustum(Box3{center - h, center + h}, pinhole, viewport);
         };
         CHECK_FALSE(outside({0, 0, 0}, 0.1f));
-        CHECK_FALSE(outside({0, 0, 5}, 0.1f));    // around the eye
-        CHECK_FALSE(outside({0, 0, 0}, 1e6f));    // around everything
-        CHECK_FALSE(outside({3.5f, 0, 0}, 1.5f)); // a corner in sight
-        CHECK(outside({0, 0, 6}, 0.5f));          // behind
+        CHECK_FALSE(outside({0, 0, 5}, 0.1f));    // contains the eye
+        CHECK_FALSE(outside({0, 0, 0}, 1e6f));    // contains the whole scene
+        CHECK_FALSE(outside({3.5f, 0, 0}, 1.5f)); // partly inside the frustum
+        CHECK(outside({0, 0, 6}, 0.5f));          // behind the eye
         CHECK(outside({10, 0, 0}, 1));
         CHECK(outside({0, -10, 0}, 1));
-        CHECK(raster::outside_frustum(Box3{}, pinhole, viewport)); // empty
+        CHECK(raster::outside_frustum(Box3{}, pinhole, viewport)); // an empty box
     }
 }

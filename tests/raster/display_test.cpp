@@ -1,4 +1,4 @@
-// Pictures for displays and shadow maps: the fast ways against the naive ones.
+// These tests compare the fast paths of display images and shadow maps with naive implementations.
 #include "raster/draw.h"
 #include "raster/shader/encode_strip.h"
 #include "raster/visibility/cover.h"
@@ -25,11 +25,13 @@ raster::Settings phong(raster::Output output) {
     return settings;
 }
 
-/// Phong's model at a pixel's centre from its hit alone, by the shared surface point and the path tracer's lights.
+/// Evaluates Phong's model at a pixel's center from its hit alone, with the shared surface point and the path
+/// tracer's lights.
 Rgb naive_phong(const Scene& scene, const View& view, const Hit& hit, int x, int y) {
     if (!hit.valid()) return {};
     const Rayd exact = CameraModel(view).through().ray({x + 0.5, y + 0.5});
-    const Ray ray{.origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
+    const Ray ray{
+        .origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
     const SurfacePoint point = surface_point(scene, ray, hit);
     const Vec3 wo = -ray.direction, n = dot(point.ng, wo) < 0 ? -point.ns : point.ns;
     const Rgb base = base_color(scene.materials[point.material], scene.textures, point);
@@ -37,7 +39,8 @@ Rgb naive_phong(const Scene& scene, const View& view, const Hit& hit, int x, int
     for (const Light& light : scene.lights) {
         const auto arriving = sample_light(light, point.p, {0.5f, 0.5f});
         if (!arriving) continue;
-        const float cosine = std::max(dot(n, arriving->wi), 0.0f), mirror = std::max(dot(reflect(arriving->wi, n), wo), 0.0f);
+        const float cosine = std::max(dot(n, arriving->wi), 0.0f),
+                    mirror = std::max(dot(reflect(arriving->wi, n), wo), 0.0f);
         const float lobe = 0.04f * 34 * std::pow(mirror, 32.0f) / (2 * kPi);
         sum += arriving->radiance * cosine * (base * (1 / kPi) + Rgb(lobe));
     }
@@ -70,10 +73,11 @@ TEST_SUITE("unit") {
 
     TEST_CASE("strips of pixels get the very codes that single values get") {
         std::vector<float> values{0.0f, -1.0f, 1.0f, 2.0f, kInfinity, -kInfinity, std::nanf(""), 1e-30f, 1e-40f};
-        for (int code = 0; code < 255; ++code) { // about each change of code
+        for (int code = 0; code < 255; ++code) { // around every change of the code
             const auto middle = static_cast<float>(srgb_decode((code + 0.5) / 255));
             for (int step = -200; step <= 200; ++step)
-                values.push_back(std::bit_cast<float>(std::bit_cast<std::uint32_t>(middle) + static_cast<std::uint32_t>(step)));
+                values.push_back(
+                    std::bit_cast<float>(std::bit_cast<std::uint32_t>(middle) + static_cast<std::uint32_t>(step)));
         }
         std::mt19937 engine(1);
         std::uniform_real_distribution<float> uniform(0, 1.01f);
@@ -107,14 +111,15 @@ TEST_SUITE("unit") {
             return wrong;
         };
         CHECK(wrong_codes(values) == 0);
-        std::erase_if(values, [](float x) { return !(x > 0.0031308f && x <= 1.0f); }); // beyond the straight part alone
+        // Keep only values above the linear segment.
+        std::erase_if(values, [](float x) { return !(x > 0.0031308f && x <= 1.0f); });
         CHECK(values.size() > 200'000);
         CHECK(wrong_codes(values) == 0);
         CHECK(encode_all(0.5f)[7] == Rgba8{188, 188, 188, 255});
     }
 
     TEST_CASE("Phong's shading side by side is Phong's model at each hit") {
-        for (const int around : {12, 60, 400}) // triangles of many pixels, of some, and of less than one
+        for (const int around : {12, 60, 400}) // triangles of many pixels, of a few, and of less than one
             for (const View& view : {perspective(), orthographic()}) {
                 const Scene scene = varied_scene(around);
                 raster::Settings settings = phong(raster::Output::kRadiance);
@@ -134,9 +139,9 @@ TEST_SUITE("unit") {
                         worst = std::max(worst, largest_difference(encoded.srgb(x, y), wanted));
                     }
                 CAPTURE(around);
-                CHECK(not_encoded == 0);    // of a display's picture and of one of floats
-                CHECK(worst <= 1);          // float against double, where a value lies at a change of code
-                CHECK(different <= 80);     // of 78447 pixels
+                CHECK(not_encoded == 0);    // of display images and of float images
+                CHECK(worst <= 1);          // float versus double, where a value is at a change of the code
+                CHECK(different <= 80);     // of 78,447 pixels
             }
     }
 
@@ -147,7 +152,8 @@ TEST_SUITE("unit") {
             const Rendering depths = render(scene, view, settings);
             settings.output = raster::Output::kRadiance;
             Control control;
-            const Rendering shaded = raster::draw(raster::prepare(scene, settings), view, settings, NearnessShader{}, control);
+            const Rendering shaded =
+                raster::draw(raster::prepare(scene, settings), view, settings, NearnessShader{}, control);
             int wrong = 0, seen = 0;
             for (std::size_t i = 0; i < depths.nearness.size(); ++i) {
                 wrong += depths.nearness[i] != shaded.radiance[i].r;
@@ -170,7 +176,7 @@ TEST_SUITE("unit") {
             Rendering again;
             for (const int threads : {2, 3, 7}) {
                 settings.threads = threads;
-                View other = view; // something else in between, of another size
+                View other = view; // another view of a different size in between
                 other.camera.eye.x += 1;
                 other.width += 100;
                 raster::render(prepared, other, settings, control, again);
@@ -192,7 +198,7 @@ TEST_SUITE("unit") {
         const Rendering fronts = render(scene, view, settings);
         int seen = 0, farther = 0;
         for (std::size_t i = 0; i < both.nearness.size(); ++i) {
-            REQUIRE((both.nearness[i] > 0) == (fronts.nearness[i] > 0)); // its silhouette is the same
+            REQUIRE((both.nearness[i] > 0) == (fronts.nearness[i] > 0)); // the silhouette is unchanged
             seen += both.nearness[i] > 0;
             farther += fronts.nearness[i] < both.nearness[i];
         }
@@ -230,20 +236,25 @@ TEST_SUITE("unit") {
                             hit_triangle(geometry.triangles.whole(depths.id(x, y)), hit.object, hit.primitive, pixel,
                                          pinhole.ray(pixel).t_min / pinhole.near, pinhole.near);
                         REQUIRE(naive.object == hit.object);
-                        const auto apart = [](float a, float b) { return std::abs(static_cast<double>(a) - static_cast<double>(b)); };
+                        const auto apart = [](float a, float b) {
+                            return std::abs(static_cast<double>(a) - static_cast<double>(b));
+                        };
                         worst = std::max({worst, apart(hit.u, naive.u), apart(hit.v, naive.v), apart(hit.t, naive.t)});
                         ++compared;
                     }
             }
             CHECK(compared > 10'000);
-            CHECK(worst < 1e-6); // a float's rounding of numbers up to 8
+            CHECK(worst < 1e-6); // float rounding of values up to 8
         }
     }
 
     TEST_CASE("what is wholly behind is left out, and nothing else") {
-        // Large triangles before each other in any order: blocks get full, and later ones are refused by their depth.
+        // Large triangles overlap in any order of depth. Blocks become fully covered, and later triangles fail their
+        // depth test.
         std::mt19937 engine(3);
-        const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+        const auto number = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(engine);
+        };
         const raster::Viewport viewport{128, 128, 0.1, false};
         for (int trial = 0; trial < 30; ++trial) {
             struct Pile : raster::WholeTriangles {
@@ -262,7 +273,8 @@ TEST_SUITE("unit") {
                 const raster::WholeTriangle& t = pile.wholes.back();
                 std::array<raster::FixedPoint, 3> p{snap(t.a), snap(t.b), snap(t.c)};
                 if (raster::doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
-                if (raster::doubled_area(p[0], p[1], p[2]) != 0) pile.outlines.push_back(set_up(t, p, id, false, viewport));
+                if (raster::doubled_area(p[0], p[1], p[2]) != 0)
+                    pile.outlines.push_back(set_up(t, p, id, false, viewport));
             }
             raster::DepthTile together, alone;
             together.reset({0, 0, 128, 128}, {}, viewport);

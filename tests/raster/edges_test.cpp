@@ -1,4 +1,4 @@
-// Ink lines: where they must be, and where there must be none.
+// These tests check where ink lines appear and where they do not.
 #include "raster/overlay/edges.h"
 #include "tests/raster/varied_scene.h"
 
@@ -15,7 +15,7 @@ Rendering inked(const Scene& scene, const View& view, raster::Settings settings 
     return render(scene, view, settings);
 }
 
-/// Whether the pixel, or one of the eight around it, has ink.
+/// Returns whether the pixel or one of its eight neighbors has ink.
 bool ink_near(const ImageRgb& picture, int x, int y) {
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
@@ -51,9 +51,10 @@ TEST_SUITE("unit") {
 
     TEST_CASE("ink at steps of depth within one object, at creases, and between objects") {
         Scene scene;
-        // Two squares of one object, one before the other, facing the eye: a step in depth alone.
-        add(scene, QuadList{{Quad{Vec3(-2, -2, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)}, Quad{Vec3(-1, -1, 0.5f), Vec3(1, 0, 0), Vec3(0, 1, 0)}}});
-        // A roof: a crease alone. Beside it a square of another object that goes on in its plane.
+        // Two squares of one object face the eye, one in front of the other: a depth step without a crease.
+        add(scene, QuadList{{Quad{Vec3(-2, -2, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
+                             Quad{Vec3(-1, -1, 0.5f), Vec3(1, 0, 0), Vec3(0, 1, 0)}}});
+        // The roof is a crease without a depth step. Beside it is a coplanar square of another object.
         add(scene, QuadList{{Quad{Vec3(0.3f, -1, 0.2f), Vec3(0.5f, 0, 0.4f), Vec3(0, 2, 0)},
                              Quad{Vec3(0.8f, -1, 0.6f), Vec3(0.5f, 0, -0.4f), Vec3(0, 2, 0)}}});
         add(scene, QuadList{{Quad{Vec3(-1, 0.5f, 0.5f), Vec3(0.5f, 0, 0), Vec3(0, 0.5f, 0)}}});
@@ -67,19 +68,21 @@ TEST_SUITE("unit") {
         };
         for (const double along : {-0.7, -0.4, -0.2}) {
             CHECK(near_point({-1, along, 0.5}));        // the step's left side
-            CHECK(near_point({along, -1, 0.5}));        // and its lower one
+            CHECK(near_point({along, -1, 0.5}));        // the step's lower side
             CHECK(near_point({0.8, along, 0.6}));       // the crease
-            CHECK(!near_point({-0.5, along, 0.5}));     // within the square
-            CHECK(!near_point({0.55, along, 0.4}));     // within a side of the roof
+            CHECK(!near_point({-0.5, along, 0.5}));     // inside the square
+            CHECK(!near_point({0.55, along, 0.4}));     // inside a face of the roof
             CHECK(near_point({-0.5, -along * 0.3 + 0.6, 0.5})); // where two objects meet in one plane
         }
     }
 
     TEST_CASE("what has holes is inked where it is whole, hides the lines behind, and shows them through its holes and a thin veil") {
-        const auto square = [](float half, float z) { return QuadList{{Quad{{-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}}}}; };
+        const auto square = [](float half, float z) {
+            return QuadList{{Quad{{-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}}}};
+        };
         Scene scene;
         ImageRgb halves(2, 1);
-        halves(0, 0) = Rgb(1.0f), halves(1, 0) = Rgb(0.0f); // the left one is there
+        halves(0, 0) = Rgb(1.0f), halves(1, 0) = Rgb(0.0f); // the left texel is opaque
         scene.textures = {{ImageTexture{0, {1, 1}, TextureFilter::kNearest}}, {halves}};
         add(scene, square(1, 0.0f));
         add(scene, square(0.5f, -1));
@@ -93,8 +96,8 @@ TEST_SUITE("unit") {
         };
         const ScalarSlot half{1, 0};
         CHECK(inked_at(half, -1, 0.3, 0));
-        CHECK(inked_at(half, 0, 0.8, 0));  // the hole's border
-        CHECK(!inked_at(half, 1, 0.3, 0)); // there is nothing
+        CHECK(inked_at(half, 0, 0.8, 0));  // the boundary of the alpha mask
+        CHECK(!inked_at(half, 1, 0.3, 0)); // transparent here
         CHECK(inked_at(half, 0.5, 0.3, -1));
         CHECK(!inked_at(half, -0.5, 0.3, -1));
         CHECK(inked_at(0.4f, -0.5, 0.3, -1));

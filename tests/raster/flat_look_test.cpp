@@ -1,4 +1,4 @@
-// What the picture does not show, guessed from the flat surfaces and the sky about it.
+// These tests check the prefiltered image of flat surfaces and sky that replaces occluded surfaces in reflections.
 #include "tests/raster/scenes.h"
 
 #include "raster/screen/flat_look.h"
@@ -15,12 +15,14 @@ using namespace duet::test;
 
 TEST_SUITE("unit") {
 
-    // What rays meet behind something is looked up blurred, and must be of the floor, not of what stands on it.
+    // A ray that hits an occluded surface samples a blurred image. That image must contain the floor and not the
+    // objects on it.
     TEST_CASE("what is hidden is seen as the flat surfaces and the sky about it: no ball is flat, however fine the picture") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
         add(scene, Sphere{Vec3(0, 0.6f, 0.5f), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
-        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         for (const int height : {60, 240, 720}) {
@@ -31,9 +33,11 @@ TEST_SUITE("unit") {
             REQUIRE_FALSE(flat.empty());
             for (const float wide : {1.0f, 4.0f, 30.0f})
                 for (const float part : {0.1f, 0.3f, 0.5f, 0.7f}) {
-                    const Rgb seen = flat.at(part * static_cast<float>(view.width), 0.55f * static_cast<float>(height), wide);
+                    const Rgb seen =
+                        flat.at(part * static_cast<float>(view.width), 0.55f * static_cast<float>(height), wide);
                     CHECK(seen.g > 0.2f);
-                    CHECK(seen.r - seen.b < 0.01f); // the ball's share: the sky has as much of both, the floor none
+                    // Red minus blue is the sphere's contribution: the sky has equal red and blue, the floor neither.
+                    CHECK(seen.r - seen.b < 0.01f);
                 }
         }
     }
@@ -42,7 +46,8 @@ TEST_SUITE("unit") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}});
         add(scene, Sphere{Vec3(0, 0.6f, 0), 0.6f});
-        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(-2, 0.3f, 0), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         for (const double height : {1.3, 3.0, 300.0}) {
@@ -67,7 +72,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 1.5, 4}, {0, 0.6, 0}, 50), 320, 240};
         const auto screen = raster::screen_of(raster::prepare(scene, plain()), view, plain());
-        for (const float y : {60.0f, 140.0f, 220.0f}) { // wall, ball, floor
+        for (const float y : {60.0f, 140.0f, 220.0f}) { // wall, sphere, floor
             const Rgb seen = screen->flat_look().at(160, y, 4);
             CHECK(seen.g > 0.2f);
             CHECK(seen.r < 0.01f);
@@ -114,13 +119,15 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-6, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
         add(scene, QuadList{{{Vec3(0, 0, 4), Vec3(6, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0, 0, 1)}});
         add(scene, Sphere{Vec3(0, 0.6f, 1), 0.6f}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
-        add(scene, Sphere{Vec3(-2, 0.3f, -3), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // else nobody looks
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(-2, 0.3f, -3), 0.3f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const raster::Prepared prepared = raster::prepare(scene, plain());
         const auto screen = raster::screen_of(prepared, {look({0, 1.5, 4}, {0, 0.6, 0}, 50), 160, 120}, plain());
         const raster::Surroundings around(prepared.data(), plain(), {*screen});
-        const Box3 bounds{screen->relative(scene.bounds.low - Vec3(0.1f, 0.1f, 0.1f)), screen->relative(scene.bounds.high)};
+        const Box3 bounds{screen->relative(scene.bounds.low - Vec3(0.1f, 0.1f, 0.1f)),
+                          screen->relative(scene.bounds.high)};
         const Vec3 from(-2.5f, 0.8f, -0.5f);
         for (const float x : {-0.6f, -0.3f, 0.3f, 0.6f}) {
             const Vec3 to(x, 0, -0.5f);
@@ -134,7 +141,7 @@ TEST_SUITE("unit") {
             CHECK(std::abs(hit->x - place.x) < 1);
             CHECK(std::abs(hit->y - place.y) < 1);
             const Rgb seen = around.seen({.p = p, .n = n, .way = way, .from_picture = false});
-            CHECK(seen.r < 0.2f); // of the sky
+            CHECK(seen.r < 0.2f); // from the sky
             CHECK(std::abs(seen.g - seen.b) > 0.02f);
             CHECK((seen.g > seen.b) == (x < 0));
         }

@@ -1,4 +1,4 @@
-// What glass shows of the picture without it, against the refracted rays themselves.
+// These tests compare glass in screen space with exact refracted rays.
 #include "tests/raster/scenes.h"
 
 #include "common/image/same_bits.h"
@@ -22,7 +22,7 @@ const View kView{look({0, 0, 5}, {0, 0, 0}, 40), 160, 120};
 constexpr double kWallZ = -4;
 constexpr float kIor = 1.5f;
 
-/// A wall that reflects all of a grey sky, red to the left and green to the right.
+/// Returns a wall that reflects all light of a gray sky, red on the left and green on the right.
 Scene wall() {
     Scene scene;
     const auto z = static_cast<float>(kWallZ);
@@ -32,7 +32,7 @@ Scene wall() {
     return scene;
 }
 
-/// A unit sphere of triangles, with normals.
+/// Returns a unit sphere as a triangle mesh with vertex normals.
 Mesh round_mesh(int around, int down) {
     Mesh mesh;
     for (int k = 0; k <= down; ++k)
@@ -50,7 +50,7 @@ Mesh round_mesh(int around, int down) {
     return mesh;
 }
 
-/// A cube of quads about the origin, `half` its side.
+/// Returns a cube of quads around the origin with half side length `half`.
 QuadList block(float half) {
     QuadList box;
     for (const float side : {-half, half})
@@ -63,21 +63,21 @@ QuadList block(float half) {
     return box;
 }
 
-/// Through a unit ball at the origin to the wall: where that is met, and how much goes on at the front; false for rays
-/// that miss the ball, or nearly.
+/// Traces a ray through a unit sphere at the origin to the wall. Returns the hit point and the fraction reflected at
+/// the front. Returns false for rays that miss the sphere or pass too close to its silhouette.
 bool through_ball(const View& view, int x, int y, Vec3d& met, double& reflected) {
     const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
     const double b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1;
-    if (b * b - c < 0.55) return false; // so near the outline that it mirrors the wall, too
+    if (b * b - c < 0.55) return false; // so close to the silhouette that it reflects the wall, too
     const Vec3d p = ray.at(-b - std::sqrt(b * b - c));
     const double eta = static_cast<double>(kIor), cosine = -dot(p, ray.direction);
     const double inner = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
     const Vec3d way = ray.direction / eta + p * (cosine / eta - inner), q = p - way * (2 * dot(p, way));
-    const Vec3d out = way * eta + q * (cosine - eta * inner); // by symmetry the two angles change places
+    const Vec3d out = way * eta + q * (cosine - eta * inner); // the two angles swap by symmetry
     reflected = static_cast<double>(fresnel_dielectric(static_cast<float>(cosine), kIor));
     if (!(out.z < 0)) return false;
     met = q + out * ((kWallZ - q.z) / out.z);
-    return std::abs(met.x) < 2.5 && std::abs(met.y) < 1.8; // within the picture
+    return std::abs(met.x) < 2.5 && std::abs(met.y) < 1.8; // within the image
 }
 
 } // namespace
@@ -90,7 +90,8 @@ TEST_SUITE("unit") {
         parallel.camera.height = 3.6;
         raster::Settings four = plain();
         four.multisamples = 4;
-        const std::array<std::pair<View, raster::Settings>, 3> ways{{{kView, plain()}, {kView, four}, {parallel, plain()}}};
+        const std::array<std::pair<View, raster::Settings>, 3> ways{
+            {{kView, plain()}, {kView, four}, {parallel, plain()}}};
         for (const bool triangles : {false, true})
             for (const auto& way : ways) {
                 const View& view = way.first;
@@ -99,7 +100,8 @@ TEST_SUITE("unit") {
                 CAPTURE(settings.multisamples);
                 CAPTURE(static_cast<int>(view.camera.projection));
                 Scene scene = wall();
-                add(scene, triangles ? Shape(round_mesh(96, 48)) : Shape(Sphere{Vec3(0, 0, 0), 1}), Mat4(), Dielectric{kIor});
+                add(scene, triangles ? Shape(round_mesh(96, 48)) : Shape(Sphere{Vec3(0, 0, 0), 1}), Mat4(),
+                    Dielectric{kIor});
                 finish_scene(scene);
                 const ImageRgb found = render(scene, view, settings).radiance;
                 int swapped = 0, all = 0, wrong = 0;
@@ -108,7 +110,8 @@ TEST_SUITE("unit") {
                         Vec3d met;
                         double reflected = 0;
                         if (!through_ball(view, x, y, met, reflected) || std::abs(met.x) < 0.1) continue;
-                        const float color = static_cast<float>(0.5 * (1 - reflected)), sky = static_cast<float>(0.5 * reflected);
+                        const float color = static_cast<float>(0.5 * (1 - reflected)),
+                                    sky = static_cast<float>(0.5 * reflected);
                         const Rgb expected = met.x < 0 ? Rgb(color + sky, sky, sky) : Rgb(sky, color + sky, sky);
                         ++all;
                         swapped += (x < view.width / 2) == (met.x > 0);
@@ -127,7 +130,7 @@ TEST_SUITE("unit") {
     TEST_CASE("glass is seen through glass: by a pane a wall, another pane before it, and a ball") {
         const Dielectric thin{.ior = kIor, .thin = true};
         const auto pane = [](float z) { return QuadList{{{Vec3(-1.5f, -1.5f, z), Vec3(3, 0, 0), Vec3(0, 3, 0)}}}; };
-        for (const int behind : {0, 1, 2}) { // a pane, a ball, a ball of triangles
+        for (const int behind : {0, 1, 2}) { // a pane, a sphere, a triangle-mesh sphere
             CAPTURE(behind);
             std::array<ImageRgb, 2> pictures; // without and with the pane in front
             for (const bool front : {false, true}) {
@@ -143,7 +146,8 @@ TEST_SUITE("unit") {
             for (int y = 40; y < 80; ++y)
                 for (int x = 60; x < 100; ++x) {
                     const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
-                    const ThinDielectricBsdf::Parts parts = ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(static_cast<float>(-ray.direction.z));
+                    const ThinDielectricBsdf::Parts parts =
+                        ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(static_cast<float>(-ray.direction.z));
                     const Rgb expected = pictures[0](x, y) * parts.transmitted + Rgb(0.5f) * parts.reflected;
                     ++all;
                     for (std::size_t c = 0; c < 3; ++c)
@@ -152,12 +156,12 @@ TEST_SUITE("unit") {
                             break;
                         }
                 }
-            CHECK(wrong * 50 < all); // where the looks of neighbours differ
+            CHECK(wrong * 50 < all); // where G-buffer samples of neighboring pixels differ
         }
     }
 
     TEST_CASE("a block that a pane covers in part is seen under it as if the pane covered all") {
-        std::array<ImageRgb, 2> pictures; // half and all of it
+        std::array<ImageRgb, 2> pictures; // half the pane and the whole pane
         for (const bool whole : {false, true}) {
             Scene scene = wall();
             add(scene, block(0.8f), rotation(Vec3(1, 0, 0), 0.26f) * rotation(Vec3(0, 1, 0), 0.52f), Dielectric{kIor});
@@ -168,20 +172,21 @@ TEST_SUITE("unit") {
         }
         int wrong = 0, all = 0;
         for (int y = 30; y < 90; ++y)
-            for (int x = 45; x < 77; ++x) { // to three pixels from the pane's edge
+            for (int x = 45; x < 77; ++x) { // up to three pixels from the pane's edge
                 const Rgb difference = pictures[0](x, y) - pictures[1](x, y);
                 ++all;
                 wrong += std::max({std::abs(difference.r), std::abs(difference.g), std::abs(difference.b)}) > 0.02f;
             }
         CAPTURE(wrong);
-        CHECK(wrong * 50 < all); // where what is seen is itself about the edge
+        CHECK(wrong * 50 < all); // where the visible surface itself contains the edge
     }
 
     TEST_CASE("panes in a row: each dims what is behind it, kGlassDeep of them, and those farther back not") {
         for (int panes = 0; panes <= raster::kGlassDeep + 1; ++panes) {
             CAPTURE(panes);
             Scene scene;
-            add(scene, QuadList{{{Vec3(-9, -6, static_cast<float>(kWallZ)), Vec3(18, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(1.0f)});
+            add(scene, QuadList{{{Vec3(-9, -6, static_cast<float>(kWallZ)), Vec3(18, 0, 0), Vec3(0, 12, 0)}}}, Mat4(),
+                Emissive{Rgb(1.0f)});
             const Dielectric tinted{.ior = kIor, .tint = {Rgb(0.5f)}, .thin = true};
             for (int i = 0; i < panes; ++i) {
                 const Vec3 corner(-1.5f, -1.5f, 2 - 0.5f * static_cast<float>(i));
@@ -200,7 +205,8 @@ TEST_SUITE("unit") {
         const auto z = static_cast<float>(kWallZ);
         add(scene, QuadList{{{Vec3(-9, -6, z), Vec3(9, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(1, 0.2f, 0.2f)});
         add(scene, QuadList{{{Vec3(0, -6, z), Vec3(9, 0, 0), Vec3(0, 12, 0)}}}, Mat4(), Emissive{Rgb(0.2f, 1, 0.2f)});
-        add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 1.5f), Vec3(1.5f, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+        add(scene, QuadList{{{Vec3(-1.5f, -1.5f, 1.5f), Vec3(1.5f, 0, 0), Vec3(0, 3, 0)}}}, Mat4(),
+            Dielectric{.ior = kIor, .thin = true});
         Object& ball = add(scene, Sphere{Vec3(0, 0, 0), 1}, translation(Vec3(-0.3f, 0, 0)), Dielectric{kIor});
         ball.to_world_end = Mat4(translation(Vec3(0.3f, 0, 0)));
         ball.moving = true;
@@ -231,17 +237,19 @@ TEST_SUITE("unit") {
                 wrong += std::max(std::abs(difference.r), std::abs(difference.g)) > 0.08f * kBlock * kBlock;
             }
         CHECK(blocks == 300);
-        CHECK(wrong < 12); // about the ball's outline, where light is mirrored within
+        CHECK(wrong < 12); // at the sphere's silhouette, where light is reflected internally
     }
 
     TEST_CASE("a pane shows the wall straight behind it, as dimmed as its closed form says, and mirrors the sky") {
         Scene scene = wall();
-        add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
+        add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(),
+            Dielectric{.ior = kIor, .thin = true});
         finish_scene(scene);
         const ImageRgb found = render(scene, kView, plain()).radiance;
         for (const int x : {66, 75, 85, 94}) {
             const Rayd ray = CameraModel(kView).through().ray({x + 0.5, 70.5});
-            const ThinDielectricBsdf::Parts parts = ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(static_cast<float>(-ray.direction.z));
+            const ThinDielectricBsdf::Parts parts =
+                ThinDielectricBsdf{kIor, Rgb(1.0f)}.parts(static_cast<float>(-ray.direction.z));
             const float wall = 0.5f * parts.transmitted.r, sky = 0.5f * parts.reflected.r;
             CHECK(found(x, 70).r == doctest::Approx(x < 80 ? wall + sky : sky).epsilon(0.002));
             CHECK(found(x, 70).g == doctest::Approx(x < 80 ? sky : wall + sky).epsilon(0.002));
@@ -261,15 +269,18 @@ TEST_SUITE("unit") {
         const double cosine = -dot(p, ray.direction), eta = static_cast<double>(kIor);
         const auto way = static_cast<float>(2 * std::sqrt(1 - (1 - cosine * cosine) / (eta * eta)));
         const float reflected = fresnel_dielectric(static_cast<float>(cosine), kIor);
-        CHECK(found.r == doctest::Approx(0.5f * reflected + 0.5f * (1 - reflected) * std::exp(-way * 0.2f)).epsilon(0.02));
+        CHECK(found.r ==
+              doctest::Approx(0.5f * reflected + 0.5f * (1 - reflected) * std::exp(-way * 0.2f)).epsilon(0.02));
         CHECK(found.g == doctest::Approx(0.5f * reflected).epsilon(0.05));
     }
 
     TEST_CASE("glass mirrors a lamp that the picture does not show, and not through what stands before it") {
         for (const bool screened : {false, true}) {
             Scene scene = wall();
-            add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Dielectric{.ior = kIor, .thin = true});
-            add(scene, QuadList{{{Vec3(-1, -1, 9), Vec3(0, 2, 0), Vec3(2, 0, 0)}}}, Mat4(), Emissive{Rgb(40.0f)}); // behind the eye
+            add(scene, QuadList{{{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}}, Mat4(),
+                Dielectric{.ior = kIor, .thin = true});
+            // The light is behind the eye.
+            add(scene, QuadList{{{Vec3(-1, -1, 9), Vec3(0, 2, 0), Vec3(2, 0, 0)}}}, Mat4(), Emissive{Rgb(40.0f)});
             if (screened) add(scene, QuadList{{{Vec3(-1, -1, 8), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
             finish_scene(scene);
             scene.environment = ConstantEnvironment{Rgb(0.0f)};
@@ -285,15 +296,18 @@ TEST_SUITE("unit") {
         for (const bool screened : {false, true}) {
             Scene scene;
             add(scene, Sphere{{0, 0, 0}, 1}, Mat4(), Dielectric{kIor});
-            add(scene, QuadList{{{Vec3(-6, -3, -2), Vec3(0, 0, -4), Vec3(0, 6, 0)}}}, Mat4(), Emissive{Rgb(8.0f), true});
-            if (screened) add(scene, QuadList{{{Vec3(-4, -6, 2), Vec3(0, 0, -12), Vec3(0, 12, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
+            add(scene, QuadList{{{Vec3(-6, -3, -2), Vec3(0, 0, -4), Vec3(0, 6, 0)}}}, Mat4(),
+                Emissive{Rgb(8.0f), true});
+            if (screened)
+                add(scene, QuadList{{{Vec3(-4, -6, 2), Vec3(0, 0, -12), Vec3(0, 12, 0)}}}, Mat4(),
+                    Diffuse{{Rgb(0.0f)}});
             finish_scene(scene);
             scene.environment = ConstantEnvironment{Rgb(0.0f)};
             const View narrow{look({0, 0, 5}, {0, 0, 0}, 30), 64, 64};
             const ImageRgb found = render(scene, narrow, plain()).radiance;
             const auto bright = std::count_if(found.begin(), found.end(), [](Rgb c) { return c.g > 2; });
             if (screened)
-                CHECK(bright == 0); // but where shadow maps blur, or light is mirrored
+                CHECK(bright == 0); // except where shadow maps blur or light is reflected
             else
                 CHECK(bright > 20);
         }
@@ -305,7 +319,7 @@ TEST_SUITE("unit") {
                 Scene scene = wall();
                 add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), glass ? Material(Dielectric{kIor}) : Material(Diffuse{}));
                 finish_scene(scene);
-                raster::Settings settings; // occlusion asks for the rest of the screen
+                raster::Settings settings; // ambient occlusion needs the rest of the G-buffer
                 settings.screen_refractions = on;
                 const auto screen = raster::screen_of(raster::prepare(scene, settings), kView, settings);
                 REQUIRE(screen != nullptr);
@@ -322,7 +336,8 @@ TEST_SUITE("unit") {
             settings.screen_refractions = looks;
             return render(scene, kView, settings).statistics.memory_bytes;
         };
-        // Of each: depth, normal, turn, thickness, key, object, whether it is a lamp, radiance with and without lamps.
+        // Each pixel stores depth, normal, curvature (`turns`), thickness, key, object, whether it is a light, and
+        // radiance with and without lights.
         constexpr std::int64_t kLook = 4 + 12 + 4 + 4 + 4 + 4 + 1 + 12 + 12;
         CHECK(bytes(true) - bytes(false) >= 2 * kLook * kView.width * kView.height);
     }
@@ -339,7 +354,8 @@ TEST_SUITE("unit") {
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
                 const Hit& hit = found.hit(x, y);
-                if (!hit.valid() || hit.object > 1 || x > 80) continue; // the floor and the amphora, where nothing is before them
+                // Compare only the floor and the amphora, where nothing occludes them.
+                if (!hit.valid() || hit.object > 1 || x > 80) continue;
                 const Vec3 n = found.normal(x, y);
                 bent += hit.object == 0 && n.y < 0.999f;
                 for (std::size_t c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// Whole pictures of hits, each pixel against an exact ray.
+// These tests compare every pixel of a hit image with an exact ray.
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ using namespace duet::test;
 
 namespace {
 
-/// Renders and compares; at most `edges` of the pixels may be explained by an edge near the sample.
+/// Renders and compares. At most the fraction `edges` of the pixels may differ because of an edge near the sample.
 Rendering check_hits(const Scene& scene, const View& view, double edges = 0.02, bool cull = true) {
     raster::Settings settings = hits_only();
     settings.skips.frustum = settings.skips.back_faces = cull;
@@ -90,7 +90,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 1.5, 0}, {0.3, 1.2, -3}, 60), 160, 120};
         const Rendering rendering = check_hits(scene, view, 0.001);
-        // All below the horizon is floor.
+        // Every pixel below the horizon shows the floor.
         const CameraModel camera(view);
         CHECK(rendering.hit(80, 119).valid());
         CHECK(rendering.hit(0, 119).valid());
@@ -187,7 +187,8 @@ TEST_SUITE("unit") {
         add(scene, torus(24, 12), Mat4(rotation(normalize(Vec3(1, 1, 0)), 0.8f)));
         finish_scene(scene);
         check_hits(scene, {orthographic(look({3, 2, 4}, {0, 0, 0}), 4), 80, 60}, 0.1);
-        check_hits(scene, {orthographic(look({0.1, 0.1, 0.5}, {0, 0, 0}), 2), 80, 60}, 0.1); // the near plane cuts all
+        // The near plane cuts all objects.
+        check_hits(scene, {orthographic(look({0.1, 0.1, 0.5}, {0, 0, 0}), 2), 80, 60}, 0.1);
     }
 
     TEST_CASE("spheres and ellipsoids have the silhouettes that rays see, from everywhere") {

@@ -9,7 +9,7 @@ using namespace duet::raster;
 
 namespace {
 
-/// A lat-long picture of a function of direction.
+/// Returns a lat-long image of a function of direction.
 template <typename F> Environment picture(int width, F radiance_of, float rotation = 0) {
     const int height = width / 2;
     ImageRgb image(width, height);
@@ -53,7 +53,9 @@ TEST_SUITE("unit") {
         const Irradiance exact(closed, 1), harmonic(environment, 2);
         CHECK(exact.is_closed_form());
         for (const Vec3 n :
-             directions()) // linear in the direction: within the first order, so exact but for the picture
+             // The radiance is linear in the direction, so spherical harmonics of the first order are exact except
+             // for the image's resolution.
+             directions())
             for (std::size_t c = 0; c < 3; ++c)
                 CHECK(harmonic.at(environment, n)[c] == doctest::Approx(exact.at(closed, n)[c]).epsilon(2e-3));
     }

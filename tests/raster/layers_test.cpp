@@ -1,4 +1,4 @@
-// Surfaces that may be seen through: lists of Hits over the opaque picture.
+// These tests check lists of transparent hits in front of the opaque image.
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ namespace {
 
 QuadList square(float z) { return {{Quad{{-1, -1, z}, {2, 0, 0}, {0, 2, 0}}}}; }
 
-/// The last object's material stops a part of the light.
+/// Makes the last object's material partly transparent.
 void make_veil(Scene& scene, float opacity) {
     scene.maps.resize(scene.materials.size());
     scene.maps.back().opacity = opacity;
@@ -29,14 +29,15 @@ raster::Settings albedo(int samples = 1) {
 TEST_SUITE("unit") {
 
     TEST_CASE("veils of any number are blended from the front, in whatever order they come") {
-        for (const int count : {1, 3, 8, 9, 30}) { // lists hold 8 at a time
+        for (const int count : {1, 3, 8, 9, 30}) { // lists hold 8 hits at a time
             Scene scene;
             scene.camera = look({0, 0, 5}, {0, 0, 0});
             double through = 1, expected = 0;
             std::vector<int> order;
-            for (int i = 0; i < count; ++i) order.push_back(i * 7 % count); // 7 and the counts have no common divisor
+            for (int i = 0; i < count; ++i) order.push_back(i * 7 % count); // 7 and the counts are coprime
             for (const int i : order) {
-                add(scene, square(-0.1f * static_cast<float>(i)), Mat4(), Diffuse{{Rgb(static_cast<float>(i % 4) / 4)}});
+                add(scene, square(-0.1f * static_cast<float>(i)), Mat4(),
+                    Diffuse{{Rgb(static_cast<float>(i % 4) / 4)}});
                 make_veil(scene, 0.2f);
             }
             add(scene, square(-5), Mat4(), Diffuse{{Rgb(1.0f)}});
@@ -71,7 +72,8 @@ TEST_SUITE("unit") {
         const auto picture = [](bool veiled, raster::Shading shading) {
             Scene scene;
             scene.camera = look({0, 1, 5}, {0, 0, 0});
-            add(scene, QuadList{{Quad{{-30, -1, 3}, {60, 0.5f, 0}, {0, 0, -60}}}}, Mat4(), Diffuse{{Rgb(0.3f, 0.5f, 0.7f)}});
+            add(scene, QuadList{{Quad{{-30, -1, 3}, {60, 0.5f, 0}, {0, 0, -60}}}}, Mat4(),
+                Diffuse{{Rgb(0.3f, 0.5f, 0.7f)}});
             scene.lights.push_back(PointLight{Vec3(1, 4, 2), Rgb(30.0f)});
             add(scene, QuadList{{Quad{{-1.2f, -0.5f, 0}, {0.4f, 0, 0}, {0, 0.4f, 0}}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
             if (veiled) make_veil(scene, 0.5f);
@@ -80,14 +82,15 @@ TEST_SUITE("unit") {
             settings.shading = shading;
             return render(scene, {scene.camera, 256, 128}, settings);
         };
-        for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon}) {
+        for (const raster::Shading shading :
+             {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon}) {
             const Rendering whole = picture(false, shading), veiled = picture(true, shading);
             int apart_beside = 0, apart_under = 0, lit = 0;
             for (int y = 0; y < 128; ++y)
                 for (int x = 0; x < 256; ++x) {
                     const Rgb a = whole.radiance(x, y), b = veiled.radiance(x, y);
                     (x < 128 ? apart_under : apart_beside) += a.r != b.r || a.g != b.g || a.b != b.b;
-                    lit += x >= 128 && max_component(a) > 1e-4f; // of Gouraud: the light of far corners
+                    lit += x >= 128 && max_component(a) > 1e-4f; // Gouraud shading: light from distant vertices
                 }
             CHECK(apart_beside == 0);
             CHECK(apart_under > 100);
@@ -108,7 +111,7 @@ TEST_SUITE("unit") {
         add(scene, square(-2));
         add(scene, torus(40, 20, 0.8, 0.2));
         scene.maps.resize(4);
-        scene.maps[3].opacity = {1, 0}; // by the triangles' own u: parts of each
+        scene.maps[3].opacity = {1, 0}; // opacity from each triangle's own u coordinate
         finish_scene(scene);
         const View view{scene.camera, 120, 90};
         const Rendering picture = render(scene, view, hits_only());

@@ -1,4 +1,4 @@
-// What a sun's maps see: as fine as the camera sees it, near and far.
+// These tests check that the shadow map views of a sun resolve what the camera resolves, near and far.
 #include "tests/raster/scenes.h"
 
 #include "raster/shadow/light_views.h"
@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kSide = 1024;
 
-/// A floor before a camera in a long hall, from 2 m to 40 m away, each point as wide as a pixel of a picture 100 high.
+/// Returns points of a floor in a long hall from 2 m to 40 m in front of the camera. Each has the width of a pixel of
+/// an image 100 pixels high.
 std::vector<SeenPoint> hall_floor() {
     std::vector<SeenPoint> seen;
     for (double z = 2; z < 40; z *= 1.05)
@@ -21,7 +22,7 @@ std::vector<SeenPoint> hall_floor() {
     return seen;
 }
 
-/// Whether a sun's view holds a point `texels` or more within its edges.
+/// Returns whether the point is inside a shadow view, at least `texels` from its edges.
 bool holds(const Camera& view, Vec3d p, double texels) {
     const Vec3d h = CameraModel({view, kSide, kSide}).through().project(p);
     return h.x >= texels && h.y >= texels && h.x <= kSide - texels && h.y <= kSide - texels;
@@ -55,7 +56,9 @@ TEST_SUITE("unit") {
         const Box3 casters{Vec3(-1, 0, -1), Vec3(1, 1, 1)};
         const Camera camera = look({0, 3, 3}, {0, 0, 0}, 40);
         std::vector<SeenPoint> seen;
-        for (int i = 0; i < 400; ++i) seen.push_back({Vec3d(i % 20 * 1.8 / 19 - 0.9, 0, i / 20 * 1.8 / 19 - 0.9), 0.01});
-        CHECK(sun_views(sun, casters, camera, seen, kSide, 4).size() == sun_views(sun, casters, camera, {}, kSide, 4).size());
+        for (int i = 0; i < 400; ++i)
+            seen.push_back({Vec3d(i % 20 * 1.8 / 19 - 0.9, 0, i / 20 * 1.8 / 19 - 0.9), 0.01});
+        CHECK(sun_views(sun, casters, camera, seen, kSide, 4).size() ==
+              sun_views(sun, casters, camera, {}, kSide, 4).size());
     }
 }

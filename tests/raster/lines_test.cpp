@@ -1,4 +1,5 @@
-// Lines by integers against lines by exact fractions, and clipping against cutting the line into small pieces.
+// These tests compare integer line rasterization with exact fractions, and clipping with cutting the line into small
+// pieces.
 #include "raster/overlay/lines.h"
 #include "tests/raster/varied_scene.h"
 
@@ -15,7 +16,8 @@ namespace {
 constexpr int kSide = 40;
 using Marks = Image<std::uint8_t>;
 
-/// The definition in words, one column after the other, in 64-bit fractions that are compared and never divided.
+/// Rasterizes the line by its definition, one column at a time, in 64-bit fractions that are compared but never
+/// divided.
 Marks by_definition(FixedPoint a, FixedPoint b, SampleOffset offset) {
     Marks marks(kSide, kSide, 0);
     std::int64_t u0 = a.x - offset.x, v0 = a.y - offset.y, u1 = b.x - offset.x, v1 = b.y - offset.y;
@@ -26,8 +28,10 @@ Marks by_definition(FixedPoint a, FixedPoint b, SampleOffset offset) {
         const std::int64_t u = column * kSubPixels;
         if (u < u0 || u >= u1) continue;
         for (std::int64_t row = 0; row < kSide; ++row) {
-            // |v(u) − 256 row| <= 128, the upper bound included only; v(u) = v0 + (u − u0)(v1 − v0)/(u1 − u0).
-            const std::int64_t apart = (v0 - row * kSubPixels) * (u1 - u0) + (u - u0) * (v1 - v0); // times u1 − u0
+            // The condition is |v(u) − 256 row| <= 128, where only the upper bound is included, with v(u) = v0 + (u −
+            // u0)(v1 − v0)/(u1 − u0).
+            // The value is multiplied by u1 − u0.
+            const std::int64_t apart = (v0 - row * kSubPixels) * (u1 - u0) + (u - u0) * (v1 - v0);
             const std::int64_t half = kSubPixels / 2 * (u1 - u0);
             if (apart <= half && apart > -half)
                 marks(static_cast<int>(steep ? row : column), static_cast<int>(steep ? column : row)) = 1;
@@ -50,7 +54,7 @@ TEST_SUITE("unit") {
             const SampleOffset offset = trial % 3 == 0 ? SampleOffset{} : SampleOffset{number(0, 256), number(0, 256)};
             FixedPoint a{middle.x + number(-reach, reach), middle.y + number(-reach, reach)},
                 b{2 * middle.x - a.x + number(-9, 9), 2 * middle.y - a.y + number(-9, 9)};
-            if (trial % 5 == 0) { // ends on samples, slopes of simple fractions: ties
+            if (trial % 5 == 0) { // ends on samples and simple fractions as slopes, which cause ties
                 a = {number(-4, 44) * kSubPixels + offset.x, number(-4, 44) * kSubPixels + offset.y};
                 b = {a.x + number(-6, 6) * 2 * kSubPixels, a.y + number(-6, 6) * kSubPixels};
             }
@@ -87,7 +91,9 @@ TEST_SUITE("unit") {
     TEST_CASE("lines are cut at the near plane and about the picture: what is drawn lies on them, and nothing is lost") {
         const raster::Viewport viewport{kSide, kSide, 0.5, false};
         std::mt19937 engine(9);
-        const auto real = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+        const auto real = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(engine);
+        };
         int visible = 0, before = 0;
         for (int trial = 0; trial < 3000; ++trial) {
             const auto vertex = [&] {
@@ -97,7 +103,7 @@ TEST_SUITE("unit") {
             const raster::PixelVertex a = vertex(), b = vertex();
             FixedPoint from, to;
             const bool any = raster::clip_line(a, b, viewport, from, to);
-            bool wanted = false; // a point of the line well within the picture and beyond the near plane
+            bool wanted = false; // true if a point of the line is well inside the image and beyond the near plane
             double worst = 0;
             for (int k = 0; k <= 4000; ++k) {
                 const double t = k / 4000.0, w = a.w + (b.w - a.w) * t;
@@ -106,8 +112,9 @@ TEST_SUITE("unit") {
                 if (x < 0 || y < 0 || x > kSide || y > kSide) continue;
                 wanted = true;
                 if (!any) continue;
-                // Its distance to the clipped piece.
-                const Vec2d p(from.x / 256.0, from.y / 256.0), d(to.x / 256.0 - p.x, to.y / 256.0 - p.y), q(x - p.x, y - p.y);
+                // The distance from the point to the clipped line is computed next.
+                const Vec2d p(from.x / 256.0, from.y / 256.0), d(to.x / 256.0 - p.x, to.y / 256.0 - p.y),
+                    q(x - p.x, y - p.y);
                 const double along = std::clamp(dot(q, d) / std::max(dot(d, d), 1e-12), 0.0, 1.0);
                 worst = std::max(worst, std::hypot(q.x - d.x * along, q.y - d.y * along));
             }
@@ -138,7 +145,7 @@ TEST_SUITE("unit") {
         const Rendering picture = render(scene, view, settings);
         double sum = 0;
         for (const Rgb c : picture.radiance) sum += static_cast<double>(c.r);
-        // 51.2 pixels a side: 51 or 52 columns have their sample within.
+        // Each side is 51.2 pixels long, so 51 or 52 columns have a sample within it.
         CHECK(sum >= 4 * 51 - 4);
         CHECK(sum <= 4 * 52);
         CHECK(picture.radiance(32, 32).r == 0);

@@ -1,4 +1,4 @@
-// Shading of hand-made scenes against closed forms.
+// These tests compare the shading of simple scenes with closed forms.
 #include "tests/raster/scenes.h"
 
 #include "common/light/lambert.h"
@@ -18,7 +18,7 @@ Scene floor_scene(Material material) {
     return scene;
 }
 
-/// The floor's point in the centre of a pixel.
+/// Returns the floor's point at the center of a pixel.
 Vec3 floor_point(const View& view, int x, int y) {
     const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
     return Vec3(ray.at(-ray.origin.y / ray.direction.y));
@@ -28,12 +28,12 @@ void check_rgb(Rgb found, Rgb expected, double epsilon = 2e-5) {
     for (std::size_t c = 0; c < 3; ++c) CHECK(found[c] == doctest::Approx(expected[c]).epsilon(epsilon));
 }
 
-/// Irradiance on the floor from a rectangle at height h parallel to it, facing down: the sum of four corner
-/// configurations (Howell, «A Catalog of Radiation Heat Transfer Configuration Factors», B-3), by signed areas.
+/// Returns the irradiance on the floor from a parallel rectangle at height h that faces down: the signed sum of four
+/// corner configurations (factor B-3 of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors").
 double rectangle_above(double x0, double x1, double z0, double z1, double h) {
     const auto corner = [&](double a, double b) {
         const double x = a / h, y = b / h, sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
-        return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / 2; // × π already
+        return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / 2; // includes the factor π
     };
     return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
 }
@@ -51,7 +51,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a diffuse floor under a square lamp: the configuration factor of the rectangle") {
         const Rgb albedo(0.8f, 0.5f, 0.2f), light(3, 5, 7);
         Scene scene = floor_scene(Diffuse{{albedo}});
-        // Above the eye, shining down (its normal u × v is −y).
+        // The light is above the eye and emits downward (its normal u × v is −y).
         add(scene, QuadList{{{Vec3(-0.5f, 4, -1), Vec3(1.5f, 0, 0), Vec3(0, 0, 2)}}}, Mat4(), Emissive{light});
         finish_scene(scene);
         const Rendering rendering = render(scene, kFromAbove, {});
@@ -68,7 +68,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a lamp shines on one side, shows its radiance there, and does not light itself") {
         Scene scene = floor_scene(Diffuse{{Rgb(0.5f)}});
-        // Its front is up: the floor below gets nothing.
+        // The light's front faces up, so it does not illuminate the floor below.
         add(scene, QuadList{{{Vec3(-0.3f, 1, 0.3f), Vec3(0.6f, 0, 0), Vec3(0, 0, -0.6f)}}}, Mat4(),
             Emissive{.radiance = Rgb(2, 3, 4), .albedo = {Rgb(0.9f)}});
         finish_scene(scene);
@@ -134,7 +134,8 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Dielectric{});
         scene.environment = ConstantEnvironment{Rgb(0.7f)};
         finish_scene(scene);
-        for (const Vec3d eye : {Vec3d(0, 0, 4), Vec3d(0, 0, 0.9)}) { // from outside, from inside with total reflection
+        // The eye is outside, or inside with total internal reflection.
+        for (const Vec3d eye : {Vec3d(0, 0, 4), Vec3d(0, 0, 0.9)}) {
             const Rendering rendering = render(scene, {look(eye, {0, 0.3, 0}, 70), 32, 32}, {});
             for (const Rgb c : rendering.radiance) check_rgb(c, Rgb(0.7f), 1e-5);
             CHECK(names(rendering, "Glass"));
@@ -149,8 +150,9 @@ TEST_SUITE("unit") {
         frosted.roughness = 0.5f;
         Principled lacquer{{Rgb(1.0f)}, 1, 0.3f};
         lacquer.clearcoat = 1;
-        for (const Material& white : {Material(clay), Material(Metal{{Rgb(1.0f)}, 0.8f}), Material(Coated{{Rgb(1.0f)}, 0.4f}),
-                                      Material(pane), Material(frosted), Material(lacquer)}) {
+        for (const Material& white :
+             {Material(clay), Material(Metal{{Rgb(1.0f)}, 0.8f}), Material(Coated{{Rgb(1.0f)}, 0.4f}), Material(pane),
+              Material(frosted), Material(lacquer)}) {
             CAPTURE(white.index());
             Scene scene;
             add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), white);
@@ -174,8 +176,9 @@ TEST_SUITE("unit") {
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
                 Vec3 w(pinhole.ray({x + 0.5, y + 0.5}).direction);
-                w.y = std::abs(w.y); // the floor mirrors what looks down; it ends before the horizon, but at most
-                                     // pixels it is there
+                // The floor reflects downward directions. It ends before the horizon, but at most pixels it is
+                // present.
+                w.y = std::abs(w.y);
                 if (rendering.radiance(x, y) ==
                     radiance(scene.environment, Vec3(pinhole.ray({x + 0.5, y + 0.5}).direction)))
                     continue;
@@ -200,32 +203,32 @@ TEST_SUITE("unit") {
         const MetalBsdf bsdf{Rgb(0.9f, 0.7f, 0.4f), 0.25f};
         const Ray ray = CameraModel(kFromAbove).ray({16.5, 12.5});
         const Vec3 wo(-ray.direction.x, ray.direction.z,
-                      -ray.direction.y); // y is up; rotation about the normal is free
+                      -ray.direction.y); // y is up; any rotation about the normal is valid
         const Rgb expected = bsdf.eval(wo, Vec3(0, 0, 1), TransportMode::kRadiance) * (1000 * kPi * 1e-4f);
         check_rgb(sun.radiance(16, 12), expected, 1e-4);
         check_rgb(lamp.radiance(16, 12), expected, 0.02);
         CHECK(names(lamp, "Rough metal and frosted glass see each light surface"));
         CHECK_FALSE(names(sun, "Rough metal and frosted glass see each light surface"));
-        const Rendering cosines = render(with_lamp, kFromAbove, {}); // look like its lobe, but are not
+        const Rendering cosines = render(with_lamp, kFromAbove, {}); // close to the lobe, but not exact
         check_rgb(cosines.radiance(16, 12), expected, 0.15);
         CHECK(names(cosines, "linearly transformed cosines"));
     }
 
     TEST_CASE("light from behind the geometric surface does not arrive, whatever the shading normal") {
         Scene scene;
-        Mesh tilted; // a floor whose shading normals lean far over
+        Mesh tilted; // a floor whose shading normals are strongly tilted
         tilted.positions = {Vec3(-5, 0, 5), Vec3(5, 0, 5), Vec3(5, 0, -5), Vec3(-5, 0, -5)};
         tilted.triangles = {{0, 1, 2}, {0, 2, 3}};
         tilted.normals.assign(4, normalize(Vec3(1, 0.6f, 0)));
         add(scene, tilted, Mat4(), Diffuse{{Rgb(1.0f)}});
-        // Below the floor, facing the shading normal's half-space; the other light crosses the floor's plane.
+        // One light is below the floor, on the side of the shading normal. The other light crosses the floor's plane.
         add(scene, QuadList{{{Vec3(8, -2, -1), Vec3(0, 0, 2), Vec3(0, 1.5f, 0)}}}, Mat4(),
             Emissive{.radiance = Rgb(0, 9, 0), .two_sided = true});
         add(scene, QuadList{{{Vec3(8, -2, -1), Vec3(0, 0, 2), Vec3(0, 4, 0)}}}, Mat4(),
             Emissive{.radiance = Rgb(9, 0, 0), .two_sided = true});
         finish_scene(scene);
         const View view = kFromAbove;
-        raster::Settings open; // the lamps stand in each other's way
+        raster::Settings open; // the lights occlude each other
         open.shadows = false;
         const Rendering rendering = render(scene, view, open);
         const Vec3 p = floor_point(view, 16, 12);
@@ -250,7 +253,7 @@ TEST_SUITE("unit") {
             for (int x = 0; x < 8; ++x) {
                 check_rgb(normal.radiance(x, y), Rgb(0.5f, 1, 0.5f));
                 check_rgb(albedo.radiance(x, y), Rgb(0.1f, 0.2f, 0.3f));
-                check_rgb(depth.radiance(x, y), Rgb(0.5f)); // it is what the camera looks at
+                check_rgb(depth.radiance(x, y), Rgb(0.5f)); // the camera's target depth
                 CHECK(normal.normal(x, y) == Vec3(0, 1, 0));
                 check_rgb(normal.albedo(x, y), Rgb(0.1f, 0.2f, 0.3f));
                 CHECK(normal.depth(x, y) == doctest::Approx(3));

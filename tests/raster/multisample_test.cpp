@@ -1,4 +1,4 @@
-// Multisampling against supersampling by the same pattern, and against many samples.
+// These tests compare multisampling with supersampling at the same sampling pattern, and with many samples.
 #include "raster/visibility/multisample.h"
 #include "tests/raster/varied_scene.h"
 
@@ -13,7 +13,7 @@ using namespace duet::test;
 
 namespace {
 
-/// Without effects that draw samples of their own: their noise says nothing about silhouettes.
+/// Returns settings without effects that draw their own samples, because their noise does not come from silhouettes.
 raster::Settings plain(raster::Shading shading) {
     raster::Settings settings;
     settings.shading = shading;
@@ -71,7 +71,7 @@ TEST_SUITE("unit") {
                     CHECK(same_bits(once.radiance, each.radiance));
                 }
             }
-        // The same by way of materials and lights: surfaces that only glow, before a constant sky.
+        // The same comparison uses materials and lights: emissive surfaces in front of a constant sky.
         Scene scene = varied_scene(60);
         for (std::size_t i = 0; i < scene.materials.size(); ++i)
             scene.materials[i] = Emissive{.radiance = Rgb(0.3f + static_cast<float>(i), 1.7f, 0.9f), .two_sided = true};
@@ -94,13 +94,14 @@ TEST_SUITE("unit") {
                              each = rmse(render(scene, view, multisampled(count, shading, true)).radiance, truth);
                 CAPTURE(count);
                 CHECK(once < alone / 2);
-                CHECK(once < each * 1.15); // what it shades at one place of a pixel varies within it
+                CHECK(once < each * 1.15); // the value shaded at one position of a pixel varies within it
             }
         }
     }
 
     TEST_CASE("no sample is shaded outside of what it sees") {
-        // A strip that leans away so far that its colours run off beyond its edge: interpolation beyond it would show.
+        // The quad strip is viewed at such a grazing angle that its colors go out of range beyond its edge.
+        // Extrapolation would be visible.
         Scene scene;
         Mesh mesh;
         mesh.positions = {Vec3(-1, 0, -60), Vec3(1, 0, -60), Vec3(1, -0.5f, 3), Vec3(-1, -0.5f, 3)};
@@ -110,7 +111,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 0.02, 4}, {0, 0, 0}, 30), 160, 120};
         const Rendering picture = render(scene, view, multisampled(16, raster::Shading::kDepth));
-        const double nearest = 4.0 / (4 + 1); // what the camera looks at is 4 m away, the strip 1 m at least
+        const double nearest = 4.0 / (4 + 1); // the camera's target is 4 m away, the strip at least 1 m
         for (const Rgb c : picture.radiance) {
             REQUIRE(static_cast<double>(c.r) <= nearest * 1.001);
             REQUIRE(c.r >= 0);
@@ -122,7 +123,8 @@ TEST_SUITE("unit") {
         const Scene scene = varied_scene(90);
         const View view = perspective();
         raster::Settings settings = multisampled(8, raster::Shading::kPhong);
-        settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
+        settings.aovs = {
+            .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
         settings.threads = 1;
         const Rendering one = render(scene, view, settings);
         settings.threads = 7;

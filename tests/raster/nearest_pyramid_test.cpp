@@ -1,4 +1,4 @@
-// What is nearest in a part of a map, against a look at all of it.
+// These tests compare the nearest depth in a region of a map with an exhaustive search.
 #include "common/sampling/hash.h"
 #include "raster/visibility/nearest_pyramid.h"
 

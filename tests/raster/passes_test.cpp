@@ -1,4 +1,4 @@
-// Threads, samples, lens and motion.
+// These tests check threads, samples, depth of field and motion blur.
 #include "common/image/same_bits.h"
 #include "tests/raster/scenes.h"
 
@@ -23,14 +23,14 @@ Scene varied() {
     return scene;
 }
 
-/// The mean of a row's red channel between two columns.
+/// Returns the mean of a row's red channel between two columns.
 double mean(const ImageRgb& image, int row, int first, int last) {
     double sum = 0;
     for (int x = first; x < last; ++x) sum += static_cast<double>(image(x, row).r);
     return sum / (last - first);
 }
 
-/// A white sphere on black: coverage as a picture.
+/// Returns settings that show white objects on black, so the image is the coverage.
 raster::Settings silhouettes(int samples) {
     raster::Settings settings;
     settings.shading = raster::Shading::kAlbedo;
@@ -87,7 +87,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         View view{look({0, 0, 5}, {0, 0, 0}), 32, 32};
         view.camera.projection = Camera::Projection::kOrthographic;
-        view.camera.height = 4; // 8 pixels a metre
+        view.camera.height = 4; // 8 pixels per meter
         const Rendering rendering = render(scene, view, silhouettes(256));
         double area = 0;
         for (const Rgb c : rendering.radiance) area += static_cast<double>(c.r);
@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a pixel's mean does not move with the grid of samples: an edge at any place") {
         for (int i = 0; i < 8; ++i) {
             Scene scene;
-            const float edge = 0.1f + 0.1f * static_cast<float>(i); // in pixels: 1 metre each
+            const float edge = 0.1f + 0.1f * static_cast<float>(i); // in pixels of 1 meter each
             add(scene, QuadList{{{Vec3(-8, -8, 0), Vec3(8 + edge, 0, 0), Vec3(0, 16, 0)}}}, Mat4(),
                 Diffuse{{Rgb(1.0f)}});
             finish_scene(scene);
@@ -120,18 +120,18 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{{Vec3(-8, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
         mover.moving = true;
         mover.identity = false;
-        mover.to_world_end = Mat4(translation(Vec3(2, 0, 0))); // its right edge goes from x = 0 to x = 2
+        mover.to_world_end = Mat4(translation(Vec3(2, 0, 0))); // its right edge moves from x = 0 to x = 2
         finish_scene(scene);
         View view{look({0, 0, 5}, {0, 0, 0}), 64, 8};
         view.camera.projection = Camera::Projection::kOrthographic;
-        view.camera.height = 1; // 8 pixels a metre: from column 32 to column 48
+        view.camera.height = 1; // 8 pixels per meter: from column 32 to column 48
         const Rendering blurred = render(scene, view, silhouettes(256));
         for (int x = 0; x < 64; ++x) {
             const double expected = std::clamp((48 - (x + 0.5)) / 16, 0.0, 1.0);
             CHECK(static_cast<double>(blurred.radiance(x, 4).r) == doctest::Approx(expected).epsilon(0.02));
         }
         CHECK(blurred.statistics.passes == 256);
-        const Rendering still = render(scene, view, silhouettes(1)); // as the shutter opens
+        const Rendering still = render(scene, view, silhouettes(1)); // when the shutter opens
         CHECK(still.radiance(31, 4).r == 1.0f);
         CHECK(still.radiance(32, 4).r == 0.0f);
         view.camera.shutter_open = view.camera.shutter_close = 0.5;
@@ -143,8 +143,8 @@ TEST_SUITE("unit") {
         view.camera.aperture_radius = 0.2;
         view.camera.focus_distance = 10;
         view.camera.fov_degrees =
-            degrees(2 * std::atan(0.25));     // the plane in focus is 5 metres high: 13 pixels a metre
-        const auto width = [&](float depth) { // columns of the middle row that see anything of a tiny sphere
+            degrees(2 * std::atan(0.25));     // the plane in focus is 5 meters high: 13 pixels per meter
+        const auto width = [&](float depth) { // the number of columns of the middle row that a tiny sphere covers
             Scene scene;
             add(scene, Sphere{Vec3(0, 0, 10 - depth), 0.004f * depth}, Mat4(), Diffuse{{Rgb(1.0f)}});
             finish_scene(scene);
@@ -154,12 +154,12 @@ TEST_SUITE("unit") {
             return columns;
         };
         CHECK(width(10) <= 3);
-        // At half the distance, the circle of confusion in the plane of focus is the aperture's width, 0.4 m: 5.2
-        // pixels, and the sphere's own 1.
+        // At half the focus distance, the circle of confusion in the plane of focus is as wide as the aperture, 0.4
+        // m. That is 5.2 pixels, plus 1 pixel for the sphere itself.
         const int near = width(5);
         CHECK(near >= 5);
         CHECK(near <= 8);
-        // At a quarter it is three times as wide: 15.6 pixels.
+        // At a quarter of the focus distance it is three times as wide: 15.6 pixels.
         const int nearer = width(2.5f);
         CHECK(nearer >= 15);
         CHECK(nearer <= 19);
@@ -192,7 +192,7 @@ TEST_SUITE("unit") {
         CHECK(part.statistics.passes == 2);
         CHECK(part.statistics.samples_per_pixel == 2);
         const int black = static_cast<int>(std::count(part.radiance.begin(), part.radiance.end(), Rgb()));
-        CHECK(black == 0); // each pixel has the mean of what it got
+        CHECK(black == 0); // each pixel has the mean of its finished samples
 
         stop = true;
         const Rendering none = raster::render(prepared, view, settings, control);

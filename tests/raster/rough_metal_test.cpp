@@ -1,4 +1,4 @@
-// Rough metal under environments and light surfaces, against the integrals they stand for.
+// These tests compare rough metal under environments and area lights with the exact integrals.
 #include "tests/raster/scenes.h"
 
 #include "common/light/lambert.h"
@@ -24,13 +24,14 @@ Vec2 number(int i) {
             unit_float(low_bits(mix_bits(static_cast<std::uint64_t>(i) + 1)))};
 }
 
-/// What the BSDF reflects of light from everywhere, by its own samples.
+/// Returns the reflectance for uniform incident light, estimated with the BSDF's own samples.
 double reflected(const MetalBsdf& bsdf, Vec3 wo) {
     constexpr int kSamples = 20000;
     double sum = 0;
     for (int i = 0; i < kSamples; ++i) {
         const float lobe = unit_float(high_bits(mix_bits(static_cast<std::uint64_t>(i) + 77777)));
-        if (const auto s = bsdf.sample(wo, lobe, number(i), TransportMode::kRadiance)) sum += static_cast<double>(s->weight.g);
+        if (const auto s = bsdf.sample(wo, lobe, number(i), TransportMode::kRadiance))
+            sum += static_cast<double>(s->weight.g);
     }
     return sum / kSamples;
 }
@@ -79,7 +80,7 @@ TEST_SUITE("unit") {
                 const float alpha = roughness * roughness;
                 CHECK(raster::lobe_distance(alpha, cosine, raster::ggx_lobe(alpha, cosine)) < 0.45);
             }
-        CHECK(raster::lobe_distance(0.01f, 0.7f, {}) > 1.5); // a cosine looks nothing like a narrow lobe
+        CHECK(raster::lobe_distance(0.01f, 0.7f, {}) > 1.5); // a cosine lobe does not approximate a narrow lobe
     }
 
     TEST_CASE("a light surface on rough metal: the integral of the BSDF over the light, to a tenth of its largest") {
@@ -100,7 +101,8 @@ TEST_SUITE("unit") {
                     for (const int kind : {0, 1, 2}) {
                         const Vec3 corner(x - 0.5f, 1.5f, -0.5f);
                         if (kind == 0) lamp.shape = Quad{corner, {1, 0, 0}, {0, 0.3f, 1}};
-                        if (kind == 1) lamp.shape = SurfaceLight::Triangle{corner, corner + Vec3(1, 0, 0), corner + Vec3(0, 0, 1)};
+                        if (kind == 1)
+                            lamp.shape = SurfaceLight::Triangle{corner, corner + Vec3(1, 0, 0), corner + Vec3(0, 0, 1)};
                         if (kind == 2) lamp.shape = Sphere{corner, 0.4f};
                         double exact = 0;
                         constexpr int kSamples = 20000;
@@ -123,7 +125,8 @@ TEST_SUITE("unit") {
             }
     }
 
-    // Seen head on the lobe is the same all round, so a ball whose edge lies in its middle gives the same wherever that is.
+    // At normal incidence the lobe is rotationally symmetric. A sphere whose edge passes through the lobe's center
+    // must give the same reflection for every azimuth.
     TEST_CASE("a round lamp is round: the same from all sides, and half of it where its edge is mirrored") {
         SurfacePoint surface;
         surface.ng = surface.ns = {0, 0, 1};
@@ -133,13 +136,14 @@ TEST_SUITE("unit") {
         SurfaceLight lamp;
         lamp.radiance = Rgb(1.0f);
         const auto found = [&](double tilt, double turn) {
-            lamp.shape = Sphere{Vec3(Vec3d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)) * 2.0), 1};
+            lamp.shape = Sphere{
+                Vec3(Vec3d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)) * 2.0), 1};
             return static_cast<double>(raster::area_reflection(lamp, bsdf, point).g);
         };
         const double edge = kPiDouble / 6, whole = found(0, 0);
         for (int i = 0; i < 32; ++i) {
             CHECK(found(edge, i * 0.2) == doctest::Approx(found(edge, 0)).epsilon(1e-3));
-            CHECK(found(edge, i * 0.2) == doctest::Approx(whole / 2).epsilon(0.05)); // the edge is bent a little
+            CHECK(found(edge, i * 0.2) == doctest::Approx(whole / 2).epsilon(0.05)); // the edge is slightly curved
         }
         CHECK(found(edge + 0.15, 1) < 0.01 * whole);
     }
@@ -152,9 +156,9 @@ TEST_SUITE("unit") {
         const MetalBsdf bsdf{Rgb(0.7f), 0.04f};
         SurfaceLight lamp;
         lamp.radiance = Rgb(2.0f);
-        lamp.shape = Quad{Vec3(-1e4f, 1, -1e4f), Vec3(2e4f, 0, 0), Vec3(0, 0, 2e4f)}; // shines down
+        lamp.shape = Quad{Vec3(-1e4f, 1, -1e4f), Vec3(2e4f, 0, 0), Vec3(0, 0, 2e4f)}; // emits downward
         const float all = 2 * bsdf.albedo(point.wo.z).g;
-        // Some of the transformed cosine dips below the horizon.
+        // The transformed cosine extends partly below the horizon.
         CHECK(raster::area_reflection(lamp, bsdf, point).g == doctest::Approx(all).epsilon(0.02));
         lamp.shape = Quad{Vec3(-1e4f, 1, -1e4f), Vec3(0, 0, 2e4f), Vec3(2e4f, 0, 0)};
         CHECK(is_black(raster::area_reflection(lamp, bsdf, point)));
@@ -169,7 +173,8 @@ TEST_SUITE("unit") {
         const Environment described = sky, picture = picture_of(sky);
         const Prefiltered flat(constant, 1), exact(described, 1), maps(picture, 1), again(picture, 3);
         for (const float roughness : {0.05f, 0.2f, 0.5f, 0.77f, 1.0f})
-            for (const Vec3 w : {Vec3(0, 1, 0), Vec3(0, -1, 0), normalize(Vec3(1, 0.3f, -0.5f)), normalize(Vec3(-0.1f, -0.6f, 1))}) {
+            for (const Vec3 w :
+                 {Vec3(0, 1, 0), Vec3(0, -1, 0), normalize(Vec3(1, 0.3f, -0.5f)), normalize(Vec3(-0.1f, -0.6f, 1))}) {
                 const float alpha = roughness * roughness;
                 CHECK(flat.at(constant, w, alpha) == Rgb(0.7f, 0.5f, 0.2f));
                 const Rgb a = exact.at(described, w, alpha), b = maps.at(picture, w, alpha);
@@ -212,9 +217,10 @@ TEST_SUITE("unit") {
             finish_scene(scene);
             CHECK(scene.needs.glossy == (roughness > 0 && !thin));
             const ImageRgb found = render(scene, {look({0, 0, 5}, {0, 0, 0}, 20), 48, 48}, {}).radiance;
-            float least = 1, most = 0; // within the ball
+            float least = 1, most = 0; // over the sphere
             for (int y = 12; y < 36; ++y)
-                for (int x = 12; x < 36; ++x) least = std::min(least, found(x, y).g), most = std::max(most, found(x, y).g);
+                for (int x = 12; x < 36; ++x)
+                    least = std::min(least, found(x, y).g), most = std::max(most, found(x, y).g);
             return most - least;
         };
         const float clear = contrast(0, false), frosted = contrast(0.5f, false), rougher = contrast(0.8f, false);
@@ -224,11 +230,13 @@ TEST_SUITE("unit") {
         CHECK(contrast(0.8f, true) == contrast(0, true));
     }
 
-    // A mirror floor before a wall that shines: below the wall's foot the floor shows it, upside down.
+    // The scene is a mirror floor in front of an emissive wall. Below the wall's base the floor shows the wall upside
+    // down.
     TEST_CASE("screen reflections: a mirror shows the wall that the picture shows, elsewhere the sky") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-5, 0, 5), Vec3(10, 0, 0), Vec3(0, 0, -10)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
-        add(scene, QuadList{{{Vec3(-5, 0, -1), Vec3(10, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Emissive{Rgb(0.0f, 2.0f, 0.0f)});
+        add(scene, QuadList{{{Vec3(-5, 0, -1), Vec3(10, 0, 0), Vec3(0, 1, 0)}}}, Mat4(),
+            Emissive{Rgb(0.0f, 2.0f, 0.0f)});
         scene.environment = ConstantEnvironment{Rgb(0.25f)};
         finish_scene(scene);
         const View view{look({0, 1.5, 4}, {0, 0.5, 0}, 40), 96, 96};
@@ -245,11 +253,13 @@ TEST_SUITE("unit") {
                 const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
                 const Vec3d p = ray.at(-ray.origin.y / ray.direction.y);
                 if (p.z < -0.97) continue; // in the corner
-                const double height = -ray.direction.y * (-1 - p.z) / ray.direction.z; // of the mirrored ray at the wall
-                if (std::abs(height - 1) < 0.1) continue; // its edge, which pixels blur
+                // This is the height at which the reflected ray hits the wall.
+                const double height = -ray.direction.y * (-1 - p.z) / ray.direction.z;
+                if (std::abs(height - 1) < 0.1) continue; // its edge, blurred over pixels
                 const Rgb expected = height < 1 ? Rgb(0.0f, 2.0f, 0.0f) : Rgb(0.25f);
                 (height < 1 ? wall : sky) += 1;
-                wrong += max_component(found.radiance(x, y) - expected) > 1e-4f || found.radiance(x, y).g < expected.g - 1e-4f;
+                wrong += max_component(found.radiance(x, y) - expected) > 1e-4f ||
+                         found.radiance(x, y).g < expected.g - 1e-4f;
                 CHECK(without.radiance(x, y).g == doctest::Approx(0.25));
             }
         CHECK(wall > 500);

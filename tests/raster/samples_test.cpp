@@ -43,14 +43,15 @@ TEST_SUITE("unit") {
             }
             std::sort(xs.begin(), xs.end());
             std::sort(ys.begin(), ys.end());
-            for (int i = 0; i < 16; ++i) { // each sixteenth holds one; rounding may put it on the border
+            // Each sixteenth of the range contains one sample; rounding may move it onto the boundary.
+            for (int i = 0; i < 16; ++i) {
                 const auto k = static_cast<std::size_t>(i);
                 CHECK(xs[k] >= 16 * i);
                 CHECK(xs[k] <= 16 * i + 16);
                 CHECK(ys[k] >= 16 * i);
                 CHECK(ys[k] <= 16 * i + 16);
             }
-            // Each of the 4 × 4 cells holds one: at most four samples lie strictly within a column and row of cells.
+            // Each of the 4 × 4 cells contains one sample, so at most one sample is strictly inside a cell.
             for (int row = 0; row < 4; ++row)
                 for (int column = 0; column < 4; ++column) {
                     const auto inside = [&](SampleOffset s) {

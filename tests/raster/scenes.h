@@ -1,5 +1,5 @@
-// Scenes made by hand for the rasterizer's tests, and an oracle in double precision: a ray tested against every
-// primitive.
+// This header provides simple scenes for the rasterizer's tests and an oracle in double precision, which tests a ray
+// against every primitive.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -18,7 +18,7 @@ inline Vec3 on_torus(double u, double v, double big, double small) {
     return Vec3(Vec3d(ring * std::cos(u), small * std::sin(v), -ring * std::sin(u)));
 }
 
-/// A closed torus about the y axis, its triangles counter-clockwise seen from outside.
+/// Returns a closed torus around the y axis. Its triangles are counterclockwise as viewed from outside.
 inline Mesh torus(int around, int across, double big = 1, double small = 0.4) {
     Mesh mesh;
     for (int i = 0; i < around; ++i)
@@ -38,7 +38,7 @@ inline Mesh turned_inside_out(Mesh mesh) {
     return mesh;
 }
 
-/// Adds an object with a material of its own, if it gives one; else grey diffuse.
+/// Adds an object with the given material, or gray diffuse by default.
 inline Object& add(Scene& scene, Shape shape, const Mat4& to_world = Mat4(), Material material = Diffuse{}) {
     scene.shapes.push_back(std::move(shape));
     scene.materials.push_back(std::move(material));
@@ -53,7 +53,7 @@ inline Object& add(Scene& scene, Shape shape, const Mat4& to_world = Mat4(), Mat
     return scene.objects.back();
 }
 
-/// A second placement of a shape that is there already: keeps the first from being baked, too.
+/// Adds a second instance of an existing shape, which also prevents the first from being baked.
 inline void add_instance(Scene& scene, std::size_t of, const Mat4& to_world) {
     Object object = scene.objects[of];
     object.identity = to_world == Mat4();
@@ -75,7 +75,7 @@ inline Rendering render(const Scene& scene, const View& view, const raster::Sett
     return raster::render(raster::prepare(scene, settings), view, settings, control);
 }
 
-/// The environment unoccluded.
+/// Returns settings without occlusion of the environment.
 inline raster::Settings plain() {
     raster::Settings settings;
     settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
@@ -89,15 +89,15 @@ inline raster::Settings hits_only() {
     return settings;
 }
 
-// The oracle ---------------------------------------------------------------------------------------------------------
+// The oracle follows.
 
 struct ExactHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double u = 0, v = 0, t = std::numeric_limits<double>::infinity();
-    double cosine = 1; ///< between ray and normal
+    double cosine = 1; ///< between the ray and the normal
 };
 
-/// Nearest primitive along a ray, by solving for it: no acceleration, no float.
+/// Finds the nearest primitive along a ray by brute force in double precision.
 class Oracle {
 public:
     explicit Oracle(const Scene& scene, float time = 0) : scene_(scene) {
@@ -111,7 +111,8 @@ public:
         return nearest;
     }
 
-    /// The point of a triangle or quad at (u, v); far away for a sphere, where they say nothing.
+    /// Returns the point of a triangle or quad at (u, v). For a sphere, where u and v are undefined, the point is far
+    /// away.
     Vec3d position(std::uint32_t object, std::uint32_t primitive, float u, float v) const {
         for (const Facet& f : facets_)
             if (f.object == object && f.primitive == primitive)
@@ -185,14 +186,14 @@ private:
     std::vector<Ball> balls_;
 };
 
-/// How a picture's hits compare with the oracle's.
+/// Holds the result of comparing an image's hits with the oracle's.
 struct Agreement {
     int same = 0, edge = 0, tie = 0, unexplained = 0, wrong_distance = 0;
-    std::string first; ///< of what is unexplained or wrong
+    std::string first; ///< the first unexplained or wrong pixel
 };
 
-/// Every pixel's hit against exact rays. Another primitive is explained where a ray displaced by at most 1/128 pixel
-/// sees it (an edge), or where it is as far within 1e-5 (a tie).
+/// Compares each pixel's hit with exact rays. A different primitive counts as an edge if a ray displaced by at most
+/// 1/128 pixel hits it, and as a tie if its distance is equal within 1e-5.
 inline Agreement compare_hits(const Scene& scene, const View& view, const Image<Hit>& hits, double time = 0) {
     const CameraModel camera(view);
     const Pinhole pinhole = camera.through();
@@ -212,7 +213,8 @@ inline Agreement compare_hits(const Scene& scene, const View& view, const Image<
             };
             const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
             const ExactHit exact = oracle.trace(ray);
-            // 1e-5 of the distance, and what a ray of floats loses of its origin, which tells close before the eye.
+            // The tolerance is 1e-5 of the distance plus the rounding of a float ray's origin, which matters close to
+            // the eye.
             const double tolerance = 1e-5 * exact.t + 0x1p-22 * length(ray.origin);
             if (matches(exact)) {
                 ++result.same;
@@ -222,7 +224,8 @@ inline Agreement compare_hits(const Scene& scene, const View& view, const Image<
                 }
                 continue;
             }
-            // First where the hit itself says it is, which finds the thinnest sliver; then all around.
+            // First try the position that the hit itself gives, which finds the thinnest sliver. Then try positions
+            // all around.
             bool edge = false;
             if (hit.valid()) {
                 const Vec3d p = pinhole.project(oracle.position(hit.object, hit.primitive, hit.u, hit.v));

@@ -1,4 +1,4 @@
-// What metal mirrors of the picture, against the mirrored ray itself.
+// These tests compare screen-space reflections on metal with exact reflected rays.
 #include "tests/raster/scenes.h"
 
 #include "raster/screen/screen_reflection.h"
@@ -17,7 +17,7 @@ namespace {
 
 const View kView{look({0, 1.5, 4}, {0, 0.6, 0}, 50), 160, 120};
 
-/// A metal floor before a wall that shines, red to the left and green to the right.
+/// Returns a metal floor in front of an emissive wall, red on the left and green on the right.
 Scene before_wall(float roughness, bool ring = false) {
     Scene scene;
     add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Metal{{Rgb(1.0f)}, roughness});
@@ -29,7 +29,7 @@ Scene before_wall(float roughness, bool ring = false) {
     return scene;
 }
 
-/// Where a floor pixel's mirrored ray meets the wall's plane; false for other pixels.
+/// Returns where a floor pixel's reflected ray hits the wall's plane, and false for other pixels.
 bool mirrored(int x, int y, Vec3d& hit) {
     const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
     const double t = -ray.origin.y / ray.direction.y;
@@ -40,9 +40,10 @@ bool mirrored(int x, int y, Vec3d& hit) {
     return std::abs(hit.x) < 3.9;
 }
 
-/// Of a ray that hits a ball: the mirrored one.
+/// Returns the reflected ray of a ray that hits a sphere.
 Rayd mirrored_ray(const Rayd& ray, const Hit& hit, Vec3d center) {
-    const Vec3d way = normalize(ray.direction), p = ray.at(static_cast<double>(hit.t) / length(ray.direction)), n = normalize(p - center);
+    const Vec3d way = normalize(ray.direction), p = ray.at(static_cast<double>(hit.t) / length(ray.direction)),
+                n = normalize(p - center);
     return {p, way - n * (2 * dot(way, n))};
 }
 
@@ -72,12 +73,13 @@ TEST_SUITE("unit") {
                     }
             }
         CHECK(std::min({red, green, sky}) > 300);
-        CHECK(wrong * 50 < red + green + sky); // rays that leave the picture are guessed
+        CHECK(wrong * 50 < red + green + sky); // rays that leave the image are extrapolated
     }
 
     TEST_CASE("a mirror ball shows a lamp of the picture with its own edge: no halo where no ray near a pixel's meets it") {
         const Sphere ball{Vec3(0, 0.5f, 0), 0.5f};
-        const Quad lamp{Vec3(-0.6f, 2, -0.6f), Vec3(1.2f, 0, 0), Vec3(0, 0, 0.6f)}; // faces down, a thin strip in the picture
+        // The light faces down and is a thin stripe in the image.
+        const Quad lamp{Vec3(-0.6f, 2, -0.6f), Vec3(1.2f, 0, 0), Vec3(0, 0, 0.6f)};
         Scene scene;
         add(scene, ball, Mat4(), Metal{{Rgb(1.0f)}, 0});
         add(scene, QuadList{{{Vec3(-4, 2.01f, -4), Vec3(8, 0, 0), Vec3(0, 0, 8)}}}, Mat4(), Diffuse{{Rgb()}});
@@ -91,12 +93,14 @@ TEST_SUITE("unit") {
             const Vec3d way = normalize(ray.direction), to = Vec3d(ball.center) - ray.origin;
             const double along = dot(way, to), half = sqr(double(ball.radius)) - dot(to, to) + sqr(along);
             if (!(half > 0)) return false;
-            const Vec3d p = ray.origin + way * (along - std::sqrt(half)), n = (p - Vec3d(ball.center)) / double(ball.radius);
-            const Vec3d mirrored = way - n * (2 * dot(way, n)), at = p + mirrored * ((lamp.corner.y - p.y) / mirrored.y);
+            const Vec3d p = ray.origin + way * (along - std::sqrt(half)),
+                        n = (p - Vec3d(ball.center)) / double(ball.radius);
+            const Vec3d mirrored = way - n * (2 * dot(way, n)),
+                        at = p + mirrored * ((lamp.corner.y - p.y) / mirrored.y);
             return mirrored.y > 0 && std::abs(at.x) < 0.6 && at.z > -0.6 && at.z < 0;
         };
         int within = 0;
-        for (int y = 80; y < view.height - 1; ++y) // below the lamp itself
+        for (int y = 80; y < view.height - 1; ++y) // below the light itself
             for (int x = 1; x < view.width - 1; ++x) {
                 int met = 0;
                 for (const int dy : {-1, 0, 1})
@@ -122,7 +126,8 @@ TEST_SUITE("unit") {
                 if (found.hit(x, y).object != 0) continue;
                 const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
                 const Vec3d p = ray.at(-ray.origin.y / ray.direction.y);
-                const Vec3d way(ray.direction.x, -ray.direction.y, ray.direction.z), at = p + way * ((-39.5 - p.z) / way.z);
+                const Vec3d way(ray.direction.x, -ray.direction.y, ray.direction.z),
+                    at = p + way * ((-39.5 - p.z) / way.z);
                 const double aside = std::abs(at.x);
                 if (p.z < -39 || at.y < 1.5 || at.y > 6.5 || std::abs(aside - 2) < 0.5 || aside > 5.5) continue;
                 ++(aside < 2 ? dark : bright);
@@ -135,7 +140,9 @@ TEST_SUITE("unit") {
     TEST_CASE("a mirror behind a lamp shows its back, which is black, and nothing of its light") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-3, -2, -2), Vec3(6, 0, 0), Vec3(0, 4, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
-        add(scene, QuadList{{{Vec3(0.6f, 0.2f, -1), Vec3(0.8f, 0, 0), Vec3(0, 0.7f, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}}); // faces the viewer
+        // The light faces the viewer.
+        add(scene, QuadList{{{Vec3(0.6f, 0.2f, -1), Vec3(0.8f, 0, 0), Vec3(0, 0.7f, 0)}}}, Mat4(),
+            Emissive{{Rgb(4.0f)}});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const Rendering found = render_with_hits(scene, kView);
@@ -144,9 +151,11 @@ TEST_SUITE("unit") {
             for (int x = 0; x < kView.width; ++x) {
                 if (found.hit(x, y).object != 0) continue;
                 const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
-                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z), way(ray.direction.x, ray.direction.y, -ray.direction.z);
+                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z),
+                            way(ray.direction.x, ray.direction.y, -ray.direction.z);
                 const Vec3d at = p + way * ((-1 - p.z) / way.z);
-                const double beside = std::max(std::abs(at.x - 1) - 0.4, std::abs(at.y - 0.55) - 0.35); // of the lamp's edge
+                // This is the distance from the light's edge.
+                const double beside = std::max(std::abs(at.x - 1) - 0.4, std::abs(at.y - 0.55) - 0.35);
                 if (std::abs(beside) < 0.06) continue;
                 ++(beside < 0 ? back : sky);
                 wrong += std::abs(found.radiance(x, y).g - (beside < 0 ? 0.0f : 1.0f)) > 0.02f;
@@ -156,12 +165,15 @@ TEST_SUITE("unit") {
         CHECK(wrong == 0);
     }
 
-    // The wall's upper edge is seen in the picture, above it the sky, and before that a lamp that the picture's edge cuts.
+    // The image shows the wall's upper edge and the sky above it. In front of the sky is a light that the image
+    // border cuts.
     TEST_CASE("a wall that has ended in the picture does not go on behind a lamp at the picture's edge") {
         Scene scene;
-        add(scene, QuadList{{{Vec3(-20, -3, -6), Vec3(40, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Diffuse{{Rgb()}}); // up to y = 0
+        // The wall extends up to y = 0.
+        add(scene, QuadList{{{Vec3(-20, -3, -6), Vec3(40, 0, 0), Vec3(0, 3, 0)}}}, Mat4(), Diffuse{{Rgb()}});
         add(scene, QuadList{{{Vec3(-4, 0.4f, -3), Vec3(3, 0, 0), Vec3(0, 2, 0)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
-        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const raster::Settings settings = plain();
@@ -170,11 +182,13 @@ TEST_SUITE("unit") {
         const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
         const Vec3 from(-0.2f, -0.3f, -5);
         for (const float up : {0.3f, 0.4f, 0.5f}) {
-            const Vec3 way = normalize(Vec3(-1, up, -0.02f)); // before the wall, over its edge, then behind the lamp
+            // The ray passes in front of the wall, over its edge, then behind the light.
+            const Vec3 way = normalize(Vec3(-1, up, -0.02f));
             CHECK_FALSE(raster::trace_screen({*screen, nullptr, 2}, bounds, {from, way, way, false, true}));
         }
         const Vec3 down = normalize(Vec3(-1, -0.05f, -0.2f));
-        CHECK(raster::trace_screen({*screen, nullptr, 2}, bounds, {from, down, down, false, true})); // beyond the edge the wall goes on
+        // Beyond the edge the wall continues.
+        CHECK(raster::trace_screen({*screen, nullptr, 2}, bounds, {from, down, down, false, true}));
     }
 
     TEST_CASE("a mirror behind a ball shows the ball's far side as wide as it is, and what is beside it") {
@@ -191,7 +205,8 @@ TEST_SUITE("unit") {
             for (int x = 0; x < kView.width; ++x) {
                 if (found.hit(x, y).object != 0) continue;
                 const Rayd ray = CameraModel(kView).through().ray({x + 0.5, y + 0.5});
-                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z), way(ray.direction.x, ray.direction.y, -ray.direction.z);
+                const Vec3d p = ray.at((-2 - ray.origin.z) / ray.direction.z),
+                            way(ray.direction.x, ray.direction.y, -ray.direction.z);
                 const Vec3d to = Vec3d(center) - p;
                 const double beside = length(to - way * dot(to, way));
                 if (std::abs(beside - kRadius) < 0.08) continue;
@@ -211,11 +226,13 @@ TEST_SUITE("unit") {
                 const double depth = part * kDeep, radius = 0.08 * (perspective ? depth : 0.5 * kDeep);
                 const Vec3d center = perspective ? Vec3d(0.25, 0.1, -1) * depth : Vec3d(0.5, 0.2, -depth);
                 Scene scene;
-                add(scene, QuadList{{{Vec3(-3, -3, -kDeep), Vec3(6, 0, 0), Vec3(0, 6, 0)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
+                add(scene, QuadList{{{Vec3(-3, -3, -kDeep), Vec3(6, 0, 0), Vec3(0, 6, 0)}}}, Mat4(),
+                    Metal{{Rgb(1.0f)}, 0});
                 add(scene, Sphere{Vec3(center), static_cast<float>(radius)}, Mat4(), Diffuse{{Rgb(1, 0, 0)}});
                 scene.environment = ConstantEnvironment{Rgb(1.0f)};
                 finish_scene(scene);
-                Camera camera = look({0, 0, 0}, {perspective ? 0.0 : 1.5, 0, -kDeep}, 40); // the ball is seen beside its mirror image
+                // In this view the sphere is visible beside its reflection.
+                Camera camera = look({0, 0, 0}, {perspective ? 0.0 : 1.5, 0, -kDeep}, 40);
                 camera.projection = projection;
                 camera.height = 3.5;
                 const View view{camera, 320, 240};
@@ -226,7 +243,8 @@ TEST_SUITE("unit") {
                         if (found.hit(x, y).object != 0) continue;
                         const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
                         const Vec3d p = ray.at((-kDeep - ray.origin.z) / ray.direction.z);
-                        const Vec3d way = normalize(Vec3d(ray.direction.x, ray.direction.y, -ray.direction.z)), to = center - p;
+                        const Vec3d way = normalize(Vec3d(ray.direction.x, ray.direction.y, -ray.direction.z)),
+                                    to = center - p;
                         const double beside = length(to - way * dot(to, way));
                         if (std::abs(beside / radius - 1) < 0.3) continue;
                         ++(beside < radius ? red : white);
@@ -240,7 +258,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    // From below, where only its back is met, and about the place where it touches the mirror.
+    // The sphere is viewed from below, where rays hit only its back side, and near its contact point with the mirror.
     TEST_CASE("a ball that lies on a mirror shows its own colour there, and nothing of the mirror and the sky beside it") {
         Scene scene;
         const Vec3d center(0, 0.7, 0);
@@ -273,7 +291,7 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), Diffuse{{Rgb(0, 1, 0)}});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
-        for (const int height : {120, 121, 122, 123, 124}) { // the line is at different places within a pixel
+        for (const int height : {120, 121, 122, 123, 124}) { // the line has different positions within a pixel
             const View view{look({0, 1, 6}, {0, 0.6f, 0}, 35), 160, height};
             const Rendering found = render_with_hits(scene, view);
             int pixels = 0;
@@ -287,11 +305,12 @@ TEST_SUITE("unit") {
                 }
             CAPTURE(height);
             CHECK(pixels == 3 * 80);
-            CHECK(worst < 0.1f); // looks are a little wider than a pixel
+            CHECK(worst < 0.1f); // filter footprints are slightly wider than a pixel
         }
     }
 
-    // The first look shows a mirror as if the environment were all it mirrors. In the second view the edge cuts the ball.
+    // The G-buffer pass shades a mirror as if it reflected only the environment. In the second view the image border
+    // cuts the sphere.
     TEST_CASE("a metal ball on a black floor shows the floor up to its edge, and where the picture ends: nothing of itself or the sky") {
         const Vec3d center(0, 0.7, 0);
         constexpr double kRadius = 0.7;
@@ -315,11 +334,11 @@ TEST_SUITE("unit") {
                 }
             CAPTURE(middle);
             CHECK(within > 500);
-            CHECK(worst < (middle < 1 ? 0.02f : 0.2f)); // what the picture does not show is guessed, and blurred
+            CHECK(worst < (middle < 1 ? 0.02f : 0.2f)); // surfaces outside the image are approximated and blurred
         }
     }
 
-    // Beside the ball stand bright boxes, which the edge cuts too. The sky is seen above alone.
+    // Bright boxes are beside the sphere, and the image border cuts them, too. The sky is visible only above.
     TEST_CASE("a metal ball that the picture's edge cuts shows the black floor below: a little of what else stands there, no sky") {
         const Vec3d center(0, 0.7, 0);
         for (const bool boxes : {false, true}) {
@@ -329,7 +348,11 @@ TEST_SUITE("unit") {
             for (const float x : {-1.0f, 0.8f})
                 if (boxes) {
                     const Vec3 right(0.2f, 0, 0), up(0, 0.6f, 0), back(0, 0, -0.6f), corner(x, 0, 0.3f);
-                    add(scene, QuadList{{{corner, right, up}, {corner, up, back}, {corner + right, back, up}, {corner + up, right, back}}},
+                    add(scene,
+                        QuadList{{{corner, right, up},
+                                  {corner, up, back},
+                                  {corner + right, back, up},
+                                  {corner + up, right, back}}},
                         Mat4(), Emissive{{Rgb(0, 0.8f, 0)}});
                 }
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
@@ -342,7 +365,8 @@ TEST_SUITE("unit") {
             for (int y = 0; y < view.height; ++y)
                 for (int x = 0; x < view.width; ++x) {
                     if (found.hit(x, y).object != 1) continue;
-                    const Rayd ray = mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
+                    const Rayd ray =
+                        mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
                     if (ray.direction.y > -0.1 || oracle.trace({ray.at(1e-3), ray.direction}).object != 0) continue;
                     sum += static_cast<double>(found.radiance(x, y).g);
                     sky += static_cast<double>(found.radiance(x, y).r);
@@ -350,7 +374,7 @@ TEST_SUITE("unit") {
                 }
             CAPTURE(boxes);
             CHECK(within > 1500);
-            CHECK(sum < (boxes ? 0.065 : 0.05) * within); // what the picture does not show is guessed, and blurred
+            CHECK(sum < (boxes ? 0.065 : 0.05) * within); // surfaces outside the image are approximated and blurred
             CHECK(sky < (boxes ? 0.065 : 0.05) * within);
         }
     }
@@ -370,9 +394,11 @@ TEST_SUITE("unit") {
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
                 if (found.hit(x, y).object != 1) continue;
-                const Rayd ray = mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
+                const Rayd ray =
+                    mirrored_ray(CameraModel(view).through().ray({x + 0.5, y + 0.5}), found.hit(x, y), center);
                 const Vec3d to = black - ray.origin;
-                if (length(to - ray.direction * dot(to, ray.direction)) > 0.3 * kRadius || dot(to, ray.direction) < 0) continue;
+                if (length(to - ray.direction * dot(to, ray.direction)) > 0.3 * kRadius || dot(to, ray.direction) < 0)
+                    continue;
                 sum += static_cast<double>(found.radiance(x, y).g);
                 ++within;
             }
@@ -384,7 +410,8 @@ TEST_SUITE("unit") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}});
         add(scene, Sphere{Vec3(0, 1, 0), 1});
-        add(scene, Sphere{Vec3(3, 1, 0), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(3, 1, 0), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const raster::Settings settings = plain();
@@ -392,7 +419,8 @@ TEST_SUITE("unit") {
         const auto screen = raster::screen_of(raster::prepare(scene, settings), view, settings);
         const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
         const auto trace = [&](Vec3 way) {
-            return raster::trace_screen({*screen}, bounds, {screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false});
+            return raster::trace_screen({*screen}, bounds,
+                                        {screen->relative(Vec3(0, 1, -2)), Vec3(0, 0, -1), normalize(way), false});
         };
         CHECK_FALSE(trace({0.02f, 0.05f, -1}));
         const auto floor = trace({0.02f, -0.05f, -1});
@@ -400,12 +428,16 @@ TEST_SUITE("unit") {
         CHECK(floor->distance == doctest::Approx(20).epsilon(0.02));
     }
 
-    // Lamps are put in by their own edges wherever a ray meets them: guessed of, they would shine beside that.
+    // Reflections of lights use the lights' exact edges at every ray. If lights were extrapolated, too, they would
+    // appear beside those edges.
     TEST_CASE("a ray that passes behind a lamp or beside it meets nothing of it, nor what goes on as the lamp does") {
         Scene scene;
-        add(scene, QuadList{{{Vec3(-1.5f, 1.5f, -7), Vec3(3, 0, 0), Vec3(0, 0, 3)}}}, Mat4(), Emissive{{Rgb(4.0f)}}); // faces down
-        add(scene, QuadList{{{Vec3(-2.5f, -1, -6), Vec3(1.5f, 0, 0), Vec3(0, 1, 0.5f)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
-        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0}); // for which the picture is looked at
+        // The light faces down.
+        add(scene, QuadList{{{Vec3(-1.5f, 1.5f, -7), Vec3(3, 0, 0), Vec3(0, 0, 3)}}}, Mat4(), Emissive{{Rgb(4.0f)}});
+        add(scene, QuadList{{{Vec3(-2.5f, -1, -6), Vec3(1.5f, 0, 0), Vec3(0, 1, 0.5f)}}}, Mat4(),
+            Emissive{{Rgb(4.0f)}});
+        // The small metal sphere makes the renderer compute reflections.
+        add(scene, Sphere{Vec3(9, 0, -9), 0.1f}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         finish_scene(scene);
         const raster::Settings settings = plain();
@@ -414,26 +446,32 @@ TEST_SUITE("unit") {
         const Box3 bounds{screen->relative(scene.bounds.low), screen->relative(scene.bounds.high)};
         const Oracle oracle(scene);
         std::minstd_rand random(3);
-        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        const auto uniform = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(random);
+        };
         int past = 0, met = 0;
         for (int i = 0; i < 20'000; ++i) {
             const Vec3d p(uniform(-3, 3), uniform(-2, 2), uniform(-9, -2));
             const Vec3d way = normalize(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
             if (oracle.trace({p, way}).object != kNoObject) continue;
             ++past;
-            met += raster::trace_screen({*screen, nullptr, 2}, bounds, {Vec3(p), Vec3(way), Vec3(way), false, true}).has_value();
+            met += raster::trace_screen({*screen, nullptr, 2}, bounds, {Vec3(p), Vec3(way), Vec3(way), false, true})
+                       .has_value();
         }
         CHECK(past > 15'000);
         CHECK(met == 0);
     }
 
-    // Looked through everywhere the ray meets what is behind, while blocks are those of what is in front: as near as can be, none is
-    // passed at once; the same as behind, some are.
+    // Every ray passes behind the front layer and hits the layer behind it. If the front layer is as near as
+    // possible, no block of its depth pyramid is skipped. If it equals the layer behind, some blocks are skipped.
     TEST_CASE("rays that pass blocks of a random picture at once hit what those hit that go pixel by pixel; no look is infinitely wide") {
         std::mt19937 random(7);
-        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        const auto uniform = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(random);
+        };
         int hits = 0;
-        for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 7), std::pair(33, 40), std::pair(64, 64), std::pair(300, 9)}) {
+        for (const auto& [width, height] :
+             {std::pair(1, 1), std::pair(2, 7), std::pair(33, 40), std::pair(64, 64), std::pair(300, 9)}) {
             const View view{look({0, 0, 0}, {0, 0, -1}, 60), width, height};
             ImageFloat deep(width, height), nearest(width, height, 0.5f);
             const double part = uniform(0.002, 0.02);
@@ -441,9 +479,11 @@ TEST_SUITE("unit") {
             for (std::size_t i = 0; i < deep.size(); ++i)
                 deep[i] = near / static_cast<float>(uniform(0, 1) < part ? uniform(2, 4) : uniform(8, 9));
             const auto screen_with = [&](const ImageFloat& depths) {
-                auto screen = std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
+                auto screen =
+                    std::make_unique<raster::Screen>(CameraModel(view).through(), raster::SampleOffset{}, depths);
                 screen->set_normals(ImageRgb(width, height, Rgb(0.5f, 0.5f, 1)));
-                screen->set_first_look({{}, Image<std::uint32_t>(width, height, 0), Image<std::uint8_t>(width, height, 0), {}, {}});
+                screen->set_first_look(
+                    {{}, Image<std::uint32_t>(width, height, 0), Image<std::uint8_t>(width, height, 0), {}, {}});
                 screen->set_turns(ImageFloat(width, height, 0));
                 return screen;
             };
@@ -452,8 +492,10 @@ TEST_SUITE("unit") {
             for (int i = 0; i < 2000; ++i) {
                 const Vec3 p(Vec3d(uniform(-2, 2), uniform(-2, 2), uniform(-9, -1)));
                 const Vec3 way = normalize(Vec3(Vec3d(uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.5))));
-                const auto at_once = raster::trace_screen({*alike, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
-                const auto singly = raster::trace_screen({*before, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
+                const auto at_once =
+                    raster::trace_screen({*alike, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
+                const auto singly =
+                    raster::trace_screen({*before, behind.get(), 0}, bounds, {p, Vec3(0, 0, 1), way, false});
                 REQUIRE(at_once.has_value() == singly.has_value());
                 if (!at_once) continue;
                 ++hits;
@@ -480,7 +522,8 @@ TEST_SUITE("unit") {
         CHECK(std::abs(hit->y - place.y) < 1);
         CHECK(hit->distance == doctest::Approx(length(to - from)).epsilon(0.02));
         CHECK(hit->gap == 0);
-        CHECK_FALSE(raster::trace_screen({*screen}, bounds, {screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false}));
+        CHECK_FALSE(
+            raster::trace_screen({*screen}, bounds, {screen->relative(from), Vec3(-1, 0, 0), Vec3(-1, 0, 0), false}));
     }
 
     TEST_CASE("a mirror behind a glass ball shows the floor under it, not what the ball shows the viewer") {
@@ -519,7 +562,8 @@ TEST_SUITE("unit") {
             const auto count = static_cast<int>(raster::Surroundings::kMostLamps) + 1;
             for (int i = 0; i < count; ++i) {
                 const float size = i == 0 ? 0.04f : 0.05f;
-                const Vec3 corner(-1.6f + 0.2f * static_cast<float>(i % 17), 0.2f + 0.1f * static_cast<float>(i / 17), -1.8f);
+                const Vec3 corner(-1.6f + 0.2f * static_cast<float>(i % 17), 0.2f + 0.1f * static_cast<float>(i / 17),
+                                  -1.8f);
                 lamps.quads.push_back({corner, Vec3(size, 0, 0), Vec3(0, size, 0)});
             }
             add(scene, lamps, Mat4(), Emissive{Rgb(3.0f)});
@@ -572,7 +616,8 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{{Vec3(-1, 0, 2), Vec3(2, 0, 0), Vec3(0, 0, -1)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
             add(scene, QuadList{{{Vec3(-2, 0.6f, 0.9f), Vec3(4, 0, 0), Vec3(0, 0, -2.4f)}}}, Mat4(),
                 Metal{{Rgb(0.8f, 0.8f, 0.4f)}, roughness});
-            add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(), Diffuse{{Rgb(0.2f)}});
+            add(scene, QuadList{{{Vec3(-9, -0.01f, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, Mat4(),
+                Diffuse{{Rgb(0.2f)}});
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
             finish_scene(scene);
             const View view{look({0, 2, 6}, {0, 0.3, 0}, 40), 160, 120};
@@ -582,7 +627,8 @@ TEST_SUITE("unit") {
                 return found(static_cast<int>(place.x), static_cast<int>(place.y));
             };
             CHECK(at({0, 0.6, 0.15}).g > 0.7f); // the sheet itself
-            // Up from z = 1.5, back at the sheet's height, the floor as far behind that: of the sheet's colour by Schlick's term.
+            // The mirror at z = 1.5 reflects the ray up to the sheet's underside at z = 0.15, and the sheet reflects
+            // it down to the floor at z = −1.2. Schlick's approximation gives the sheet's reflectance.
             const double cosine = 2 / std::hypot(2.0, 4.5), term = std::pow(1 - cosine, 5);
             const Rgb floor = at({0, -0.01, -1.22});
             CHECK(floor.g < 0.25f);
@@ -594,7 +640,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    // Rays of a quadrant may all come out beneath the horizon.
+    // All rays of a quadrant may point below the horizon.
     TEST_CASE("rough metal in a white room seen at a grazing angle is as bright in each quadrant's samples, and never black") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0.5f});
@@ -615,10 +661,11 @@ TEST_SUITE("unit") {
     TEST_CASE("moderately rough metal mirrors the wall before it, not the environment behind that") {
         const Vec3d place = CameraModel(kView).through().project({-1, 0, -1.6});
         for (const float roughness : {0.35f, 0.5f}) {
-            const Rgb seen = render(before_wall(roughness), kView, plain()).radiance(static_cast<int>(place.x), static_cast<int>(place.y));
+            const Rgb seen = render(before_wall(roughness), kView, plain())
+                                 .radiance(static_cast<int>(place.x), static_cast<int>(place.y));
             INFO("roughness ", roughness, ": ", seen.r, " ", seen.g, " ", seen.b);
             CHECK(seen.r > 0.9f);
-            CHECK(seen.b < 0.7f); // of the environment alone it is 1
+            CHECK(seen.b < 0.7f); // 1 with the environment alone
         }
     }
 

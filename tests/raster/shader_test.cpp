@@ -1,4 +1,4 @@
-// Programmable shading: shaders of the test's own, and what they are given.
+// These tests check programmable shading: custom shaders and the inputs that they receive.
 #include "raster/draw.h"
 #include "raster/shadings/shadings.h"
 #include "tests/raster/varied_scene.h"
@@ -15,12 +15,12 @@ using raster::select_each, raster::VertexInput;
 
 namespace {
 
-/// Colours are what a test wants to see, moved to where none is negative.
+/// The color shows the quantity under test, with an offset that keeps it non-negative.
 constexpr float kLift = 100;
 
 enum class Asked { kPoint, kInterpolated, kNormal, kVertexNormal, kAlongX, kAlongY, kUv };
 
-/// Shows what fragments are given.
+/// Outputs the inputs of fragments.
 struct Probe {
     static constexpr bool kDerivatives = true;
     Asked asked;
@@ -42,7 +42,7 @@ struct Probe {
     }
 };
 
-/// The README's.
+/// This shader is the README's example.
 struct Stripes {
     template <typename T> struct Varyings {
         T height;
@@ -71,24 +71,25 @@ Vec3 shown(const Rendering& picture, int x, int y) {
 
 SurfacePoint surface_at(const Scene& scene, const View& view, Vec2d pixel, const Hit& hit) {
     const Rayd exact = CameraModel(view).through().ray(pixel);
-    const Ray ray{.origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
+    const Ray ray{
+        .origin = Vec3(exact.origin), .direction = Vec3(exact.direction), .t_min = static_cast<float>(exact.t_min)};
     return surface_point(scene, ray, hit);
 }
 
-/// The point of the plane of a hit that another place of the picture looks at.
+/// Returns the point at which the ray of another pixel position meets the plane of a hit.
 Vec3d on_plane(const SurfacePoint& surface, const View& view, Vec2d pixel) {
     const Rayd ray = CameraModel(view).through().ray(pixel);
     const Vec3d n(surface.ng);
     return ray.origin + ray.direction * (dot(Vec3d(surface.p) - ray.origin, n) / dot(ray.direction, n));
 }
 
-/// A picture's samples, strips of them against each alone.
+/// Compares an image's samples, shaded in batches and one at a time.
 struct Compared {
     int samples = 0, of_quads = 0, of_spheres = 0;
-    int of_several = 0; ///< strips that see more than one object
+    int of_several = 0; ///< batches with more than one visible object
     int apart = 0;      ///< samples that differ
-    int by_company = 0; ///< whose bits depend on how many strips are shaded at a time
-    double mean = 0;    ///< of what is seen
+    int by_company = 0; ///< samples whose bits depend on how many batches are shaded together
+    double mean = 0;    ///< mean color of the visible surfaces
 };
 
 Compared strips_against_alone(const Scene& scene, const View& view, const raster::Program& program) {
@@ -125,7 +126,9 @@ Compared strips_against_alone(const Scene& scene, const View& view, const raster
                 const Vec2d pixel = place.position(i);
                 const Hit hit = find_hit(geometry, pass, id, pixel);
                 const Rgb alone = program.shade_hit(prepared.data(), pass, hit, pixel);
-                const auto shown = [&](const raster::StripColors& c) { return std::array<float, 3>{c.r[i], c.g[i], c.b[i]}; };
+                const auto shown = [&](const raster::StripColors& c) {
+                    return std::array<float, 3>{c.r[i], c.g[i], c.b[i]};
+                };
                 const std::array<float, 3> wanted{alone.r, alone.g, alone.b}, here = shown(together[s]);
                 ++found.samples;
                 several = several || first_object.value_or(hit.object) != hit.object;
@@ -135,7 +138,8 @@ Compared strips_against_alone(const Scene& scene, const View& view, const raster
                 found.of_spheres += std::holds_alternative<Sphere>(shape);
                 found.by_company += here != shown(by_itself);
                 bool same = true;
-                for (std::size_t c = 0; c < 3; ++c) same = same && std::abs(here[c] - wanted[c]) <= 2e-4f * (1 + std::abs(wanted[c]));
+                for (std::size_t c = 0; c < 3; ++c)
+                    same = same && std::abs(here[c] - wanted[c]) <= 2e-4f * (1 + std::abs(wanted[c]));
                 found.apart += !same;
                 found.mean += static_cast<double>(here[0] + here[1] + here[2]) / 3;
             }
@@ -158,7 +162,8 @@ TEST_SUITE("unit") {
     TEST_CASE("a fragment knows its point, and varyings are interpolated as perspective shows them") {
         for (const View& view : {perspective(), orthographic()}) {
             const Scene scene = varied_scene(60);
-            const Rendering points = show(scene, view, Asked::kPoint), varyings = show(scene, view, Asked::kInterpolated),
+            const Rendering points = show(scene, view, Asked::kPoint),
+                            varyings = show(scene, view, Asked::kInterpolated),
                             normals = show(scene, view, Asked::kNormal);
             double worst_point = 0, worst_varying = 0, worst_normal = 0;
             int seen = 0;
@@ -175,10 +180,11 @@ TEST_SUITE("unit") {
                     worst_point = std::max(worst_point, apart(shown(points, x, y), surface.p));
                     worst_varying = std::max(worst_varying, apart(shown(varyings, x, y), surface.p));
                     const Vec3 wo = Vec3(CameraModel(view).through().ray({x + 0.5, y + 0.5}).direction) * -1.0f;
-                    worst_normal = std::max(worst_normal, apart(shown(normals, x, y), dot(surface.ng, wo) < 0 ? -surface.ns : surface.ns));
+                    worst_normal = std::max(
+                        worst_normal, apart(shown(normals, x, y), dot(surface.ng, wo) < 0 ? -surface.ns : surface.ns));
                 }
             CHECK(seen > 30'000);
-            CHECK(worst_point < 5e-5); // colours of about 100 are rounded to 4e-6, distances of 8 to 1e-6
+            CHECK(worst_point < 5e-5); // colors of about 100 are rounded to 4e-6, distances of 8 to 1e-6
             CHECK(worst_varying < 5e-5);
             CHECK(worst_normal < 5e-5);
         }
@@ -193,11 +199,12 @@ TEST_SUITE("unit") {
             for (int y = 0; y < view.height; ++y)
                 for (int x = 0; x < view.width; ++x) {
                     const Hit& hit = along_x.hit(x, y);
-                    // A sphere's varyings are its own and not its tangent plane's.
-                    if (!hit.valid() || std::holds_alternative<Sphere>(scene.shapes[scene.objects[hit.object].shape])) continue;
+                    // A sphere's varyings differ from those of its tangent plane.
+                    if (!hit.valid() || std::holds_alternative<Sphere>(scene.shapes[scene.objects[hit.object].shape]))
+                        continue;
                     const SurfacePoint surface = surface_at(scene, view, {x + 0.5, y + 0.5}, hit);
                     const auto compare_one = [&](Vec2d step, Vec3 found) {
-                        const double h = 1e-3; // a central difference in double: error of order h²
+                        const double h = 1e-3; // a central difference in double, with error of order h²
                         const Vec3d after = on_plane(surface, view, {x + 0.5 + step.x * h, y + 0.5 + step.y * h}),
                                     before = on_plane(surface, view, {x + 0.5 - step.x * h, y + 0.5 - step.y * h});
                         const Vec3d wanted = (after - before) * (0.5 / h);
@@ -208,7 +215,7 @@ TEST_SUITE("unit") {
                     ++compared;
                 }
             CHECK(compared > 30'000);
-            CHECK(worst < 2e-3); // colours' own rounding: 8e-6 of 1e-2
+            CHECK(worst < 2e-3); // rounding of the colors: 8e-6 of 1e-2
         }
     }
 
@@ -250,11 +257,12 @@ TEST_SUITE("unit") {
                 if (std::abs(height - 0.5f) < 1e-5f) continue;
                 (height > 0.5f ? above : below) += 1;
                 const Rgb wanted = height > 0.5f ? picture.albedo(x, y) : Rgb(1.0f);
-                wrong += max_component(picture.radiance(x, y) - wanted) > 1e-6f || max_component(wanted - picture.radiance(x, y)) > 1e-6f;
+                wrong += max_component(picture.radiance(x, y) - wanted) > 1e-6f ||
+                         max_component(wanted - picture.radiance(x, y)) > 1e-6f;
             }
         CHECK(above > 3000);
         CHECK(below > 3000);
-        CHECK(wrong <= 3); // samples at a texture's border, by another rounding
+        CHECK(wrong <= 3); // samples at a texture's border, due to different rounding
     }
 
     TEST_CASE("every built-in shading shows a strip of samples as it shows each alone, by itself or with others") {
@@ -263,8 +271,9 @@ TEST_SUITE("unit") {
             if (only_suns) scene.lights[1] = SunLight{normalize(Vec3(-1, -0.5f, 0.2f)), Rgb(0.3f, 0.5f, 1)};
             for (const View& view : {perspective(), orthographic()})
                 for (const raster::Shading shading :
-                     {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat, raster::Shading::kToon,
-                      raster::Shading::kWireframe, raster::Shading::kNormal, raster::Shading::kAlbedo, raster::Shading::kDepth}) {
+                     {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat,
+                      raster::Shading::kToon, raster::Shading::kWireframe, raster::Shading::kNormal,
+                      raster::Shading::kAlbedo, raster::Shading::kDepth}) {
                     const Compared found = strips_against_alone(scene, view, shading);
                     CAPTURE(static_cast<int>(shading));
                     CHECK(found.samples > 30'000);
@@ -272,7 +281,8 @@ TEST_SUITE("unit") {
                     CHECK(found.of_several > 200);
                     CHECK(found.of_spheres > 500);
                     CHECK(found.by_company == 0);
-                    // Toon's bands and wires change within a pixel: a derivative's rounding shows there.
+                    // Toon's bands and the wireframe change within a pixel, where the rounding of a derivative is
+                    // visible.
                     CHECK(found.apart <= found.samples / 2000);
                 }
         }
@@ -281,15 +291,17 @@ TEST_SUITE("unit") {
     TEST_CASE("strips of meshes of any size are shaded as each of their samples alone") {
         for (const float size : {1e-8f, 1e-6f, 1e-3f, 1e3f, 1e6f}) {
             Scene scene;
-            Mesh mesh = torus(60, 30); // no normals but its triangles', whose lengths are of their area
+            Mesh mesh = torus(60, 30); // only face normals, whose lengths depend on the triangles' areas
             for (Vec3& p : mesh.positions) p *= size;
             const Mat4 to_world(scaling(Vec3(1 / size, 1 / size, 1 / size)));
             add(scene, mesh, to_world, Diffuse{{Rgb(0.8f, 0.5f, 0.3f)}});
-            add_instance(scene, 0, Mat4(translation(Vec3(0.6f, 1.1f, -0.8f))) * to_world); // placed twice it stays as it is
+            // The mesh is instanced twice, so it is not baked.
+            add_instance(scene, 0, Mat4(translation(Vec3(0.6f, 1.1f, -0.8f))) * to_world);
             scene.lights = {SunLight{normalize(Vec3(0.4f, -1, -0.5f)), Rgb(2, 1.9f, 1.7f)}};
             finish_scene(scene);
-            for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat,
-                                                  raster::Shading::kToon, raster::Shading::kNormal}) {
+            for (const raster::Shading shading :
+                 {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat, raster::Shading::kToon,
+                  raster::Shading::kNormal}) {
                 const Compared found = strips_against_alone(scene, perspective(), shading);
                 CAPTURE(size);
                 CAPTURE(static_cast<int>(shading));
@@ -307,16 +319,17 @@ TEST_SUITE("unit") {
         const raster::ProgramOf<Probe> program(Probe{Asked::kVertexNormal});
         const Compared found = strips_against_alone(scene, perspective(), program);
         CHECK(found.of_spheres > 5'000);
-        CHECK(found.apart == 0); // (colours are kLift and more, and compared to 2e-4 of that)
+        CHECK(found.apart == 0); // (colors are at least kLift, and the tolerance is 2e-4 of that)
         const Rendering seen = show(scene, perspective(), Asked::kVertexNormal);
         double worst = 0;
         for (int y = 0; y < seen.hit.height(); ++y)
             for (int x = 0; x < seen.hit.width(); ++x)
-                if (seen.hit(x, y).valid()) worst = std::max(worst, std::abs(static_cast<double>(length(shown(seen, x, y))) - 1));
-        CHECK(worst < 1e-4); // of numbers about kLift
+                if (seen.hit(x, y).valid())
+                    worst = std::max(worst, std::abs(static_cast<double>(length(shown(seen, x, y))) - 1));
+        CHECK(worst < 1e-4); // for values of about kLift
     }
 
-    // Samples lie on the dark edges exactly, where the lit corner's weight is a rounding of either sign.
+    // Samples are exactly on the dark edges, where rounding gives the lit vertex a weight of either sign.
     TEST_CASE("Gouraud: light is not negative, however weights round where a lit corner is opposite to a dark edge") {
         constexpr float kPixel = 4.0f / 128;
         Mesh mesh;
@@ -324,11 +337,13 @@ TEST_SUITE("unit") {
         std::uniform_real_distribution<float> part(0.1f, 0.9f);
         for (int row = 0; row < 16; ++row)
             for (int column = 0; column < 16; ++column) {
-                const Vec3 corner(-2 + (8 * static_cast<float>(column) + 0.5f) * kPixel, -2 + 8 * static_cast<float>(row) * kPixel, 0);
+                const Vec3 corner(-2 + (8 * static_cast<float>(column) + 0.5f) * kPixel,
+                                  -2 + 8 * static_cast<float>(row) * kPixel, 0);
                 const auto first = static_cast<std::uint32_t>(mesh.positions.size());
                 mesh.positions.insert(mesh.positions.end(), {corner + Vec3(7 * kPixel, 7 * part(random) * kPixel, 0),
                                                              corner + Vec3(0, (6 + part(random)) * kPixel, 0), corner});
-                mesh.normals.insert(mesh.normals.end(), {{0, -1, 0.1f}, {0, 1, 0.1f}, {0, 1, 0.1f}}); // the sun comes from below
+                // The sun shines from below.
+                mesh.normals.insert(mesh.normals.end(), {{0, -1, 0.1f}, {0, 1, 0.1f}, {0, 1, 0.1f}});
                 mesh.triangles.push_back({first, first + 1, first + 2});
             }
         Scene scene;
@@ -351,7 +366,8 @@ TEST_SUITE("unit") {
         for (const bool cancel : {false, true}) {
             Mesh mesh;
             mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-            mesh.normals = cancel ? std::vector<Vec3>{{0, 0, 1}, {0, 0, -1}, {0, 0, -1}, {0, 0, 1}} : std::vector<Vec3>(4);
+            mesh.normals =
+                cancel ? std::vector<Vec3>{{0, 0, 1}, {0, 0, -1}, {0, 0, -1}, {0, 0, 1}} : std::vector<Vec3>(4);
             mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
             Scene scene;
             add(scene, mesh);
@@ -361,15 +377,17 @@ TEST_SUITE("unit") {
             Camera camera = look({0, 0, 4}, {0, 0, 0});
             camera.projection = Camera::Projection::kOrthographic;
             camera.height = 4;
-            for (const raster::Shading shading : {raster::Shading::kLit, raster::Shading::kPhong, raster::Shading::kGouraud,
-                                                  raster::Shading::kToon, raster::Shading::kNormal}) {
+            for (const raster::Shading shading :
+                 {raster::Shading::kLit, raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon,
+                  raster::Shading::kNormal}) {
                 raster::Settings settings;
                 settings.shading = shading;
-                const Rendering seen = render(scene, {camera, 65, 65}, settings); // the middle column is where normals cancel
+                // The normals cancel in the middle column.
+                const Rendering seen = render(scene, {camera, 65, 65}, settings);
                 CAPTURE(cancel);
                 CAPTURE(static_cast<int>(shading));
                 CHECK(seen.statistics.invalid_samples == 0);
-                if (shading == raster::Shading::kNormal) CHECK(seen.radiance(32, 32) == Rgb(0.5f)); // of no direction
+                if (shading == raster::Shading::kNormal) CHECK(seen.radiance(32, 32) == Rgb(0.5f)); // the zero vector
             }
         }
     }
@@ -377,9 +395,10 @@ TEST_SUITE("unit") {
     TEST_CASE("lamps shine in every shading that shows light, in strips and alone, as materials and lights have them") {
         Scene scene = varied_scene(60);
         scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
-        for (Material& material : scene.materials) material = Emissive{.radiance = Rgb(2.0f), .two_sided = true, .radiance_texture = 0};
+        for (Material& material : scene.materials)
+            material = Emissive{.radiance = Rgb(2.0f), .two_sided = true, .radiance_texture = 0};
         finish_scene(scene);
-        scene.lights.clear(); // of which there would be highlights
+        scene.lights.clear(); // they would cause highlights
         raster::Settings settings = with_hits();
         settings.environment = false;
         const raster::Prepared prepared = raster::prepare(scene, settings);
@@ -436,7 +455,7 @@ TEST_SUITE("unit") {
         };
         const double far = mean_apart(coarse), near = mean_apart(fine);
         CHECK(near < far / 100);
-        CHECK(near > 0); // they are not the same program
+        CHECK(near > 0); // the two implementations differ
     }
 
     TEST_CASE("wires: bright on an edge, black away from it, and a pixel wide") {
@@ -452,8 +471,9 @@ TEST_SUITE("unit") {
         raster::Settings settings;
         settings.shading = raster::Shading::kWireframe;
         const Rendering picture = render(scene, view, settings);
-        // Down the column through x = −0.5: the lower edge and the hypotenuse. Each shows the half pixel that lies in the
-        // triangle, all of it seen along the normal: 1/2, and √2/2 where the edge runs at 45°.
+        // Follow the column through x = −0.5, which crosses the lower edge and the hypotenuse. Each shows the half
+        // pixel that is inside the triangle. Along the edge's normal that is 1/2 for the lower edge, and √2/2 in the
+        // column for the edge at 45°.
         const int column = static_cast<int>((1.5 - 0.5) / 3 * 101);
         double sum = 0;
         int dark = 0;
@@ -462,17 +482,20 @@ TEST_SUITE("unit") {
             dark += picture.radiance(column, y).r == 0;
         }
         CHECK(dark >= 95);
-        // Within the ramp's width samples see 0, 1 or 2 steps of it: coverage of the inner half, ½ + ⅛ of a pixel by area.
+        // Within the ramp's width samples hit 0, 1 or 2 of its steps. The coverage of the inner half is ½ + ⅛ of a
+        // pixel by area.
         CHECK(sum > 0.5);
         CHECK(sum < 3);
-        const double d = 101.0 / 3; // pixels a metre
+        const double d = 101.0 / 3; // pixels per meter
         for (int y = 0; y < 101; ++y)
             for (int x = 0; x < 101; ++x) {
-                const double px = (x + 0.5) / d - 1.5, py = 1.5 - (y + 0.5) / d; // in metres
-                const double inside = std::min({px + 1, py + 1, -(px + py) / std::sqrt(2.0)}) * d; // pixels to the nearest edge
+                const double px = (x + 0.5) / d - 1.5, py = 1.5 - (y + 0.5) / d; // in meters
+                // This is the distance to the nearest edge, in pixels.
+                const double inside = std::min({px + 1, py + 1, -(px + py) / std::sqrt(2.0)}) * d;
                 if (std::abs(inside) < 0.02) continue;
                 const double wanted = inside < 0 ? 0 : std::clamp(1 - inside, 0.0, 1.0);
-                REQUIRE(static_cast<double>(picture.radiance(x, y).r) == doctest::Approx(wanted).epsilon(0.001).scale(1));
+                REQUIRE(static_cast<double>(picture.radiance(x, y).r) ==
+                        doctest::Approx(wanted).epsilon(0.001).scale(1));
             }
     }
 
@@ -490,16 +513,18 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < picture.hit.size(); ++i)
             if (picture.hit[i].valid()) values.push_back(picture.radiance[i].r);
         std::sort(values.begin(), values.end());
-        std::vector<float> bands; // values that a hundred samples share
+        std::vector<float> bands; // values that at least a hundred samples share
         for (std::size_t i = 0; i + 100 < values.size(); ++i)
-            if (values[i + 100] - values[i] < 1e-5f && (bands.empty() || values[i] - bands.back() > 1e-4f)) bands.push_back(values[i]);
+            if (values[i + 100] - values[i] < 1e-5f && (bands.empty() || values[i] - bands.back() > 1e-4f))
+                bands.push_back(values[i]);
         for (const float v : values) {
             ++seen;
             between += std::none_of(bands.begin(), bands.end(), [&](float b) { return std::abs(v - b) < 1e-3f; });
         }
-        CHECK(bands.size() == 6); // none to four quarters of the light, and the spot
+        CHECK(bands.size() == 6); // zero to four quarters of the light, and the highlight
         for (std::size_t k = 1; k < 5; ++k)
-            CHECK(static_cast<double>(bands[k] - bands[k - 1]) == doctest::Approx(0.5 / kPiDouble * 3 / 4).epsilon(1e-4));
+            CHECK(static_cast<double>(bands[k] - bands[k - 1]) ==
+                  doctest::Approx(0.5 / kPiDouble * 3 / 4).epsilon(1e-4));
         CHECK(seen > 20'000);
         CHECK(between < seen / 20);
     }

@@ -1,4 +1,5 @@
-// Shadows where they are hardest: where what throws them touches what they fall on, and where they fade away.
+// These tests check shadows in difficult places: at contacts between occluder and receiver, and where shadows fade
+// out.
 #include "common/sampling/hash.h"
 #include "tests/raster/scenes.h"
 
@@ -9,7 +10,7 @@ using namespace duet::test;
 
 namespace {
 
-/// The part of the light that arrives at each pixel that light could reach; elsewhere 0.
+/// Returns the fraction of the light that reaches each pixel that faces the light, and 0 elsewhere.
 ImageFloat arriving(const Scene& scene, const View& view, raster::Settings settings = {}) {
     const ImageRgb shaded = render(scene, view, settings).radiance;
     settings.shadows = false;
@@ -27,7 +28,7 @@ Scene with_sun(Vec3 way) {
     return scene;
 }
 
-/// Straight down on a square of the floor, or a part of one, from a height.
+/// Returns a camera that looks straight down at a square of the floor from a height.
 Camera from_above(double eye_height, double width) {
     Camera camera = look({0, eye_height, 0}, {0, 0, 0});
     camera.projection = Camera::Projection::kOrthographic;
@@ -36,7 +37,8 @@ Camera from_above(double eye_height, double width) {
     return camera;
 }
 
-/// A part of a cylinder about the z axis, from one angle to another, of flat facets; its inside is the front.
+/// Returns a section of a cylinder around the z axis between two angles, made of flat facets. Its inside is the
+/// front.
 Mesh trough(Vec3d middle, double radius, double from, double to, int facets) {
     Mesh mesh;
     for (int i = 0; i <= facets; ++i) {
@@ -51,7 +53,8 @@ Mesh trough(Vec3d middle, double radius, double from, double to, int facets) {
     return mesh;
 }
 
-/// A square [-1, 1]² at the height of 1, of grid × grid bumpy cells of two facets; bumps up to so much of a cell's width.
+/// Returns a square [-1, 1]² at height 1 of grid × grid bumpy cells with two facets each. Bumps are at most `bump` of
+/// a cell's width high.
 Mesh relief(std::uint32_t grid, float bump) {
     const float step = 2.0f / static_cast<float>(grid);
     Mesh mesh;
@@ -69,7 +72,8 @@ Mesh relief(std::uint32_t grid, float bump) {
     return mesh;
 }
 
-/// The outline of a quarter of a trough about the origin, below it, and which part of it the sun reaches.
+/// Computes which part of the profile of a quarter of a trough the sun reaches. The trough is around the origin and
+/// below it.
 class Outline {
 public:
     Outline(double radius, int facets, Vec2d to_sun) : to_sun_(to_sun) {
@@ -83,7 +87,7 @@ public:
         }
         borders_.push_back(beside(points_.front().x)), borders_.push_back(beside(points_.back().x));
     }
-    /// 1 or 0 where the sun reaches all or nothing that is within `reach` of the ray to x; else −1.
+    /// Returns 1 or 0 if the sun reaches everything or nothing within `reach` of the ray to x, and −1 otherwise.
     int light(double x, double reach) const {
         for (const double border : borders_)
             if (std::abs(beside(x) - border) < reach) return -1;
@@ -96,12 +100,15 @@ private:
     Vec2d point(double x) const {
         for (std::size_t i = 1; i < points_.size(); ++i)
             if (x <= points_[i].x)
-                return points_[i - 1] + (points_[i] - points_[i - 1]) * ((x - points_[i - 1].x) / (points_[i].x - points_[i - 1].x));
+                return points_[i - 1] +
+                       (points_[i] - points_[i - 1]) * ((x - points_[i - 1].x) / (points_[i].x - points_[i - 1].x));
         return points_.back();
     }
-    double across(Vec2d p) const { return p.x * to_sun_.y - p.y * to_sun_.x; } ///< from light's ray to light's ray
+    double across(Vec2d p) const { return p.x * to_sun_.y - p.y * to_sun_.x; } ///< coordinate perpendicular to the
+                                                                               ///< light's rays
     double beside(double x) const { return across(point(x)); }
-    /// The sun is on the right: what lies there, and as far to the left or farther across its rays, hides it.
+    /// Returns whether x is lit. The sun is on the right. A point to the right occludes x if its coordinate across
+    /// the rays is the same or farther to the left.
     bool lit(double x) const {
         for (const Vec2d p : points_)
             if (p.x > x + 1e-9 && across(p) < beside(x) - 1e-9) return false;
@@ -109,7 +116,7 @@ private:
     }
     Vec2d to_sun_;
     std::vector<Vec2d> points_;
-    std::vector<double> borders_; ///< of shadows, across the light's rays
+    std::vector<double> borders_; ///< of shadows, in coordinates across the light's rays
 };
 
 } // namespace
@@ -120,7 +127,7 @@ TEST_SUITE("unit") {
         for (const int side : {256, 400, 512})
             for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-1, -0.5f, 0.2f), Vec3(-0.3f, -1, 0)}) {
                 Scene scene = with_sun(way);
-                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, viewed from +x
                 add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
                 finish_scene(scene);
                 raster::Settings settings;
@@ -129,7 +136,7 @@ TEST_SUITE("unit") {
                 camera.projection = Camera::Projection::kOrthographic;
                 camera.height = 0.2;
                 const ImageFloat found = arriving(scene, {camera, 100, 100}, settings);
-                double lit = 0; // metres of full light, across the wall
+                double lit = 0; // meters of full light, across the wall
                 for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
                 CAPTURE(way.x);
                 CAPTURE(side);
@@ -140,26 +147,28 @@ TEST_SUITE("unit") {
     TEST_CASE("no light through a vault's thin shell, where it begins to turn away from the sun, either") {
         for (const int facets : {10, 40, 160}) {
             Scene scene = with_sun({-0.5f, -0.75f, 0});
-            scene.materials.front() = Diffuse{{Rgb(0)}}; // the ground's
+            scene.materials.front() = Diffuse{{Rgb(0)}}; // the ground's material
             add(scene, trough({0, 1, 0}, 2, 0, kPiDouble, facets));
             finish_scene(scene);
             raster::Settings settings;
             settings.shadow_map_side = 1024;
             const ImageRgb seen = render(scene, {look({1, 1, 0.5}, {-1.5, 2, 0}, 70), 200, 150}, settings).radiance;
             double sum = 0;
-            for (const Rgb& c : seen) sum += static_cast<double>(c.g) * kPiDouble / 2; // of light that meets the shell squarely
+            // The sum is relative to light at normal incidence.
+            for (const Rgb& c : seen) sum += static_cast<double>(c.g) * kPiDouble / 2;
             CAPTURE(facets);
             CHECK(sum < 10);
         }
     }
 
-    // Half of the filter sees past the wall. What the other half sees is known better than the wall's own depths are.
+    // Half of the filter extends past the wall. The depths that this half finds are more accurate than those of the
+    // wall itself.
     TEST_CASE("a wall that the sun all but passes by is dark under a roof that ends just behind it") {
         for (const int side : {256, 400, 512})
             for (const float grazing : {0.0005f, 0.0015f}) {
                 Scene scene = with_sun({-grazing, -1, 0.4f});
                 std::get<SunLight>(scene.lights.front()).irradiance = Rgb(500);
-                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, viewed from +x
                 add(scene, QuadList{{{Vec3(-0.008f, 1.02f, 2), Vec3(1, 0.5f, 0), Vec3(0, 0, -4)}}});
                 finish_scene(scene);
                 raster::Settings settings;
@@ -167,8 +176,9 @@ TEST_SUITE("unit") {
                 Camera camera = look({0.5, 0.975, 0}, {0, 0.975, 0});
                 camera.projection = Camera::Projection::kOrthographic;
                 camera.height = 0.05;
-                double lit = 0; // part of the wall
-                for (const float part : arriving(scene, {camera, 100, 100}, settings)) lit += static_cast<double>(part) / sqr(100.0);
+                double lit = 0; // fraction of the wall
+                for (const float part : arriving(scene, {camera, 100, 100}, settings))
+                    lit += static_cast<double>(part) / sqr(100.0);
                 CAPTURE(side);
                 CAPTURE(grazing);
                 CHECK(lit < 1e-3);
@@ -190,7 +200,8 @@ TEST_SUITE("unit") {
             }
     }
 
-    // Facets from about three texels wide to less than half a one. Not none: what is finer than texels the map does not know.
+    // Facets are from about three texels to less than half a texel wide. Some speckle is accepted, because the map
+    // cannot resolve detail below a texel.
     TEST_CASE("relief that the sun sees wholly: less than a twentieth of it is speckled") {
         for (const std::uint32_t grid : {30u, 60u, 120u, 240u}) {
             Scene scene = with_sun({-1, -1, 0.2f}); // steeper than any slope
@@ -205,10 +216,12 @@ TEST_SUITE("unit") {
         }
     }
 
-    // The truth: lines to the sun against the facets' outline, left out where the filter sees the border of a shadow.
+    // The reference traces lines to the sun against the facets' profile. Positions whose filter covers a shadow
+    // boundary are skipped.
     TEST_CASE("a coarse trough under a sun that grazes it: neither lines along its valleys nor light past its rim") {
         for (const int facets : {5, 9, 40})
-            for (const double turn : {0.3, 0.6, 0.75, 0.8, 0.85, 0.9, 1.05, 1.2}) { // of the sun from the zenith, radians
+            // The values are the sun's angle from the zenith, in radians.
+            for (const double turn : {0.3, 0.6, 0.75, 0.8, 0.85, 0.9, 1.05, 1.2}) {
                 constexpr int kSide = 200;
                 constexpr double kWidth = 2.8, kTexel = 2 * kWidth / 256;
                 const Vec2d to_sun(std::sin(turn), std::cos(turn));
@@ -232,7 +245,7 @@ TEST_SUITE("unit") {
                 CAPTURE(facets);
                 CAPTURE(turn);
                 CHECK(lines == 0);
-                CHECK(leaks <= 4); // of 8000 pixels
+                CHECK(leaks <= 4); // of 8,000 pixels
             }
     }
 
@@ -242,12 +255,13 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-1, 0, -1), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
         add(scene, QuadList{{{Vec3(1, 0, -1), Vec3(0, 0, 2), Vec3(0, 2, 0)}}});
         add(scene, Sphere{Vec3(0.35f, 0.42f, 0.3f), 0.42f});
-        add(scene, QuadList{{{Vec3(-0.35f, 1.98f, -0.35f), Vec3(0.7f, 0, 0), Vec3(0, 0, 0.7f)}}}, Mat4(), Emissive{Rgb(5)});
-        scene.camera = from_above(0.001, 1.9); // from below the ball
+        add(scene, QuadList{{{Vec3(-0.35f, 1.98f, -0.35f), Vec3(0.7f, 0, 0), Vec3(0, 0, 0.7f)}}}, Mat4(),
+            Emissive{Rgb(5)});
+        scene.camera = from_above(0.001, 1.9); // from below the sphere
         finish_scene(scene);
         constexpr int kSide = 380;
         const ImageFloat found = arriving(scene, {scene.camera, kSide, kSide});
-        int steps = 0, penumbra = 0; // a pixel of 5 mm across a penumbra of 0.2 m and more
+        int steps = 0, penumbra = 0; // a pixel is 5 mm wide, a penumbra at least 0.2 m
         for (int y = 0; y < kSide; ++y)
             for (int x = 1; x < kSide; ++x) {
                 const float a = found(x - 1, y), b = found(x, y);
@@ -258,8 +272,9 @@ TEST_SUITE("unit") {
         CHECK(steps < 10);
     }
 
-    // The plate hides the lower rim of the ball: of its lower edge, which hides it first, the map shows little beside what
-    // lies behind, and that passes the light by. The truth: lines to points evenly over the disk that the ball is.
+    // The plate hides the lower part of the spherical light. Its lower edge occludes the light first, but the map
+    // shows little of that edge because the surface behind it is not an occluder. The reference traces lines to
+    // points uniformly distributed over the sphere's disk.
     TEST_CASE("a plate that leans towards a lamp: its shadow begins without a step and is as deep as the part it hides") {
         const Vec3d lamp(0, 3.9, -5.4), edge(0, 1.35, -2.6), lean(0, 0.4, -1.2);
         Scene scene;
@@ -281,14 +296,16 @@ TEST_SUITE("unit") {
                 for (int k = 0; k < 64; ++k) {
                     const double a = (i + 0.5) / 32 - 1, b = (k + 0.5) / 32 - 1;
                     if (a * a + b * b > 1) continue;
-                    const Vec3d way = lamp + Vec3d(a, 0, 0) * radius + up * (b * radius) - p, n = cross(Vec3d(1, 0, 0), lean);
+                    const Vec3d way = lamp + Vec3d(a, 0, 0) * radius + up * (b * radius) - p,
+                                n = cross(Vec3d(1, 0, 0), lean);
                     const double along = (p + way * (dot(n, edge - p) / dot(n, way)) - edge).z / lean.z;
                     hidden += along >= 0 && along <= 1;
                     ++all;
                 }
             const double off = static_cast<double>(found(1, y)) - (1 - static_cast<double>(hidden) / all);
             worst = max(worst, std::abs(off)), squares += off * off;
-            if (y > 0) step = max(step, std::abs(static_cast<double>(found(1, y)) - static_cast<double>(found(1, y - 1))));
+            if (y > 0)
+                step = max(step, std::abs(static_cast<double>(found(1, y)) - static_cast<double>(found(1, y - 1))));
             penumbra += hidden > 0 && hidden < all;
         }
         CHECK(penumbra > 50);

@@ -1,4 +1,4 @@
-// A floor seen from above, and which part of the light arrives on it.
+// This header provides a floor viewed from above and measures the fraction of the light that reaches it.
 #pragma once
 
 #include "tests/raster/scenes.h"
@@ -8,9 +8,9 @@
 namespace duet::test {
 
 inline constexpr int kSize = 200;      ///< pixels
-inline constexpr double kSquare = 4.0; ///< side of the floor's part in the picture, metres
+inline constexpr double kSquare = 4.0; ///< side of the visible part of the floor, in meters
 
-/// Straight down on [−2, 2]² of the floor, from below all that casts shadows there.
+/// Returns a view straight down at [−2, 2]² of the floor, from below all shadow casters.
 inline View over_floor(double height = 0.25) {
     Camera camera = look({0, height, 0}, {0, 0, 0});
     camera.projection = Camera::Projection::kOrthographic;
@@ -29,7 +29,7 @@ inline Scene floor_scene(float half = 4) {
     return scene;
 }
 
-/// The part of the light that arrives at each pixel.
+/// Returns the fraction of the light that reaches each pixel.
 inline ImageFloat visible(const Scene& scene, const View& view, raster::Settings settings = {}) {
     const ImageRgb shaded = render(scene, view, settings).radiance;
     settings.shadows = false;
@@ -39,8 +39,9 @@ inline ImageFloat visible(const Scene& scene, const View& view, raster::Settings
     return result;
 }
 
-/// Visibility against an outline of which `inside` tells how far within it a point is (negative: without): all dark
-/// or all lit farther than `reach` from it, and of the right area to `tolerance` metres along `perimeter`.
+/// Compares visibility with a known shadow silhouette. `inside` returns how far within it a point is (negative
+/// outside). Pixels farther than `reach` from it must be fully dark or fully lit, and the area must be right to
+/// `tolerance` meters along `perimeter`.
 template <typename Inside>
 void check_outline(const ImageFloat& found, const Inside& inside, double reach, double perimeter, double tolerance) {
     constexpr double kPixel = kSquare / kSize;
@@ -55,7 +56,8 @@ void check_outline(const ImageFloat& found, const Inside& inside, double reach, 
             if (depth < -reach) wrong += found(x, y) < 1;
         }
     CHECK(wrong == 0);
-    // Pixels whose centres decide are themselves off by up to half a pixel along the outline; by 1/8 in the mean.
+    // The reference classifies pixels by their centers, so it is off by up to half a pixel along the silhouette, and
+    // by 1/8 on average.
     CHECK(std::abs(area - expected) * kPixel * kPixel < perimeter * (tolerance + kPixel / 8));
 }
 

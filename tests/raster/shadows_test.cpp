@@ -1,4 +1,4 @@
-// Shadow maps against shadows whose outline is known.
+// These tests compare shadow maps with shadows of known silhouettes.
 #include "tests/raster/shadow_floor.h"
 
 #include "raster/prepare.h"
@@ -40,7 +40,8 @@ TEST_SUITE("unit") {
             settings.shadow_map_side = 1024;
             const double half = sun ? 0.5 : 0.75;
             const Vec3d middle = sun ? Vec3d(0.4, 0, 0.2) : Vec3d();
-            const double texel = 8.0 / settings.shadow_map_side; // of the sun's map over all; the spot's is finer
+            // This is the texel of the sun's map over the whole scene. The spot's map is finer.
+            const double texel = 8.0 / settings.shadow_map_side;
             check_outline(visible(scene, over_floor(), settings),
                           [&](Vec3d p) {
                               const Vec3d d = abs(p - middle);
@@ -62,8 +63,8 @@ TEST_SUITE("unit") {
                 finish_scene(scene);
                 raster::Settings settings;
                 settings.shadow_map_side = side;
-                // The sphere's own shadow falls beyond the floor or onto it: the sphere is looked at, and the floor
-                // where it is in no shadow.
+                // The sphere's own shadow falls beyond the floor or onto it. The views show the sphere, and the floor
+                // where it is not in shadow.
                 const View ball{look({4, 3, 4}, {1, 3, 0}, 12), 64, 64};
                 for (const float part : visible(scene, ball, settings)) CHECK(part == 1);
                 if (lift == 1.0f) continue;
@@ -90,7 +91,7 @@ TEST_SUITE("unit") {
                 const ImageRgb shaded = render(scene, view, settings).radiance;
                 float brightest = 0;
                 for (const Rgb& c : shaded) brightest = max(brightest, c.g);
-                CHECK(brightest < 1e-3); // where light grazes by less than a thousandth, filters see past the roof
+                CHECK(brightest < 1e-3); // at grazing angles below a thousandth, filters reach past the roof
                 raster::Settings open = settings;
                 open.shadows = false;
                 CHECK(std::ranges::count_if(render(scene, view, open).radiance, [](Rgb c) { return c.g > 0; }) > 5000);
@@ -101,7 +102,7 @@ TEST_SUITE("unit") {
     TEST_CASE("no peter-panning: behind a box that stands on the floor the shadow begins at its foot") {
         Scene scene = floor_scene();
         add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
-        scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)}); // the shadow reaches to x = 1.5
+        scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)}); // the shadow extends to x = 1.5
         finish_scene(scene);
         raster::Settings settings;
         settings.shadow_map_side = 1024;
@@ -125,7 +126,8 @@ TEST_SUITE("unit") {
         box.moving = true;
         box.to_world_end = translation(Vec3(0.1f, 0, 0));
         for (int i = 0; i < 40; ++i)
-            scene.lights.push_back(SpotLight{Vec3(0, 3 + 0.1f * static_cast<float>(i), 0), Vec3(0, -1, 0), Rgb(1), 0.8f, 0.7f});
+            scene.lights.push_back(
+                SpotLight{Vec3(0, 3 + 0.1f * static_cast<float>(i), 0), Vec3(0, -1, 0), Rgb(1), 0.8f, 0.7f});
         finish_scene(scene);
         raster::Settings settings;
         for (const bool moving : {false, true}) {
@@ -134,10 +136,12 @@ TEST_SUITE("unit") {
             const raster::Shadows& shadows = *prepared.data().shadows;
             CHECK(shadows.moments() == (moving ? raster::Shadows::kMoments : 1));
             CHECK(shadows.memory_bytes() > 100 << 20);
-            CHECK(shadows.memory_bytes() <= 512 << 20); // of 2048 texels a side: 0.7 and 5.4 GB
+            CHECK(shadows.memory_bytes() <= 512 << 20); // with 2048 texels a side: 0.7 and 5.4 GB
             Control control;
-            const auto told = raster::render(prepared, {scene.camera, 8, 8}, settings, control).statistics.approximations;
-            CHECK(std::ranges::any_of(told, [](const std::string& s) { return s.find("coarser") != std::string::npos; }));
+            const auto told =
+                raster::render(prepared, {scene.camera, 8, 8}, settings, control).statistics.approximations;
+            CHECK(
+                std::ranges::any_of(told, [](const std::string& s) { return s.find("coarser") != std::string::npos; }));
         }
     }
 
@@ -151,14 +155,15 @@ TEST_SUITE("unit") {
         raster::Settings settings;
         settings.samples_per_pixel = 16;
         View from_above = over_floor(3);
-        // In the middle of its way the ball covers its own shadow but for the slant; far beside it all is lit.
+        // In the middle of its path the sphere covers its own shadow except for the light's slant. Far beside it
+        // everything is lit.
         const ImageFloat above = visible(scene, from_above, settings), floor = visible(scene, over_floor(), settings);
         double least = 1;
         for (int x = 60; x < 140; ++x) least = std::min(least, static_cast<double>(floor(x, kSize / 2 + 5)));
         CHECK(least > 0.3); // at most 0.6 m of 2 m at a time
         CHECK(least < 0.9);
         CHECK(above(10, 10) == 1);
-        // The ball alone, no floor to be shaded: its light is all there.
+        // The sphere is alone, without a floor to shade, and must be fully lit.
         Scene alone;
         Object& other = add(alone, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));
         other.moving = true;

@@ -1,4 +1,5 @@
-// Silhouettes while the camera moves by parts of a pixel: how much more pixels change there than they should.
+// These tests measure how much more than necessary silhouette pixels change while the camera moves by fractions of a
+// pixel.
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +11,7 @@ namespace {
 
 constexpr int kFrames = 6, kFiner = 4;
 
-/// Round and sharp things on a floor, between a lamp and a sky.
+/// Returns round and sharp objects on a floor, between a light and a sky.
 Scene still_life(const Material& floor) {
     Scene scene;
     add(scene, QuadList{{{Vec3(-3, 0, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}}, Mat4(), floor);
@@ -23,7 +24,8 @@ Scene still_life(const Material& floor) {
     return scene;
 }
 
-/// The camera's path: an eighth of a pixel of the middle a frame, to the right and a little down.
+/// Returns a frame of the camera path, which moves an eighth of a center pixel per frame to the right and slightly
+/// down.
 View frame(int i, int finer = 1) {
     View view{look({0.5, 1.6, 3.6}, {0, 0.4, 0}, 34), 128 * finer, 96 * finer};
     const double pixel = 2 * std::tan(17 * kPiDouble / 180) * length(view.camera.look_at - view.camera.eye) / 96;
@@ -32,7 +34,7 @@ View frame(int i, int finer = 1) {
     return view;
 }
 
-/// What a picture of pixels smaller by kFiner shows to ours.
+/// Averages an image that is finer by kFiner down to the test's resolution.
 ImageRgb reduced(const ImageRgb& fine) {
     ImageRgb result(fine.width() / kFiner, fine.height() / kFiner);
     for (int y = 0; y < fine.height(); ++y)
@@ -40,7 +42,7 @@ ImageRgb reduced(const ImageRgb& fine) {
     return result;
 }
 
-/// Pixels beside which, in any frame, another object begins.
+/// Returns the pixels that are next to a different object in any frame.
 Image<std::uint8_t> silhouettes(const Scene& scene) {
     Image<std::uint8_t> result(128, 96, 0);
     for (int i = 0; i < kFrames; ++i) {
@@ -54,8 +56,8 @@ Image<std::uint8_t> silhouettes(const Scene& scene) {
 }
 
 struct Shimmer {
-    double change = 0, due = 0; ///< of a pixel from frame to frame, on the mean: found, and of the finer pictures
-    double worst = 0;           ///< by which one changes more than is due
+    double change = 0, due = 0; ///< mean change of a pixel from frame to frame: measured, and in the finer images
+    double worst = 0;           ///< largest excess of a pixel's change
 };
 Shimmer shimmer(const Scene& scene, const raster::Settings& settings) {
     raster::Settings fine = settings;
@@ -101,7 +103,7 @@ TEST_SUITE("image") {
             std::string name;
             const Scene& scene;
             raster::Settings settings;
-            double worst; ///< of a pixel that changes by light as bright as 1
+            double worst; ///< bound for a pixel that changes by light of radiance 1
         };
         const std::array<Case, 5> cases{{{"soft shadows", matt, only(true, false, false, 0), 0.1},
                                          {"ambient occlusion", matt, only(false, true, false, 0), 0.15},
@@ -117,7 +119,7 @@ TEST_SUITE("image") {
             CHECK(found.change < 1.2 * found.due + 1e-3);
             CHECK(found.worst < c.worst);
         }
-        raster::Settings hard = only(true, true, false, 0); // what is not smoothed shimmers: the measure sees it
+        raster::Settings hard = only(true, true, false, 0); // without smoothing: the measure must detect the shimmer
         hard.samples_per_pixel = 1;
         const Shimmer found = shimmer(matt, hard);
         CHECK(found.worst > 0.6);

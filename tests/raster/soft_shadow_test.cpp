@@ -1,4 +1,4 @@
-// Soft shadows against the part of a lamp that is seen.
+// These tests compare soft shadows with the visible fraction of a light.
 #include "tests/raster/shadow_floor.h"
 
 #include "common/light/lambert.h"
@@ -10,8 +10,8 @@ using namespace duet::test;
 
 TEST_SUITE("unit") {
 
-    // What a square hides of a square lamp, both parallel to the floor, is where the lines through its corners meet the
-    // lamp: the irradiance that arrives is in closed form, too.
+    // The square occluder and the square light are parallel to the floor. The lines through the occluder's corners
+    // bound the hidden part of the light, so the irradiance has a closed form.
     TEST_CASE("a square before a square lamp: the penumbra of the closed form, to 1 % in the mean") {
         Scene scene = floor_scene();
         constexpr float kLamp = 0.5f, kHeight = 3, kSide = 0.6f, kAbove = 1;
@@ -29,8 +29,9 @@ TEST_SUITE("unit") {
             for (int y = 0; y < kSize; y += 4)
                 for (int x = 0; x < kSize; x += 4) {
                     const Vec3d p = floor_point(x, y);
-                    const auto hidden = [&](double at) { // an interval of the lamp, along one axis
-                        const double a = at + (-static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove),
+                    const auto hidden = [&](double at) { // an interval of the light, along one axis
+                        const double a = at +
+                                         (-static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove),
                                      b = at + (static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove);
                         const double lamp = static_cast<double>(kLamp);
                         return Vec2d(std::clamp(a, -lamp, lamp), std::clamp(b, -lamp, lamp));
@@ -54,14 +55,15 @@ TEST_SUITE("unit") {
         }
     }
 
-    // What a square hides of a lamp of any shape, by points all over that.
+    // The fraction of a light of any shape that a square hides is estimated from points all over the light.
     TEST_CASE("shadows of squares, slivers of 1 : 10,000, straight and slanting, and thin triangles, from a micrometre to 1000 km") {
         struct Lamp {
             Vec3 u, v;
             bool triangle;
         };
-        const std::array<Lamp, 4> lamps{Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
-                                        Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
+        const std::array<Lamp, 4> lamps{
+            Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
+            Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
         constexpr double kHeight = 3, kSide = 0.6;
         for (const double size : {1e-6, 1.0, 1e6})
             for (const Lamp& lamp : lamps) {
@@ -88,7 +90,8 @@ TEST_SUITE("unit") {
                     for (int i = 0; i < kSteps * kSteps; ++i) {
                         const double a = (i % kSteps + 0.5) / kSteps, b = (i / kSteps + 0.5) / kSteps;
                         if (lamp.triangle && a + b > 1) continue;
-                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(lamp.u) * (a - 0.5) + Vec3d(lamp.v) * (b - 0.5), way = at - p;
+                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(lamp.u) * (a - 0.5) + Vec3d(lamp.v) * (b - 0.5),
+                                    way = at - p;
                         const Vec3d met = p + way / kHeight;
                         const double weight = 1 / sqr(dot(way, way));
                         all += weight;
@@ -122,7 +125,8 @@ TEST_SUITE("unit") {
         CHECK(found(2, 2) > 0.9f);
     }
 
-    // From close under the ball it covers but a few of the texels between the floor's lit part and the lamp.
+    // Near the contact point the sphere covers only a few shadow map texels between the floor's lit part and the
+    // light.
     TEST_CASE("no light in the umbra: a slanting lamp beside a ball that nearly touches the floor") {
         constexpr double kRadius = 0.86, kMiddle = 0.98;
         Scene scene;
@@ -136,15 +140,16 @@ TEST_SUITE("unit") {
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
                 const Vec3d p = floor_point(x, y);
-                bool dark = true; // however many points of the lamp
+                bool dark = true; // for all points of the light
                 for (int i = 0; i < 81 && dark; ++i) {
-                    const Vec3d lamp = Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0);
+                    const Vec3d lamp =
+                        Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0);
                     const Vec3d way = normalize(lamp - p);
                     const Vec3d to = Vec3d(0, kMiddle, 0) - p;
                     dark = dot(to, way) > 0 && length(to - way * dot(to, way)) < 0.95 * kRadius;
                 }
                 umbra += dark;
-                lit += dark && found(x, y) > 0.15f; // less than one of the lamp's four pieces
+                lit += dark && found(x, y) > 0.15f; // less than one of the light's four pieces
             }
         CHECK(umbra > 1000);
         CHECK(lit == 0);
@@ -165,7 +170,7 @@ TEST_SUITE("unit") {
             int dots = 0, shaded = 0;
             for (int y = 1; y + 1 < kSize; ++y)
                 for (int x = 1; x + 1 < kSize; ++x) {
-                    float least = 1, most = 0; // of the pixels around
+                    float least = 1, most = 0; // of the surrounding pixels
                     for (int i = 0; i < 9; ++i)
                         if (i != 4) {
                             const float other = found(x + i % 3 - 1, y + i / 3 - 1);

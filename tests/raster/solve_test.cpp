@@ -1,4 +1,5 @@
-// Where samples lie on their triangles, side by side: in float as the error bounds of raster/shader/solve.h say, in double exactly.
+// These tests check where samples lie on their triangles, computed with SIMD: in float within the error bounds of
+// raster/shader/solve.h, in double exactly.
 #include "raster/shader/solve.h"
 #include "raster/shader/sphere_strip.h"
 #include "raster/visibility/cover.h"
@@ -15,21 +16,23 @@ using namespace duet::test;
 
 namespace {
 
-/// For a solver: use(i, strip) for each of the strips that it has at a time.
+/// Adapts a solver's callback: calls use(i, strip) for each batch that the solver returns at a time.
 template <typename Use> auto each(Use use) {
     return [use](std::size_t first, const auto& strips) {
         for (std::size_t s = 0; s < strips.size(); ++s) use(first + s, strips[s]);
     };
 }
 
-/// Triangles of all shapes, down to slivers whose length is a million times their height; under them a ground to the horizon.
+/// Returns triangles of all shapes, including slivers whose length is a million times their height, above a ground
+/// plane that extends to the horizon.
 Scene slivers() {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> place(-1, 1), digits(0, 6);
     Mesh mesh;
     const auto point = [&] { return Vec3(place(random), place(random), place(random)); };
     for (std::uint32_t i = 0; i < 3000; ++i) {
-        const Vec3 a = point() * 2.0f, along = point(), across = cross(along, point()) * std::pow(10.0f, -digits(random));
+        const Vec3 a = point() * 2.0f, along = point(),
+                   across = cross(along, point()) * std::pow(10.0f, -digits(random));
         for (const Vec3 p : {a, a + along, a + along * place(random) + across}) mesh.positions.push_back(p);
         mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
@@ -42,7 +45,7 @@ Scene slivers() {
     return scene;
 }
 
-/// The same with normals at the vertices, some of which lean over to the other side.
+/// Returns the same triangles with vertex normals, some of which point to the other side.
 Scene smooth_slivers() {
     Scene scene = slivers();
     std::mt19937 random(2);
@@ -51,18 +54,20 @@ Scene smooth_slivers() {
     mesh.normals.resize(mesh.positions.size());
     for (const auto& [a, b, c] : mesh.triangles) {
         const Vec3 ng = normalize(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
-        for (const std::uint32_t corner : {a, b, c}) mesh.normals[corner] = normalize(ng + Vec3(lean(random), lean(random), lean(random)));
+        for (const std::uint32_t corner : {a, b, c})
+            mesh.normals[corner] = normalize(ng + Vec3(lean(random), lean(random), lean(random)));
     }
     return scene;
 }
 
-/// A wall of kAcross × kAcross cells, two triangles each: of any eight that follow each other numbers are 1024 apart, so that those
-/// side by side compete for the same places of a table.
+/// Returns a wall of kAcross × kAcross cells with two triangles each. The indices of any eight adjacent triangles are
+/// 1024 apart, so neighbors compete for the same slots of a table.
 constexpr std::uint32_t kAcross = 64;
 Scene shuffled_wall() {
     Mesh mesh;
     for (std::uint32_t i = 0; i < (kAcross + 1) * (kAcross + 1); ++i)
-        mesh.positions.push_back(Vec3(static_cast<float>(i % (kAcross + 1)), static_cast<float>(i / (kAcross + 1)), 0) * (2.0f / kAcross) -
+        mesh.positions.push_back(Vec3(static_cast<float>(i % (kAcross + 1)), static_cast<float>(i / (kAcross + 1)), 0) *
+                                     (2.0f / kAcross) -
                                  Vec3(1, 1, 0));
     std::vector<std::array<std::uint32_t, 3>> in_rows;
     for (std::uint32_t row = 0; row < kAcross; ++row)
@@ -79,7 +84,7 @@ Scene shuffled_wall() {
     return scene;
 }
 
-/// A picture's geometry, and its strips, tile by tile.
+/// Holds the geometry of an image and its sample batches, tile by tile.
 struct Strips {
     const Scene scene;
     const raster::Settings settings;
@@ -95,7 +100,7 @@ struct Strips {
           pass{pinhole, 0, raster::viewport_of(view, pinhole), samples}, grid{{0, 0, view.width, view.height}} {
         process_geometry(prepared.data(), grid, pass, settings, geometry);
     }
-    /// use(rect, places) for each tile.
+    /// Calls use(rect, places) for each tile.
     template <typename Use> void for_each_tile(const Use& use) const {
         for (std::size_t t = 0; t < grid.size(); ++t) {
             const raster::PixelRect rect = grid.tile(t);
@@ -109,9 +114,10 @@ struct Strips {
     }
 };
 
-/// Whether a sample lies in its unsnapped triangle, by the signs of its edge functions in double.
+/// Returns whether a sample is inside its unsnapped triangle, by the signs of its edge functions in double.
 bool lies_inside(const raster::WholeTriangle& whole, Vec2d pixel) {
-    const raster::FixedPoint beside{static_cast<int>(pixel.x) * raster::kSubPixels, static_cast<int>(pixel.y) * raster::kSubPixels};
+    const raster::FixedPoint beside{static_cast<int>(pixel.x) * raster::kSubPixels,
+                                    static_cast<int>(pixel.y) * raster::kSubPixels};
     const raster::Interpolation planes(whole.a, whole.b, whole.c, beside);
     return std::ranges::all_of(planes.e, [&](const Vec3d& e) {
         return e.x * (pixel.x - planes.origin_x) + e.y * (pixel.y - planes.origin_y) + e.z >= 0;
@@ -135,7 +141,8 @@ TEST_SUITE("unit") {
                 StripSolver<NoVaryings, float> in_float(geometry.triangles, picture.pass, rect, nothing, false);
                 StripSolver<NoVaryings, double> in_double(geometry.triangles, picture.pass, rect, nothing, false);
                 std::vector<std::uint32_t> inside(places.size());
-                in_double.solve(places, false, each([&](std::size_t s, const auto& strip) { inside[s] = strip.inside; }));
+                in_double.solve(places, false,
+                                each([&](std::size_t s, const auto& strip) { inside[s] = strip.inside; }));
                 in_float.solve(places, true, each([&](std::size_t s, const auto& strip) {
                     CHECK((strip.inside & ~inside[s]) == 0);
                     for (std::size_t i = 0; i < kStrip; ++i) {
@@ -143,9 +150,10 @@ TEST_SUITE("unit") {
                         const raster::Interpolated wanted =
                             interpolate(geometry.triangles.whole(strip.samples->id(i)), places[s].position(i));
                         const double depth = wanted.depth_sum / wanted.sum;
-                        const double error = std::max({std::abs(static_cast<double>(strip.b1[i]) - wanted.b1 / wanted.sum),
-                                                       std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum),
-                                                       std::abs(static_cast<double>(strip.depth[i]) / depth - 1)});
+                        const double error =
+                            std::max({std::abs(static_cast<double>(strip.b1[i]) - wanted.b1 / wanted.sum),
+                                      std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum),
+                                      std::abs(static_cast<double>(strip.depth[i]) / depth - 1)});
                         const bool holds = strip.inside >> i & 1;
                         ++seen;
                         close += error < 0x1p-20;
@@ -158,7 +166,7 @@ TEST_SUITE("unit") {
             CHECK(close > seen * 0.9);
             CHECK(worst < 0x1p-13);
             CHECK(worst > 0x1p-18);   // some are slivers
-            CHECK(mended > 50);       // and some are worse
+            CHECK(mended > 50);       // some exceed the error bound
             CHECK(worst_mended < 1e-6);
         }
     }
@@ -177,11 +185,13 @@ TEST_SUITE("unit") {
                     const auto some = places.subspan(first, std::min(together, places.size() - first));
                     solver.solve(some, false, each([&](std::size_t s, const auto& strip) {
                         for (std::size_t i = 0; i < raster::kStrip; ++i) {
-                            if (!(strip.samples->on_mesh & strip.inside & 1u << i)) continue; // beside its triangle a sample is taken inside
-                            const raster::Interpolated wanted =
-                                interpolate(triangles.whole(static_cast<std::uint32_t>(some[s].ids[i])), some[s].position(i));
-                            worst = std::max({worst, std::abs(static_cast<double>(strip.b1[i]) - wanted.b1 / wanted.sum),
-                                              std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum)});
+                            // A sample outside its triangle is moved inside, so it is not compared.
+                            if (!(strip.samples->on_mesh & strip.inside & 1u << i)) continue;
+                            const raster::Interpolated wanted = interpolate(
+                                triangles.whole(static_cast<std::uint32_t>(some[s].ids[i])), some[s].position(i));
+                            worst =
+                                std::max({worst, std::abs(static_cast<double>(strip.b1[i]) - wanted.b1 / wanted.sum),
+                                          std::abs(static_cast<double>(strip.b2[i]) - wanted.b2 / wanted.sum)});
                             ++seen;
                         }
                     }));
@@ -210,7 +220,7 @@ TEST_SUITE("unit") {
             CHECK(wrong == 0);
             CHECK(vouched > 20'000);
             CHECK(vouched > inside * 0.9);
-            CHECK(vouched < inside); // at the edges it can't tell
+            CHECK(vouched < inside); // it cannot decide at the edges
         }
     }
 
@@ -232,14 +242,16 @@ TEST_SUITE("unit") {
                     CHECK(strip.samples->on_mesh == strip.samples->seen);
                     for (std::size_t i = 0; i < kStrip; ++i) {
                         if (!(strip.samples->on_mesh >> i & 1)) continue;
-                        const Hit hit = find_hit(picture.geometry, picture.pass, strip.samples->id(i), places[s].position(i));
+                        const Hit hit =
+                            find_hit(picture.geometry, picture.pass, strip.samples->id(i), places[s].position(i));
                         const std::size_t triangle = strip.samples->index(i), half = triangle % 2;
                         const float both = strip.b1[i] + strip.b2[i];
                         ++halves[half];
                         together += strip.inside >> i & 1;
                         CHECK(hit.primitive == strip.samples->shape->primitive(triangle));
                         const Vec2 uv = half == 0 ? Vec2(both, strip.b2[i]) : Vec2(strip.b1[i], both);
-                        worst = std::max({worst, std::abs(static_cast<double>(uv.x - hit.u)), std::abs(static_cast<double>(uv.y - hit.v))});
+                        worst = std::max({worst, std::abs(static_cast<double>(uv.x - hit.u)),
+                                          std::abs(static_cast<double>(uv.y - hit.v))});
                     }
                 }));
             });
@@ -253,8 +265,9 @@ TEST_SUITE("unit") {
     TEST_CASE("points of spheres, side by side, are those of each sample's own ray: of stretched ones and from inside, too") {
         Scene scene;
         add(scene, Sphere{Vec3(0.3f, 0.2f, 0.5f), 0.9f});
-        add(scene, Sphere{Vec3(-1, 0.4f, 0), 0.5f}, translation(Vec3(-0.2f, 0.3f, 0.9f)) * scaling(Vec3(-0.7f, 1.8f, 1.1f)));
-        add(scene, Sphere{Vec3(0, 0, 0), 40}); // all else is in it
+        add(scene, Sphere{Vec3(-1, 0.4f, 0), 0.5f},
+            translation(Vec3(-0.2f, 0.3f, 0.9f)) * scaling(Vec3(-0.7f, 1.8f, 1.1f)));
+        add(scene, Sphere{Vec3(0, 0, 0), 40}); // contains everything else
         finish_scene(scene);
         for (const View& view : {perspective(), orthographic()}) {
             const Strips picture(scene, view);
@@ -278,15 +291,16 @@ TEST_SUITE("unit") {
                             ++seen[sphere.object];
                             worst = std::max(worst, static_cast<double>(length(p - point.p_object)) * grazing);
                             const double depth = static_cast<double>(hit.t) * picture.pinhole.near / exact.t_min;
-                            worst_depth = std::max(worst_depth, std::abs(static_cast<double>(strip.depth[i]) / depth - 1) * grazing);
+                            worst_depth = std::max(worst_depth,
+                                                   std::abs(static_cast<double>(strip.depth[i]) / depth - 1) * grazing);
                             wrong_side += (strip.side[i] < 0) != (dot(point.ng, ray.direction) > 0);
                         }
                     }
             });
             for (const int each : seen) CHECK(each > 1000);
-            CHECK(worst < 1e-5); // of 40
+            CHECK(worst < 1e-5); // relative to a radius of 40
             CHECK(worst_depth < 1e-5);
-            CHECK(wrong_side <= 2); // seen exactly along it
+            CHECK(wrong_side <= 2); // viewed exactly edge-on
         }
     }
 
@@ -300,7 +314,8 @@ TEST_SUITE("unit") {
             int strips = 0, of_directions = 0, turned = 0;
             double worst = 0;
             picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::StripPlace> places) {
-                StripSolver<NormalVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, normals, false);
+                StripSolver<NormalVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, normals,
+                                                          false);
                 solver.solve(places, true, each([&](std::size_t s, const auto& strip) {
                     strips += strip.samples->on_mesh != 0;
                     if (strip.samples->on_mesh == 0 || !strip.directions) return;
@@ -315,14 +330,15 @@ TEST_SUITE("unit") {
                         const Vec3d wanted = normalize(number(0) * at.b0 + number(1) * at.b1 + number(2) * at.b2);
                         const Vec3d n = normalize(Vec3d(Vec3(strip.at[0][i], strip.at[1][i], strip.at[2][i])));
                         worst = std::max(worst, length(n - wanted));
-                        const Vec3d way = picture.pinhole.ray(places[s].position(i)).direction, ng = cross(p(1) - p(0), p(2) - p(0));
-                        turned += dot(ng, way) * dot(ng, n) > 0; // the face is seen from one side, and n is on the other
+                        const Vec3d way = picture.pinhole.ray(places[s].position(i)).direction,
+                                    ng = cross(p(1) - p(0), p(2) - p(0));
+                        turned += dot(ng, way) * dot(ng, n) > 0; // the visible side of the face is opposite to n
                     }
                 }));
             });
             CHECK(strips > 1000);
             CHECK(of_directions > strips / 20);
-            CHECK(of_directions < strips * 0.9); // turned ones and slivers are not among them
+            CHECK(of_directions < strips * 0.9); // flipped normals and slivers are not among them
             CHECK(turned == 0);
             CHECK(worst < 0x1p-12);
             CHECK(worst > 0x1p-20);

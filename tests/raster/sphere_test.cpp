@@ -1,4 +1,4 @@
-// Screen bounds of spheres and ellipsoids against a ray for every pixel.
+// These tests compare the screen bounds of spheres and ellipsoids with a ray for every pixel.
 #include "raster/geometry/sphere.h"
 
 #include <doctest/doctest.h>
@@ -10,8 +10,8 @@ using namespace duet::raster;
 
 namespace {
 
-/// Whether the ray sees the sphere of the unit ball's image under `to_world` at or beyond t_min: a quadratic in the
-/// ball's space, in double.
+/// Returns whether the ray hits the transformed sphere at or beyond t_min. The quadratic is solved in object space in
+/// double.
 bool sees(const Rayd& ray, const Sphere& sphere, const Mat4d& to_object) {
     const Vec3d o = transform_point(to_object, ray.origin) - Vec3d(sphere.center);
     const Vec3d d = transform_vector(to_object, ray.direction);
@@ -27,9 +27,10 @@ struct Case {
     Mat4d to_world;
 };
 
-/// Whether it is wholly beyond the near plane of a camera that looks along -z.
+/// Returns whether the sphere is entirely beyond the near plane of a camera that looks along −z.
 bool beyond_near(const Case& c, double near) {
-    const double reach = static_cast<double>(c.sphere.radius) * length(Vec3d(c.to_world[2][0], c.to_world[2][1], c.to_world[2][2]));
+    const double reach =
+        static_cast<double>(c.sphere.radius) * length(Vec3d(c.to_world[2][0], c.to_world[2][1], c.to_world[2][2]));
     return c.camera.eye.z - transform_point(c.to_world, Vec3d(c.sphere.center)).z - reach >= near;
 }
 
@@ -42,7 +43,8 @@ void check_bounds(const Case& c) {
     PixelRect seen{view.width, view.height, 0, 0};
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {
-            // The centre and the corners of the pixel: the tight box is of the silhouette, not of pixel centres.
+            // Test the center and the corners of the pixel, because the tight box bounds the silhouette and not pixel
+            // centers.
             bool any = false;
             for (const Vec2d at :
                  {Vec2d(x + 0.5, y + 0.5), Vec2d(x, y), Vec2d(x + 1, y), Vec2d(x, y + 1), Vec2d(x + 1, y + 1)})
@@ -67,9 +69,10 @@ void check_bounds(const Case& c) {
     REQUIRE(bounds.y0 <= seen.y0);
     REQUIRE(bounds.x1 >= seen.x1);
     REQUIRE(bounds.y1 >= seen.y1);
-    // An orthographic camera's are of the whole, however much of it the near plane cuts off.
+    // The bounds of an orthographic camera cover the whole sphere, even if the near plane cuts it.
     if (c.camera.projection == Camera::Projection::kOrthographic && !beyond_near(c, pinhole.near)) return;
-    // Tight where the silhouette is whole in the picture: the margin is a pixel, the pixels' corners another.
+    // The bounds must be tight if the silhouette is entirely inside the image: one pixel of margin, plus one for the
+    // pixel corners.
     if (seen.x0 > 0 && seen.x1 < view.width && seen.y0 > 0 && seen.y1 < view.height) {
         CHECK(seen.x0 - bounds.x0 <= 3);
         CHECK(bounds.x1 - seen.x1 <= 3);
@@ -85,7 +88,7 @@ public:
     Vec3d vector(double reach) { return {(*this)(-reach, reach), (*this)(-reach, reach), (*this)(-reach, reach)}; }
     Mat4d stretch() {
         const Vec3d axis = normalize(vector(1) + Vec3d(0, 0, 1e-3));
-        // One by one: compilers evaluate operands in orders of their own.
+        // The numbers are drawn in separate statements because the evaluation order of operands is unspecified.
         const Mat4d first = rotation(axis, (*this)(0, 6));
         const Vec3d scale{(*this)(0.2, 2), (*this)(0.2, 2), -(*this)(0.2, 2)};
         const Mat4d second = rotation(axis, (*this)(0, 6));
@@ -113,7 +116,7 @@ TEST_SUITE("unit") {
     TEST_CASE("bounds hold every pixel that sees a sphere") {
         Random random(1);
         for (int i = 0; i < 1200; ++i) {
-            // From far ones to those that cross the near plane or hold the eye.
+            // Cases range from distant spheres to spheres that cross the near plane or contain the eye.
             const auto projection = i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective;
             const double near = std::array{1e-4, 0.5, 2.0}[static_cast<std::size_t>(i) % 3];
             const Sphere sphere{Vec3(random.vector(4)), static_cast<float>(random(0.05, i % 2 == 0 ? 1 : 5))};
@@ -137,22 +140,23 @@ TEST_SUITE("unit") {
         ground.look_at = {0, 0, 0};
         ground.fov_degrees = 20;
         check_bounds({ground, {Vec3(0, -1000, 0), 1000}, Mat4d()});
-        ground.eye = {13, 1e-3, 3}; // the eye a millimetre above it
+        ground.eye = {13, 1e-3, 3}; // the eye is a millimeter above the sphere
         check_bounds({ground, {Vec3(0, -1000, 0), 1000}, Mat4d()});
         check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(200, 100, -1000), 20}, Mat4d()});
-        check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(0, 0, 4), 1}, Mat4d()}); // around the eye
+        check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(0, 0, 4), 1}, Mat4d()}); // contains the eye
     }
 
     TEST_CASE("camera rays side by side are those of each alone, and meet spheres where those do: near, far, of any size, from inside") {
         Random random(3);
         int met = 0;
         for (int i = 0; i < 6000; ++i) {
-            Camera c = camera(i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective, i % 4 == 0 ? 1.5 : 1e-3);
+            Camera c = camera(i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective,
+                              i % 4 == 0 ? 1.5 : 1e-3);
             c.eye = c.eye + random.vector(1);
             const Pinhole pinhole = CameraModel({c, 64, 48}).through();
             const double size = std::pow(10, random(-6, 6));
             DrawSphere sphere;
-            // About the line of sight, or around the eye.
+            // The sphere is around the line of sight or around the eye.
             const Vec3d about = i % 5 == 0 ? c.eye : c.eye - normalize(c.eye - c.look_at) * random(0, 5 * size);
             sphere.sphere = {Vec3(about + random.vector(0.5 * size)), static_cast<float>(size)};
             sphere.far_side = i % 7 == 0;

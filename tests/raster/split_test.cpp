@@ -1,4 +1,4 @@
-// The rasterizer's shading of hits that a caller found, split into parts.
+// These tests check the rasterizer's shading of given hits, split into components.
 #include "raster/split.h"
 
 #include "tests/raster/scenes.h"
@@ -54,11 +54,13 @@ TEST_SUITE("unit") {
                 for (int x = 0; x < kView.width; ++x) {
                     const Ray ray = camera.ray({x + 0.5, y + 0.5});
                     const Hit hit = picture.hit(x, y);
-                    shaded(x, y) = again(x, y) = raster::shade_hit(prepared, settings, ray, hit, nullptr, screen.get()).sum();
+                    shaded(x, y) = again(x, y) =
+                        raster::shade_hit(prepared, settings, ray, hit, nullptr, screen.get()).sum();
                     if (!hit.valid()) continue;
                     const SurfacePoint point = surface_point(scene, ray, hit);
                     const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
-                    again(x, y) = raster::shade_surface(prepared, settings, point, bsdf, -ray.direction, screen.get()).sum();
+                    again(x, y) =
+                        raster::shade_surface(prepared, settings, point, bsdf, -ray.direction, screen.get()).sum();
                 }
             CHECK(largest_difference(picture.radiance, shaded) < 1e-5);
             CHECK(largest_difference(shaded, again) == 0);

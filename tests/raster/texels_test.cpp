@@ -1,4 +1,4 @@
-// Textures looked up side by side against the same looked up one by one: the same bits.
+// These tests check that batched texture lookups give the same bits as single lookups.
 #include "raster/shader/texels.h"
 
 #include "common/texture/pyramid.h"
@@ -28,7 +28,8 @@ TextureSet random_texture(int width, int height, const ImageTexture& texture) {
     return set;
 }
 
-/// Places in and about the picture; steps of all lengths, shapes and directions, among them none and some that are no numbers.
+/// Returns positions in and around the image, with footprints of all lengths, shapes and directions, including zero
+/// and NaN.
 SurfacePoint random_point(std::mt19937& random) {
     std::uniform_real_distribution<float> place(-2, 3), sign(-1, 1), size(-14, 3);
     SurfacePoint point;
@@ -54,14 +55,14 @@ SurfacePoint random_point(std::mt19937& random) {
     return point;
 }
 
-bool same_bits(Rgb a, Rgb b) { // any NaN is the same as any other
+bool same_bits(Rgb a, Rgb b) { // any two NaNs are equal
     const auto same = [](float x, float y) {
         return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) || (x != x && y != y);
     };
     return same(a.r, b.r) && same(a.g, b.g) && same(a.b, b.b);
 }
 
-/// How many of so many look-ups differ in any bit.
+/// Returns how many lookups differ in any bit.
 int differences(const TextureSet& set) {
     const ImageTexture& texture = std::get<ImageTexture>(set.textures[0]);
     const Texels texels(set.images[0], set.smaller[0]);
@@ -89,15 +90,18 @@ int differences(const TextureSet& set) {
     }
     return differ;
 }
-int differences(int width, int height, const ImageTexture& texture) { return differences(random_texture(width, height, texture)); }
+int differences(int width, int height, const ImageTexture& texture) {
+    return differences(random_texture(width, height, texture));
+}
 
-/// A torus that one texture colours, twice around it; some of its triangles have no area in the texture. Not `together`: by
-/// two materials, though they are alike.
+/// Returns a torus with one texture that repeats twice around it. Some triangles have no area in the texture. If
+/// `together` is false it has two materials, though they are equal.
 Scene textured_scene(const ImageTexture& texture, bool with_coordinates, bool together) {
     Scene scene;
     Mesh mesh = smooth_torus(48, 24);
     for (std::size_t i = 0; with_coordinates && i < mesh.positions.size(); ++i)
-        mesh.uvs.push_back(i < 100 ? Vec2(0.3f, 0.7f) : Vec2(static_cast<float>(i / 24) / 24, static_cast<float>(i % 24) / 12));
+        mesh.uvs.push_back(i < 100 ? Vec2(0.3f, 0.7f)
+                                   : Vec2(static_cast<float>(i / 24) / 24, static_cast<float>(i % 24) / 12));
     scene.textures = random_texture(61, 40, texture);
     add(scene, std::move(mesh), Mat4(), Diffuse{{Rgb(0.9f, 0.8f, 0.7f), 0}});
     if (!together) scene.objects[0].materials.push_back(scene.objects[0].materials[0]);
@@ -105,7 +109,7 @@ Scene textured_scene(const ImageTexture& texture, bool with_coordinates, bool to
     return scene;
 }
 
-/// Base colours, looked up together or one by one.
+/// Returns base colors that are looked up in batches or one by one.
 ImageRgb base_colors(const ImageTexture& texture, bool with_coordinates, bool together) {
     const Scene scene = textured_scene(texture, with_coordinates, together);
     Settings settings;
@@ -131,7 +135,8 @@ TEST_SUITE("unit") {
         for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic}) {
             TextureSet set = random_texture(37, 101, {.image = 0, .scale = {1, 1}, .filter = filter});
             std::mt19937 random(5);
-            for (int i = 0; i < 300; ++i) set.images[0][random() % set.images[0].size()].g = std::numeric_limits<float>::infinity();
+            for (int i = 0; i < 300; ++i)
+                set.images[0][random() % set.images[0].size()].g = std::numeric_limits<float>::infinity();
             build_pyramids(set);
             CHECK(differences(set) == 0);
         }

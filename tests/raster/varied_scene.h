@@ -1,4 +1,4 @@
-// A scene of all that the rasterizer draws, for tests that hold one way of shading to another.
+// This header builds a scene of everything that the rasterizer draws, for tests that compare two shading paths.
 #pragma once
 
 #include "tests/raster/scenes.h"
@@ -15,7 +15,7 @@ inline Mesh smooth_torus(int around, int across) {
     return mesh;
 }
 
-/// Meshes with and without normals, placed once, mirrored and stretched; a sphere and a quad.
+/// Returns meshes with and without normals, used once, mirrored and stretched, plus a sphere and a quad.
 inline Scene varied_scene(int around) {
     Scene scene;
     add(scene, smooth_torus(around, around / 2), Mat4(), Diffuse{{Rgb(0.8f, 0.5f, 0.3f)}});

@@ -1,4 +1,4 @@
-// Shadows of what has holes or lets a part of the light through.
+// These tests check shadows of alpha-masked and partly transparent surfaces.
 #include "tests/raster/shadow_floor.h"
 
 #include "raster/shadow/shadow_map.h"
@@ -35,7 +35,9 @@ TEST_SUITE("unit") {
                               const double x = p.x - middle.x + half, z = middle.z + half - p.z; // along u and v
                               const double beyond = half - max(std::abs(x - half), std::abs(z - half));
                               if (beyond < 0) return beyond;
-                              const auto to_line = [&](double at) { return std::abs(at - std::round(at / cell) * cell); };
+                              const auto to_line = [&](double at) {
+                                  return std::abs(at - std::round(at / cell) * cell);
+                              };
                               const bool even = (static_cast<int>(x / cell) + static_cast<int>(z / cell)) % 2 == 0;
                               return even ? min(to_line(x), to_line(z)) : -min(to_line(x), to_line(z));
                           },
@@ -43,9 +45,9 @@ TEST_SUITE("unit") {
         }
     }
 
-    // The texels' numbers are a fixed dither, of which the filter of hard shadows leaves one rank of 16: half a sixteenth,
-    // rms, at most. Soft shadows leave more. Were they as random as 0.2 rms of the light is wide, a mean of 3300 and more
-    // pixels would be off by 0.017 or more with a chance of 10^-6.
+    // The shadow map dithers with a fixed matrix. The filter of hard shadows leaves the error of one of its 16
+    // levels: at most half a sixteenth, rms. Soft shadows leave more. If the error were random with an rms of 0.2 of
+    // the light, a mean of at least 3300 pixels would be off by 0.017 or more with a probability of 10^-6.
     TEST_CASE("veils let the part of the light through that they do not stop, one or stacked, quads and balls, whatever the light") {
         enum { kSun, kSpot, kPoint, kLamp };
         struct Veils {
@@ -53,8 +55,8 @@ TEST_SUITE("unit") {
             float opacity;
             bool ball;
         };
-        for (const Veils veils : {Veils{1, 0.5f, false}, Veils{1, 0.45f, false}, Veils{1, 0.1f, false}, Veils{2, 0.5f, false},
-                                  Veils{3, 0.3f, false}, Veils{1, 0.4f, true}})
+        for (const Veils veils : {Veils{1, 0.5f, false}, Veils{1, 0.45f, false}, Veils{1, 0.1f, false},
+                                  Veils{2, 0.5f, false}, Veils{3, 0.3f, false}, Veils{1, 0.4f, true}})
             for (const int kind : {kSun, kSpot, kPoint, kLamp}) {
                 Scene scene = floor_scene();
                 for (int i = 0; i < veils.count; ++i) {
@@ -65,17 +67,19 @@ TEST_SUITE("unit") {
                     scene.maps.back().opacity = veils.opacity;
                 }
                 if (kind == kSun) scene.lights.push_back(SunLight{normalize(Vec3(0.1f, -1, 0.05f)), Rgb(2)});
-                if (kind == kSpot) scene.lights.push_back(SpotLight{Vec3(0, 4, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
+                if (kind == kSpot)
+                    scene.lights.push_back(SpotLight{Vec3(0, 4, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
                 if (kind == kPoint) scene.lights.push_back(PointLight{Vec3(0, 4, 0), Rgb(20)});
                 if (kind == kLamp)
-                    add(scene, QuadList{{{Vec3(-0.1f, 4, -0.1f), Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f)}}}, Mat4(), Emissive{Rgb(50)});
+                    add(scene, QuadList{{{Vec3(-0.1f, 4, -0.1f), Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f)}}}, Mat4(),
+                        Emissive{Rgb(50)});
                 finish_scene(scene);
                 const ImageFloat found = visible(scene, over_floor(0.1));
                 double sum = 0, squares = 0;
                 int pixels = 0;
                 for (int y = 0; y < kSize; ++y)
                     for (int x = 0; x < kSize; ++x) {
-                        const Vec3d p = floor_point(x, y); // where both sides of the ball are between it and the light
+                        const Vec3d p = floor_point(x, y); // both sides of the sphere are between it and the light
                         if (veils.ball ? length(p) > 0.65 : max(std::abs(p.x), std::abs(p.z)) > 0.8) continue;
                         sum += static_cast<double>(found(x, y));
                         squares += sqr(static_cast<double>(found(x, y)));
@@ -87,7 +91,8 @@ TEST_SUITE("unit") {
                 CAPTURE(veils.opacity);
                 CAPTURE(veils.ball);
                 CHECK(pixels >= 3300);
-                CHECK(std::abs(mean - std::pow(1 - static_cast<double>(veils.opacity), veils.ball ? 2 : veils.count)) < 0.017);
+                CHECK(std::abs(mean - std::pow(1 - static_cast<double>(veils.opacity), veils.ball ? 2 : veils.count)) <
+                      0.017);
                 CHECK(rms < (kind == kLamp ? 0.22 : 1.0 / 32 + 0.002));
             }
     }
@@ -107,12 +112,12 @@ TEST_SUITE("unit") {
         CHECK(visible(shaded, over_floor())(kSize / 2, kSize / 2) == 0);
     }
 
-    // Where a roof that lies on a wall is whole, the wall is dark as soon as the four texels about a place see the roof.
+    // If the roof on a wall is opaque, the wall is dark as soon as the four texels around a point contain the roof.
     TEST_CASE("a veil that lies on a steep wall covers no place of it whole, though all texels about the place be stopped by it") {
         for (const float opacity : {0.2f, 0.5f})
             for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-0.3f, -1, 0), Vec3(-0.1f, -1, 0)}) {
                 Scene scene = floor_scene();
-                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, seen from +x
+                add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, viewed from +x
                 add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
                 scene.maps.resize(3);
                 scene.maps.back().opacity = opacity;
@@ -120,7 +125,7 @@ TEST_SUITE("unit") {
                 finish_scene(scene);
                 raster::Settings settings;
                 settings.shadow_map_side = 512;
-                Camera camera = look({0.5, 0.95, 0}, {0, 0.95, 0}); // at the wall's top
+                Camera camera = look({0.5, 0.95, 0}, {0, 0.95, 0}); // at the top of the wall
                 camera.projection = Camera::Projection::kOrthographic;
                 camera.height = 0.1;
                 const ImageFloat found = visible(scene, {camera, 100, 100}, settings);

@@ -1,7 +1,8 @@
-// What a million samples say, beside what is known exactly: of the estimator's parts, and of whole renders. Independent
-// samples, so that their scatter tells the error of their mean. Three standard errors are exceeded by chance once in 370
-// times, by a mean over 64 seeds once in 260: in one of these 55 comparisons once in 5 times. The seeds are fixed; whoever
-// changes the numbers drawn, and finds one comparison beyond, sees by another seed whether it was chance.
+// These tests compare estimates with exact values, both of parts of the estimators and of whole renders. Each
+// estimate has a million independent samples, so the standard error of the mean follows from their variance. Chance
+// exceeds three standard errors once in 370 times, and once in 260 for a mean over 64 seeds. One of these 55
+// comparisons therefore fails by chance once in 5 times. The seeds are fixed. If a change of the random numbers makes
+// one comparison fail, a different seed shows whether that was chance.
 #include "common/light/environment.h"
 #include "common/light/lambert.h"
 #include "common/sampling/sampler.h"
@@ -24,10 +25,10 @@ constexpr float kAlbedo = 0.6f;
 struct Known {
     std::string name;
     Scene scene;
-    double radiance; ///< the mean over the picture
+    double radiance; ///< mean over the image
 };
 
-// What is computed in float is a few millionths off, all samples alike.
+// Float arithmetic has a relative error of a few millionths, which is the same for all samples.
 void check(const Estimate& found, double truth) {
     CAPTURE(found.mean);
     CAPTURE(found.error);
@@ -48,7 +49,8 @@ private:
     double count_ = 0, sum_ = 0, squares_ = 0;
 };
 
-// An orthographic camera above the origin of a floor, which looks at a square of it in a direction of this slope.
+// Returns a floor with an orthographic camera above the origin, which views a square of it at the given cosine to the
+// normal.
 SceneBuilder floor_seen(Material material, double seen, double cosine = 1) {
     SceneBuilder builder;
     const std::uint32_t floor = builder.material(std::move(material));
@@ -62,15 +64,16 @@ SceneBuilder floor_seen(Material material, double seen, double cosine = 1) {
     return builder;
 }
 
-constexpr double kSpot = 1e-3; // so small that irradiance is the same all over it
+constexpr double kSpot = 1e-3; // so small that the irradiance is constant over it
 
 Known lit_spot(const std::string& name, const Shape& lamp) {
     SceneBuilder builder = floor_seen(Diffuse{{Rgb(kAlbedo)}}, kSpot);
     builder.add(lamp, builder.material(Emissive{Rgb(5.0f)}));
     Known known{name, builder.finish(), 0};
     for (const Light& light : known.scene.lights)
-        known.radiance += static_cast<double>(surface_light_irradiance(std::get<SurfaceLight>(light), {0, 0, 0}, {0, 1, 0}).g) *
-                          static_cast<double>(kAlbedo) / kPiDouble;
+        known.radiance +=
+            static_cast<double>(surface_light_irradiance(std::get<SurfaceLight>(light), {0, 0, 0}, {0, 1, 0}).g) *
+            static_cast<double>(kAlbedo) / kPiDouble;
     return known;
 }
 
@@ -87,8 +90,9 @@ std::vector<Known> lit_spots() {
     return all;
 }
 
-// Unit squares, 1 apart or at right angles along an edge: Howell, «A Catalog of Radiation Heat Transfer Configuration
-// Factors», C-11 and C-14. A lamp of radiance 1 gives the other square the mean irradiance π × factor.
+// The unit squares are parallel at distance 1 or share an edge at a right angle. The factors are C-11 and C-14 of
+// Howell, "A Catalog of Radiation Heat Transfer Configuration Factors". A light of radiance 1 gives the other square
+// the mean irradiance π × factor.
 std::vector<Known> form_factors() {
     const double root2 = std::sqrt(2.0), root3 = std::sqrt(3.0);
     const double parallel = 2 / kPiDouble * (std::log(2 / root3) + 2 * root2 * std::atan(1 / root2) - kPiDouble / 2);
@@ -96,7 +100,8 @@ std::vector<Known> form_factors() {
     std::vector<Known> all;
     for (const bool above : {true, false}) {
         SceneBuilder builder = floor_seen(Diffuse{{Rgb(kAlbedo)}}, 1);
-        const QuadList lamp = above ? quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}) : quad({-0.5f, 0, -0.5f}, {1, 0, 0}, {0, 1, 0});
+        const QuadList lamp =
+            above ? quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}) : quad({-0.5f, 0, -0.5f}, {1, 0, 0}, {0, 1, 0});
         builder.add(lamp, builder.material(Emissive{Rgb(1.0f)}));
         all.push_back({above ? "parallel squares" : "squares at right angles", builder.finish(),
                        static_cast<double>(kAlbedo) * (above ? parallel : upright)});
@@ -117,15 +122,18 @@ std::vector<Layer> layers() {
 }
 
 Bsdf bsdf_of(const Material& material) { return bsdf_at(material, TextureSet(), SurfacePoint{}); }
-Vec3 slanted(double cosine) { return {0, static_cast<float>(std::sqrt(1 - cosine * cosine)), static_cast<float>(cosine)}; }
+Vec3 slanted(double cosine) {
+    return {0, static_cast<float>(std::sqrt(1 - cosine * cosine)), static_cast<float>(cosine)};
+}
 
-// ∫ eval·cos over the hemisphere by midpoints in the squares of sine and azimuth.
+// Integrates eval·cos over the hemisphere with the midpoint rule in sin² and the azimuth.
 double albedo_by_quadrature(const Bsdf& bsdf, Vec3 wo) {
     constexpr int kRings = 1200, kSectors = 1200;
     double sum = 0;
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kSectors; ++j) {
-            const double sine2 = (i + 0.5) / kRings, sine = std::sqrt(sine2), phi = 2 * kPiDouble * (j + 0.5) / kSectors;
+            const double sine2 = (i + 0.5) / kRings, sine = std::sqrt(sine2),
+                         phi = 2 * kPiDouble * (j + 0.5) / kSectors;
             const Vec3 wi(Vec3d(sine * std::cos(phi), sine * std::sin(phi), std::sqrt(1 - sine2)));
             sum += static_cast<double>(eval(bsdf, wo, wi).g);
         }
@@ -172,7 +180,8 @@ TEST_SUITE("statistical") {
                 return s ? static_cast<double>(s->radiance.g * std::max(0.0f, s->wi.y) / s->pdf) : 0.0;
             });
             check(parts, known.radiance * kPiDouble / static_cast<double>(kAlbedo));
-            check_rendered(known, {Integrator::kPath, Integrator::kDirect, Integrator::kNaive, Integrator::kUnshadowed});
+            check_rendered(known,
+                           {Integrator::kPath, Integrator::kDirect, Integrator::kNaive, Integrator::kUnshadowed});
         }
     }
 

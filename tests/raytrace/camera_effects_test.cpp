@@ -1,4 +1,4 @@
-// Motion blur and depth of field, against what geometry says.
+// These tests compare motion blur and depth of field with geometry.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -20,8 +20,8 @@ Settings emission_only(int samples) {
 
 TEST_SUITE("unit") {
 
-    // A lamp of width 1 crosses 4 metres during the motion: a point of its track sees it a quarter of the time. Sobol's
-    // 1D points are stratified: 256 samples know the fraction to better than 1/64.
+    // A light of width 1 moves 4 meters during the motion, so a point of its path is covered a quarter of the time.
+    // Sobol's 1D points are stratified, so 256 samples give the fraction to better than 1/64.
     TEST_CASE("a moving lamp is seen for the time that it is there, within the shutter") {
         for (const double close : {1.0, 0.25}) {
             SceneBuilder builder;
@@ -34,15 +34,16 @@ TEST_SUITE("unit") {
             camera.fov_degrees = 0.01;
             camera.shutter_close = close;
             const Scene scene = builder.finish();
-            // At time t it covers [−2.5 + 4t, −1.5 + 4t]: x = −1.2 from t = 0.075 to 0.325.
+            // At time t the light covers [−2.5 + 4t, −1.5 + 4t], which includes x = −1.2 from t = 0.075 to 0.325.
             const double expected = close == 1.0 ? 0.25 : (0.25 - 0.075) / 0.25;
             const double seen = mean_of(render_scene(scene, 2, emission_only(256)).radiance).g;
             CHECK(seen == doctest::Approx(expected).epsilon(0.07));
         }
     }
 
-    // The lens (radius 1, focused at 4) looks at a lamp's edge at distance 2 and beyond: the rays of one pixel cross
-    // the edge's plane in a disk of radius ½, the edge cuts it at 0.2 from its centre: a circular segment's area.
+    // The lens has radius 1 and focuses at 4. A light's edge is at distance 2, and the light continues beyond it. The
+    // rays of one pixel cross the edge's plane in a disk of radius ½. The edge cuts that disk at 0.2 from its center,
+    // so the covered area is a circular segment.
     TEST_CASE("an edge out of focus is blurred by the lens's disk") {
         SceneBuilder builder;
         const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f)});
@@ -59,7 +60,7 @@ TEST_SUITE("unit") {
         const double seen = mean_of(render_scene(scene, 4, emission_only(256)).radiance).g;
         CHECK(seen == doctest::Approx(expected).epsilon(0.02));
 
-        // In focus the edge is sharp: off the axis by more than the pixels' extent there is nothing.
+        // The edge is sharp in focus: a pixel off the axis by more than its extent receives no light.
         camera.focus_distance = 2;
         Control control;
         View view{scene.camera, 4, 4};
@@ -76,7 +77,7 @@ TEST_SUITE("unit") {
         Settings settings;
         settings.samples_per_pixel = 4;
         const Rendering without = render_scene(scene, 16, settings);
-        scene.needs.motion = true; // a lie, to have them drawn
+        scene.needs.motion = true; // deliberately wrong, so that times are sampled
         const Rendering with = render_scene(scene, 16, settings);
         CHECK(without.radiance.pixels() == with.radiance.pixels());
         CHECK(without.statistics.skipped.size() > with.statistics.skipped.size());

@@ -1,5 +1,5 @@
-// Errors fall with the number of samples as they must, to 65,536 of them, and there is no floor that they rest on: in
-// pictures whose truth is known in double precision.
+// These tests check that errors decrease with the sample count at the expected rate, up to 65,536 samples, without a
+// lower limit. The reference images are known in double precision.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/integrating_sphere.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSide = 8; // pixels
 
-// A floor, seen straight from above, and a lamp that stands beside what is seen.
+// The scene is a floor viewed straight from above and a light beside the visible part.
 constexpr double kAlbedo = 0.5, kLampRadiance = 4;
 constexpr std::array<Vec3d, 4> kLamp{Vec3d(-1.6, 0.2, 0.8), Vec3d(-1.6, 0.2, -0.8), Vec3d(-1.6, 1.2, -0.8),
                                      Vec3d(-1.6, 1.2, 0.8)};
@@ -34,7 +34,7 @@ Scene lit_floor() {
     return builder.finish();
 }
 
-// Irradiance at a point of the floor, by Lambert's formula for a polygon above the horizon (1760).
+// Returns the irradiance at a point of the floor by Lambert's formula for a polygon above the horizon (1760).
 double irradiance(Vec3d p) {
     double sum = 0;
     for (std::size_t i = 0; i < kLamp.size(); ++i) {
@@ -45,8 +45,8 @@ double irradiance(Vec3d p) {
     return std::abs(sum) * kLampRadiance / 2;
 }
 
-// The floor's radiance, the mean over each pixel: by Gauss and Legendre's rule of 5 × 5 points, exact to 1e-9 of so smooth
-// a function.
+// Returns the mean radiance of the floor over each pixel. Gauss-Legendre quadrature with 5 × 5 points is exact to
+// 1e-9 for such a smooth function.
 Image<double> floor_truth() {
     constexpr std::array<double, 5> at{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                        0.9061798459386640};
@@ -67,7 +67,7 @@ Image<double> sphere_truth() {
     return {kSide, kSide, kIntegratingSphere};
 }
 
-// Mean squared error over pixels and seeds.
+// Returns the mean squared error over pixels and seeds.
 double squared_error(const Prepared& prepared, const Scene& scene, const Image<double>& truth, Settings settings) {
     constexpr int kSeeds = 2;
     double sum = 0;
@@ -80,7 +80,7 @@ double squared_error(const Prepared& prepared, const Scene& scene, const Image<d
     return sum / (kSeeds * static_cast<double>(truth.size()));
 }
 
-// The slope of a line through points one factor of 4 after the other.
+// Returns the slope of a line through points whose sample counts increase by factors of 4.
 double slope(const std::vector<double>& log_errors) {
     const double n = static_cast<double>(log_errors.size()), middle = (n - 1) / 2;
     double across = 0, along = 0;
@@ -94,16 +94,18 @@ double slope(const std::vector<double>& log_errors) {
 
 void check_slope(const std::string& name, const Prepared& prepared, const Scene& scene, const Image<double>& truth,
                  Settings settings) {
-    std::vector<double> log_errors; // of the root
+    std::vector<double> log_errors; // of the root mean squared error
     for (int spp = 16; spp <= 65536; spp *= 4) {
         settings.samples_per_pixel = spp;
         log_errors.push_back(0.5 * std::log(squared_error(prepared, scene, truth, settings)));
     }
-    // A mean of 128 squares scatters by √(2/128) where errors are normal, its root's logarithm by half of that: 0.063.
-    // In the slopes of seven points and of the last three that is 0.063/(ln 4 √28) = 0.0085 and 0.063/(ln 4 √2) = 0.032.
-    // Five of each, for tails that are longer than a normal's.
+    // For normal errors a mean of 128 squares has a relative standard deviation of √(2/128), and the logarithm of its
+    // root half of that: 0.063. For the slopes of seven points and of the last three that gives 0.063/(ln 4 √28) =
+    // 0.0085 and 0.063/(ln 4 √2) = 0.032. The bounds are five times these values, because the tails are heavier than
+    // a normal distribution's.
     const double all = slope(log_errors), last = slope({log_errors.end() - 3, log_errors.end()});
-    MESSAGE(name, ": slope ", all, ", of the last three points ", last, ", error at 65536 ", std::exp(log_errors.back()));
+    MESSAGE(name, ": slope ", all, ", of the last three points ", last, ", error at 65536 ",
+            std::exp(log_errors.back()));
     CHECK(all < -0.5 + 0.043);
     CHECK(last < -0.5 + 0.16);
 }

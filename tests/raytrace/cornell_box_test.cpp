@@ -1,4 +1,5 @@
-// The Cornell box against the mean radiances that two independent renderers agree on (tests/golden/README.md).
+// These tests compare the Cornell box with mean radiances on which two independent renderers agree
+// (tests/golden/README.md).
 #include "common/scene/scene.h"
 #include "raytrace/render.h"
 #include "tests/support/cornell_means.h"
@@ -20,9 +21,9 @@ Rgbd block_mean(const ImageRgb& image, int row, int column) {
 
 TEST_SUITE("statistical") {
 
-    // A block's mean is over a million paths; its standard error, measured between seeds, is below 0.1 % for every
-    // block above 0.005, so that a false alarm at 1 % is ten of them. The published means themselves agree with each
-    // other to 0.5 % by block.
+    // Each block's mean is over a million paths. Its standard error, measured between seeds, is below 0.1 % for every
+    // block above 0.005, so a false alarm at 1 % would be ten standard errors. The published means agree with each
+    // other to 0.5 % per block.
     TEST_CASE("Cornell box, 512 x 512 at 35 degrees, 1024 samples: the published means") {
         Scene scene = load_scene(DUET_SOURCE_DIR "/models/cornell.json");
         scene.camera.fov_degrees = 35;
@@ -51,7 +52,7 @@ TEST_SUITE("statistical") {
                 CHECK(mean[channel] == doctest::Approx(block.mean[channel]).epsilon(0.01));
             }
         }
-        // Outside the listed blocks the picture is black, so sums over them compare whole pictures.
+        // The image is black outside the listed blocks, so sums over the blocks compare whole images.
         const Rgbd published(0.058420, 0.037953, 0.010739);
         for (std::size_t channel = 0; channel < 3; ++channel) {
             INFO("channel ", channel);

@@ -1,4 +1,4 @@
-// Direct light against closed forms.
+// These tests compare direct light with closed forms.
 #include "common/light/lambert.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kAlbedo = 0.6f;
 
-// A floor about the origin, and a camera that looks straight down at a small square of it: all its pixels see nearly
-// the radiance at the origin.
+// Returns a floor around the origin and a camera that looks straight down at a small square of it. All pixels have
+// nearly the radiance of the origin.
 SceneBuilder floor_scene(float scale = 1) {
     SceneBuilder builder;
     builder.add(quad(Vec3(-3, 0, 3) * scale, Vec3(6, 0, 0) * scale, Vec3(0, 0, -6) * scale),
@@ -27,7 +27,7 @@ SceneBuilder floor_scene(float scale = 1) {
     return builder;
 }
 
-// Where the floor's radiance comes from: every light of the scene, without shadows.
+// Returns the floor's radiance from every light of the scene, without shadows.
 double closed_form(const Scene& scene) {
     double irradiance = 0;
     for (const Light& light : scene.lights)
@@ -89,8 +89,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    // Each shadow ray must reach its lamp: were one lamp to shade itself the mean would drop. Sampled uniformly by
-    // solid angle a quad's light has little variance, so that few samples show a loss of some percent.
+    // Every shadow ray must reach its light: if a light shadowed itself, the mean would drop. Light from a quad
+    // sampled uniformly by solid angle has little variance, so few samples reveal a loss of some percent.
     TEST_CASE("an emissive surface does not shade itself, nor a floor itself, at any scale") {
         for (const float scale : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f})
             for (int kind = 0; kind < 4; ++kind) {
@@ -108,7 +108,7 @@ TEST_SUITE("unit") {
                 case 2:
                     builder.add(icosphere(1, scale, Vec3(0.5f, 2, 0) * scale), lamp);
                     break;
-                default: // placed by a transform that rounds
+                default: // a transform with rounding
                     builder.place(builder.shape(box_quads({-1, -1, -1}, {1, 1, 1})), lamp,
                                   translation(Vec3(0.4f, 2, 0.1f) * scale) * rotation(normalize(Vec3(1, 2, 3)), 0.7f) *
                                       scaling(Vec3(0.3f, 0.3f, 0.3f) * scale));
@@ -157,8 +157,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Six standard errors over ten seeds: exceeded by chance once in 5,000 times, in one of 16 comparisons once in 300.
-    // The seeds are fixed.
+    // The bound is six standard errors over ten seeds. Chance exceeds it once in 5,000 times, and one of 16
+    // comparisons once in 300. The seeds are fixed.
     TEST_CASE("irradiance from quads, triangles and spheres is that of the closed forms") {
         for (int kind = 0; kind < 4; ++kind)
             for (const Integrator integrator :
@@ -200,7 +200,8 @@ TEST_SUITE("statistical") {
                 builder.scene.environment = SkyEnvironment{};
                 expected = static_cast<double>(irradiance_closed_form(builder.scene.environment, {0, 1, 0})->g);
             } else {
-                // Radiance 1 in the upper half of directions, to the blur of a row of pixels at the horizon: E = π.
+                // The upper half of the directions has radiance 1, except for the blur of one pixel row at the
+                // horizon, so E = π.
                 ImageRgb image(32, 512);
                 for (int y = 0; y < 256; ++y)
                     for (int x = 0; x < 32; ++x) image(x, y) = Rgb(1.0f);

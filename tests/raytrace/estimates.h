@@ -1,4 +1,4 @@
-// Means of renderings with their standard errors, for statistical tests.
+// This header computes means of renders and their standard errors, for statistical tests.
 #pragma once
 
 #include "raytrace/render.h"
@@ -19,7 +19,7 @@ inline Rendering render_scene(const Scene& scene, int size, const Settings& sett
     return render(prepare(scene, settings), View{scene.camera, size, size}, settings, control);
 }
 
-/// The mean of a picture's green channel over independent seeds, and the standard error of that mean.
+/// Holds the mean of an image's green channel over independent seeds, and the standard error of that mean.
 struct Estimate {
     double mean = 0, error = 0;
 };
@@ -37,9 +37,9 @@ inline Estimate estimate(const Scene& scene, int size, Settings settings, int se
     return e;
 }
 
-/// How many standard errors lie between two estimates, or an estimate and a value. Over ten seeds each the
-/// distribution is Student's with about 18 and 9 degrees of freedom: 6 is exceeded by chance once in 90,000 and once in
-/// 5,000 times.
+/// Returns the number of standard errors between two estimates, or between an estimate and a value. With ten seeds
+/// each, the distribution is Student's with about 18 and 9 degrees of freedom: chance exceeds 6 once in 90,000 and
+/// once in 5,000 times.
 inline double deviations(const Estimate& a, const Estimate& b) {
     return std::abs(a.mean - b.mean) / std::sqrt(a.error * a.error + b.error * b.error);
 }

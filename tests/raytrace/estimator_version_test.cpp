@@ -7,11 +7,11 @@ using namespace duet::raytrace;
 
 TEST_SUITE("statistical") {
 
-    // What the estimators of kEstimatorVersion 7 converge to: the mean of models/everything.json and of
-    // models/spheres.json at 16 × 16 pixels, all of whose materials, lights and textures have a part in it. Where this
-    // fails and the change is meant, raise kEstimatorVersion (raytrace/render.h), or compare bench would go on using
-    // references of before, and put the new means here. The odds of a failure by chance are below 1 in 5,000 (see
-    // deviations()).
+    // These are the values to which the estimators of kEstimatorVersion 7 converge: the means of
+    // models/everything.json and models/spheres.json at 16 × 16 pixels. All materials, lights and textures of these
+    // scenes contribute. If this test fails after an intended change, raise kEstimatorVersion (raytrace/render.h) and
+    // put the new means here. Otherwise compare bench would continue to use outdated references. A failure by chance
+    // has odds below 1 in 5,000 (see deviations()).
     TEST_CASE("estimates have not changed without a new version") {
         struct Known {
             const char* scene;

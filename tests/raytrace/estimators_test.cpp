@@ -1,5 +1,5 @@
-// Light samples that look at a part of the light only (of many lamps, of an environment's peaks), and pixel filters:
-// what they estimate is what rays that follow the materials find.
+// These tests check light sampling that covers only a fraction of the light (of many lights, of an environment's
+// peaks), and pixel filters. The estimates must equal those of BSDF sampling.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -10,7 +10,8 @@ using namespace duet::raytrace;
 
 namespace {
 
-// A floor and a wall below forty lamps of all shapes, sizes and strengths, on both sides of what they light.
+// Returns a floor and a wall below forty lights of all shapes, sizes and powers, on both sides of the surfaces that
+// they illuminate.
 Scene many_lamps() {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
@@ -33,7 +34,7 @@ Scene many_lamps() {
     return builder.finish();
 }
 
-// A sphere on a floor under a sky with a sun of a few pixels, and little else above the mean.
+// Returns a sphere on a floor under a sky with a sun of a few pixels and little else above the mean.
 Scene under_a_picture() {
     SceneBuilder builder;
     builder.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), builder.material(Diffuse{{Rgb(0.6f)}}));
@@ -83,7 +84,7 @@ TEST_SUITE("unit") {
         for (int y = 0; y < 8; ++y) {
             CHECK(box(3, y).g == 0);
             CHECK(box(4, y).g == 1);
-            // Beyond 1/2 of the window's 3 pixels lies 0.1186 of it.
+            // A fraction of 0.1186 of the filter is beyond 1/2 pixel in the window of 3 pixels.
             CHECK(bell(3, y).g == doctest::Approx(0.1186).epsilon(0.02));
             CHECK(bell(4, y).g == doctest::Approx(1 - 0.1186).epsilon(0.01));
             CHECK(bell(2, y).g == 0);
@@ -93,7 +94,8 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    // Six standard errors of the difference over ten seeds each: exceeded by chance once in 90,000 times.
+    // The bound is six standard errors of the difference over ten seeds each, which chance exceeds once in 90,000
+    // times.
     TEST_CASE("light samples of many lamps, and of an environment's peaks, give what chance finds") {
         const std::pair<Scene, int> scenes[] = {{many_lamps(), 128}, {under_a_picture(), 256}};
         for (const auto& [scene, naive_samples] : scenes) {

@@ -1,4 +1,4 @@
-// --pixel: the sample that the picture has, and what is told of it.
+// These tests check --pixel: it must trace the same sample as the render and log its events.
 #include "raytrace/explain.h"
 
 #include "common/system/error.h"
@@ -44,9 +44,9 @@ TEST_SUITE("unit") {
         const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f)}});
         const std::uint32_t broken = builder.material(Emissive{Rgb(1.0f)});
         builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
-        builder.add(Sphere{{0.5f, 0.2f, 0}, 0.2f}, broken); // some samples of its outline's pixels hit it, some do not
+        builder.add(Sphere{{0.5f, 0.2f, 0}, 0.2f}, broken); // some samples of its silhouette pixels hit it, some do not
         Scene scene = builder.finish();
-        scene.materials[broken] = Emissive{Rgb(std::numeric_limits<float>::infinity())}; // which finish() would refuse
+        scene.materials[broken] = Emissive{Rgb(std::numeric_limits<float>::infinity())}; // finish() would reject it
         const View view{scene.camera, 24, 40};
         Settings settings;
         settings.samples_per_pixel = 5;
@@ -103,7 +103,8 @@ TEST_SUITE("unit") {
             for (int x = 0; x < view.width; ++x) {
                 const std::string text = explain(prepared, view, settings, {x, y, 3});
                 Rgbd sum;
-                for (std::size_t at = text.find(": adds ("); at != std::string::npos; at = text.find(": adds (", at + 1)) {
+                for (std::size_t at = text.find(": adds ("); at != std::string::npos;
+                     at = text.find(": adds (", at + 1)) {
                     std::istringstream numbers(text.substr(at + 8));
                     Rgbd light;
                     char comma = 0;
@@ -130,6 +131,8 @@ TEST_SUITE("unit") {
             CHECK_MESSAGE(error_of([&] { parse_sample_name(bad); }) == Containing("expected x,y or x,y,sample"), bad);
         const Scene scene = lit_room();
         const Prepared prepared = prepare(scene, {});
-        CHECK(error_of([&] { explain(prepared, View{scene.camera, 8, 8}, {}, {8, 0, 0}); }) == Containing("expected a pixel"));
+        CHECK(error_of([&] {
+                  explain(prepared, View{scene.camera, 8, 8}, {}, {8, 0, 0});
+              }) == Containing("expected a pixel"));
     }
 }

@@ -1,4 +1,4 @@
-// Films in files: kept, continued to the same bits, joined.
+// These tests check films in files: they are stored, continued with the same bits, and merged.
 #include "raytrace/film_keeper.h"
 
 #include "common/image/image_file.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
 
-/// Its floor has a picture that is filtered, less and less with every sample.
+/// Returns a scene whose floor has a filtered image texture. The filter becomes narrower with every sample.
 Scene small_scene() {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f, 0.6f, 0.7f)}});
@@ -76,7 +76,7 @@ TEST_SUITE("unit") {
         CHECK(same_bits(back.film, kept.film));
         CHECK(back.film.invalid(1, 1) == 1);
         CHECK(back.settings.size() == kept.settings.size());
-        check_same_picture("it", back, kept); // throws
+        check_same_picture("it", back, kept); // must throw
         CHECK(back.first_sample == 12);
         CHECK(read_image(folder / "film.exr").pixels() == kept.film.image().pixels());
     }
@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
             const Rendering whole = rendered(scene, settings);
             CHECK(whole.radiance.pixels() == expected.pixels());
             CHECK(whole.statistics.camera_rays + half.statistics.camera_rays == 40 * kWidth * kHeight);
-            CHECK(rendered(scene, settings).statistics.camera_rays == 0); // nothing is left to do
+            CHECK(rendered(scene, settings).statistics.camera_rays == 0); // no samples remain
         }
     }
 
@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
         std::uint32_t seen = 0;
         const Control watching{nullptr, [&](double) {
                                    if (!std::filesystem::exists(settings.film)) return;
-                                   const Film film = read_film(settings.film).film; // whole whenever one looks
+                                   const Film film = read_film(settings.film).film; // the file is complete at any time
                                    std::uint32_t most = 0;
                                    for (int y = 0; y < kHeight; ++y)
                                        for (int x = 0; x < kWidth; ++x) most = std::max(most, film.taken(x, y));
@@ -147,7 +147,8 @@ TEST_SUITE("unit") {
         for (const bool replicates : {true, false}) {
             settings.aovs.variance = replicates;
             const KeptFilm one = shard("one.exr", 0, 30);
-            const KeptFilm joined = merged({{"c", shard("c.exr", 16, 30)}, {"a", shard("a.exr", 0, 7)}, {"b", shard("b.exr", 7, 16)}});
+            const KeptFilm joined =
+                merged({{"c", shard("c.exr", 16, 30)}, {"a", shard("a.exr", 0, 7)}, {"b", shard("b.exr", 7, 16)}});
             CHECK(joined.first_sample == 0);
             CHECK((joined.film.estimated_relmse() >= 0) == replicates);
             double worst = 0;
@@ -156,14 +157,17 @@ TEST_SUITE("unit") {
                 CHECK(x.count == y.count);
                 for (std::size_t r = 0; r < Film::kReplicates; ++r)
                     for (std::size_t color = 0; color < 3; ++color)
-                        worst = std::max(worst, std::abs(x.sum[r][color] - y.sum[r][color]) / std::max(x.sum[r][color], 1e-30));
+                        worst = std::max(worst, std::abs(x.sum[r][color] - y.sum[r][color]) /
+                                                    std::max(x.sum[r][color], 1e-30));
             }
             CHECK(worst <= 1e-12);
         }
 
         const KeptFilm a = shard("a.exr", 0, 7);
         CHECK(error_of([&] { merged({}); }) == Containing("no film"));
-        CHECK(error_of([&] { merged({{"a", a}, {"again", a}}); }) == Containing("again: has samples from 0 on, but a has"));
+        CHECK(error_of([&] {
+                  merged({{"a", a}, {"again", a}});
+              }) == Containing("again: has samples from 0 on, but a has"));
         settings.seed = 1;
         const KeptFilm other = film_of(scene, settings, folder / "other.exr", 40, 50);
         const std::string error = error_of([&] { merged({{"a", a}, {"other", other}}); });
@@ -184,9 +188,11 @@ TEST_SUITE("unit") {
         };
         CHECK(error_with([](Settings& s) { s.seed = 5; }) == Containing("seed: found 0, expected 5"));
         CHECK(error_with([](Settings& s) { s.max_depth = 3; }) == Containing("depth: found 64, expected 3"));
-        CHECK(error_with([](Settings& s) { s.integrator = Integrator::kNaive; }) == Containing("integrator: found path, expected naive"));
+        CHECK(error_with([](Settings& s) { s.integrator = Integrator::kNaive; }) ==
+              Containing("integrator: found path, expected naive"));
         CHECK(error_with([](Settings& s) { s.sampler = SamplerKind::kIndependent; }) == Containing("sampler"));
-        CHECK(error_with([](Settings& s) { s.first_sample = 2; }) == Containing("samples from 0 on, expected from 2 on"));
+        CHECK(error_with([](Settings& s) { s.first_sample = 2; }) ==
+              Containing("samples from 0 on, expected from 2 on"));
         CHECK(error_with([](Settings& s) { s.aovs.depth = true; }) == Containing("keeps no depth"));
         Scene moved = scene;
         moved.camera.eye.x += 1;

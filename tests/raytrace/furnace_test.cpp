@@ -1,4 +1,5 @@
-// White furnaces: where nothing absorbs light and light comes from everywhere, nothing can be seen.
+// These are white furnace tests: if nothing absorbs light and light comes from all directions, the object is
+// invisible.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -29,7 +30,7 @@ std::vector<Case> lossless_cases() {
             {"glass mesh", mesh, glass, false}};
 }
 
-/// Lossless, too, but for the tables of what microfacets lose.
+/// Returns layered materials, which are lossless up to the error of the microfacet energy tables.
 std::vector<Case> layered_cases() {
     const Shape sphere = Sphere{{0, 0, 0}, 1};
     Diffuse clay{{Rgb(1.0f)}};
@@ -60,8 +61,8 @@ double largest_deviation(const ImageRgb& image, Rgb expected) {
     return largest;
 }
 
-// The inside of a sphere that emits E and reflects the fraction a of light: every point sees the same radiance L, and
-// after d scattering events L = E (1 + a + … + a^d), whatever the directions.
+// Returns the inside of a sphere that emits E and reflects the fraction a of light. Every point has the same radiance
+// L. After d scattering events L = E (1 + a + … + a^d), whatever the directions.
 Scene glowing_cavity(float albedo) {
     SceneBuilder builder;
     builder.add(Sphere{{0, 0, 0}, 2}, builder.material(Emissive{Rgb(1.0f), true, {Rgb(albedo)}}));
@@ -73,8 +74,8 @@ Scene glowing_cavity(float albedo) {
 
 TEST_SUITE("unit") {
 
-    // Each sample is exactly what it should be but for rounding, once it is out again: between the facets of a mesh of
-    // glass total reflection keeps some for hundreds of events.
+    // Every sample that leaves the object is exact up to rounding. Total internal reflection keeps some paths between
+    // the facets of a glass mesh for hundreds of events.
     TEST_CASE("naive path tracing of lossless surfaces in a constant environment: 1 without variance") {
         for (const Case& c : lossless_cases()) {
             CAPTURE(c.name);
@@ -122,8 +123,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // 32 x 32 pixels of 64 samples; the standard error of the mean, measured over seeds, is below 1.5e-4 in all cases:
-    // the bound is more than ten of them.
+    // The render has 32 x 32 pixels of 64 samples. The standard error of the mean, measured over seeds, is below
+    // 1.5e-4 in all cases, so the bound is more than ten standard errors.
     TEST_CASE("path tracing of white surfaces in a constant environment: 1 ± 0.002, layers and rough metal ± 0.006") {
         std::vector<Case> cases = lossless_cases();
         const std::size_t plain = cases.size();
@@ -135,7 +136,7 @@ TEST_SUITE("statistical") {
             settings.samples_per_pixel = 64;
             settings.aovs.hit = true;
             const Rendering r = render_scene(furnace(c), 32, settings);
-            double sum = 0; // over the object alone: the background is 1 by itself
+            double sum = 0; // over the object only, as the background is 1 anyway
             int pixels = 0;
             for (std::size_t i = 0; i < r.hit.size(); ++i)
                 if (r.hit[i].valid()) {
@@ -143,11 +144,12 @@ TEST_SUITE("statistical") {
                     ++pixels;
                 }
             REQUIRE(pixels > 100);
-            CHECK(sum / pixels == doctest::Approx(1).epsilon(&c - cases.data() < static_cast<std::ptrdiff_t>(plain) ? 0.002 : 0.006));
+            CHECK(sum / pixels ==
+                  doctest::Approx(1).epsilon(&c - cases.data() < static_cast<std::ptrdiff_t>(plain) ? 0.002 : 0.006));
         }
     }
 
-    // Six standard errors over ten seeds: exceeded by chance once in 5,000 times.
+    // The bound is six standard errors over ten seeds, which chance exceeds once in 5,000 times.
     TEST_CASE("in a glowing cavity light sampling adds up to the same sums") {
         const Scene scene = glowing_cavity(0.5f);
         struct Sum {

@@ -1,4 +1,4 @@
-// Surfaces with holes and those that stop a part of the light: what rays hit.
+// These tests check which rays hit alpha-masked and partly transparent surfaces.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 #include "raytrace/acceleration/accelerator.h"
@@ -12,7 +12,8 @@ using namespace duet::raytrace;
 
 namespace {
 
-/// A square at z = 0 of an opacity (texture: left half a hole), and a whole one behind it at z = -1.
+/// Returns a square at z = 0 with the given opacity (a texture whose left half is transparent) and an opaque one
+/// behind it at z = -1.
 Scene two_squares(SurfaceMaps maps) {
     SceneBuilder builder;
     ImageRgb halves(64, 1);
@@ -60,7 +61,7 @@ TEST_SUITE("unit") {
             CHECK(accelerator.occluded(rays[i], end) == !hole);
             end.t = 4;
             CHECK(accelerator.occluded(rays[i], end));
-            end.object = 1; // the back square is what is aimed at: no obstacle itself
+            end.object = 1; // the shadow ray targets the back square, which does not occlude itself
             end.primitive = 0;
             end.t = 3;
             CHECK(accelerator.occluded(rays[i], end) == !hole);
@@ -98,7 +99,7 @@ TEST_SUITE("statistical") {
             for (int i = 0; i < kRays; ++i)
                 stopped += accelerator.closest(Ray{{uniform(random), uniform(random), 2}, {0, 0, -1}}).object == 0;
             const double p = static_cast<double>(opacity), deviation = std::sqrt(p * (1 - p) / kRays);
-            CHECK(std::abs(stopped / static_cast<double>(kRays) - p) < 4.5 * deviation); // chance 7e-6 each
+            CHECK(std::abs(stopped / static_cast<double>(kRays) - p) < 4.5 * deviation); // odds 7e-6 each
         }
     }
 

@@ -1,4 +1,4 @@
-// Dielectrics that absorb, and that stand in each other.
+// These tests check absorbing and nested dielectrics.
 #include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/vertex.h"
 
@@ -19,10 +19,10 @@ Dielectric glass(float ior, int priority, Rgb absorption = Rgb(0.0f), float roug
     return material;
 }
 
-/// Two balls about one point, of radius 1 and ½.
+/// Builds a scene of two concentric spheres with radii 1 and ½.
 struct Balls {
     Scene scene;
-    std::uint32_t outer, inner; // materials
+    std::uint32_t outer, inner; // material indices
 
     Balls(const Dielectric& outside, const Dielectric& inside) {
         SceneBuilder builder;
@@ -36,17 +36,18 @@ struct Balls {
     }
 };
 
-/// What a ray straight through the middle arrives at after it has gone through some boundaries.
+/// Follows a ray straight through the center and its interfaces.
 class Walk {
 public:
     explicit Walk(const Scene& scene)
-        : prepared_(prepare(scene, settings_)), plan_(prepared_.data(), {scene.camera, 8, 8}, settings_), insides_(plan_),
-          ray_{{0, 0, 4}, {0, 0, -1}} {
+        : prepared_(prepare(scene, settings_)), plan_(prepared_.data(), {scene.camera, 8, 8}, settings_),
+          insides_(plan_), ray_{{0, 0, 4}, {0, 0, -1}} {
         hit_ = trace(prepared_, ray_);
     }
-    /// Whether the boundary arrived at scatters light as a smooth one.
+    /// Returns whether the current interface is specular.
     bool smooth() const { return is_specular(Vertex(plan_, ray_, hit_, nullptr, relative).bsdf); }
-    /// The z of the next boundary that is there; `relative`: its index.
+    /// Returns the z coordinate of the next interface that is not skipped, and stores its relative index of
+    /// refraction in `relative`.
     float arrive() {
         hit_ = insides_.arrive(ray_, hit_, throughput, passed);
         relative = insides_.relative_index();
@@ -81,7 +82,7 @@ TEST_SUITE("unit") {
             const Balls balls(glass(1.5f, 1), glass(1.33f, 2)); // a drop in glass
             Walk walk(balls.scene);
             CHECK(walk.arrive() == doctest::Approx(1));
-            CHECK(walk.relative == 0); // by itself
+            CHECK(walk.relative == 0); // 0: no enclosing medium, so the material's own index applies
             walk.cross(balls.outer, true);
             CHECK(walk.arrive() == doctest::Approx(0.5));
             CHECK(walk.relative == doctest::Approx(1.33 / 1.5));
@@ -93,7 +94,7 @@ TEST_SUITE("unit") {
             CHECK(walk.relative == 0);
             CHECK(walk.passed == 0);
         }
-        const Balls balls(glass(1.5f, 2), glass(1.33f, 1)); // the drop is displaced
+        const Balls balls(glass(1.5f, 2), glass(1.33f, 1)); // the glass replaces the drop
         Walk walk(balls.scene);
         CHECK(walk.arrive() == doctest::Approx(1));
         walk.cross(balls.outer, true);
@@ -131,9 +132,11 @@ TEST_SUITE("unit") {
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 32; ++x) {
                 const Ray ray = camera.ray({x + 0.5, y + 0.5});
-                const double b = dot(Vec3d(ray.origin), Vec3d(ray.direction)), c = length_squared(Vec3d(ray.origin)) - 1;
+                const double b = dot(Vec3d(ray.origin), Vec3d(ray.direction)),
+                             c = length_squared(Vec3d(ray.origin)) - 1;
                 const double chord = b * b > c ? 2 * std::sqrt(b * b - c) : 0;
-                CHECK(static_cast<double>(picture.radiance(x, y).g) == doctest::Approx(std::exp(-0.8 * chord)).epsilon(1e-3));
+                CHECK(static_cast<double>(picture.radiance(x, y).g) ==
+                      doctest::Approx(std::exp(-0.8 * chord)).epsilon(1e-3));
             }
     }
 
@@ -158,7 +161,7 @@ TEST_SUITE("unit") {
         walk.cross(balls.outer, true);
         for (int i = 0; i < 20; ++i) walk.enter(balls.inner, true);
         for (int i = 0; i < 20; ++i) walk.enter(balls.inner, false);
-        walk.arrive(); // through half a metre of the outer one
+        walk.arrive(); // half a meter through the outer sphere
         CHECK(walk.throughput.g == doctest::Approx(std::exp(-0.5)).epsilon(1e-3));
     }
 
@@ -177,6 +180,6 @@ TEST_SUITE("unit") {
             return sum / (32 * 32);
         };
         CHECK(mean(0) == doctest::Approx(1).epsilon(1e-4));
-        CHECK(mean(0.3f) == doctest::Approx(1).epsilon(0.01)); // by tables; several crossings
+        CHECK(mean(0.3f) == doctest::Approx(1).epsilon(0.01)); // energy from tables, and several interfaces per path
     }
 }

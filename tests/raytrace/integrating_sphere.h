@@ -1,5 +1,6 @@
-// The inside of a sphere with a point light in its centre: each point gets the same light from all others, however it
-// went, so the radiance is ρ E / (π (1 − ρ)) everywhere, E = I/r². Roulette is all that makes noise.
+// The integrating sphere is the inside of a sphere with a point light in its center. Each point receives the same
+// light from all others, whatever the path, so the radiance is ρ E / (π (1 − ρ)) everywhere, with E = I/r². Roulette
+// is the only source of noise.
 #pragma once
 
 #include "tests/raytrace/scene_builder.h"
@@ -15,6 +16,7 @@ inline Scene integrating_sphere() {
     builder.scene.camera.look_at = {0, 0, -1};
     return builder.finish();
 }
-inline constexpr double kIntegratingSphere = 0.75 * 3 / (1.5 * 1.5) / (kPiDouble * (1 - 0.75)); ///< its radiance
+inline constexpr double kIntegratingSphere = 0.75 * 3 / (1.5 * 1.5) / (kPiDouble * (1 - 0.75)); ///< radiance of the
+                                                                                                ///< sphere
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// With and without light samples the same light is found, whatever the material.
+// These tests check that renders with and without light sampling agree for every material.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -9,7 +9,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-/// A ball on a floor under a large lamp and a dim sky.
+/// Returns a sphere on a floor under a large light and a dim sky.
 Scene ball(const Material& material) {
     SceneBuilder builder;
     builder.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), builder.material(Diffuse{{Rgb(0.6f)}}));
@@ -25,7 +25,7 @@ Scene ball(const Material& material) {
 
 TEST_SUITE("statistical") {
 
-    // 6 standard errors over ten seeds each: exceeded by chance once in 90,000 times a material.
+    // The bound is 6 standard errors over ten seeds each, which chance exceeds once in 90,000 times per material.
     TEST_CASE("naive path tracing and light samples agree on each material") {
         Diffuse clay{{Rgb(0.7f)}};
         clay.roughness = 1;
@@ -41,8 +41,8 @@ TEST_SUITE("statistical") {
         Principled paint{{Rgb(0.7f, 0.4f, 0.2f)}, 0.5f, 0.6f};
         paint.clearcoat = 1;
         paint.clearcoat_roughness = 0.4f;
-        for (const Material& material : {Material(clay), Material(gold), Material(frosted), Material(drop), Material(pane),
-                                         Material(Coated{{Rgb(0.7f)}, 0.4f}), Material(paint)}) {
+        for (const Material& material : {Material(clay), Material(gold), Material(frosted), Material(drop),
+                                         Material(pane), Material(Coated{{Rgb(0.7f)}, 0.4f}), Material(paint)}) {
             CAPTURE(material.index());
             const Scene scene = ball(material);
             Settings settings;
@@ -55,7 +55,7 @@ TEST_SUITE("statistical") {
             CAPTURE(path.mean);
             CAPTURE(naive.mean);
             CHECK(deviations(path, naive) < 6);
-            CHECK(naive.error < 0.01 * naive.mean); // else agreement says little
+            CHECK(naive.error < 0.01 * naive.mean); // otherwise agreement proves little
         }
     }
 }

@@ -1,4 +1,5 @@
-// Estimators of the same light agree: with and without light sampling, with and without Russian roulette.
+// These tests check that estimators of the same light agree: with and without light sampling, with and without
+// Russian roulette.
 #include "raytrace/integrator/light_sampling.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
@@ -10,8 +11,8 @@ using namespace duet::raytrace;
 
 namespace {
 
-// A corner with a large lamp, a small bright one that moves (light samples cannot find it), a dim sky, and a material
-// of every kind.
+// Returns a corner with a large light, a small bright light that moves (light sampling cannot find it), a dim sky,
+// and a material of every kind.
 Scene corner(bool moving_lamp) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.8f)}});
@@ -101,7 +102,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Six standard errors of the difference over ten seeds each: exceeded by chance once in 90,000 times.
+    // The bound is six standard errors of the difference over ten seeds each, which chance exceeds once in 90,000
+    // times.
     TEST_CASE("path tracing with light samples gives what it gives without, moving lamps included") {
         for (const bool moving : {false, true}) {
             CAPTURE(moving);

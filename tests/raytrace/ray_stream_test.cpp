@@ -1,4 +1,5 @@
-// Rays that stream through small trees of spheres: to the bit what each finds alone, or one by one where that is sooner.
+// These tests stream rays through small trees of spheres. The hits must equal those of single rays, bit for bit, and
+// rays are traced singly where that is faster.
 #include "raytrace/pass.h"
 
 #include "common/sampling/sampler.h"
@@ -25,7 +26,8 @@ constexpr bool kStreams = true;
 constexpr bool kStreams = false;
 #endif
 
-constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
+                kInfinite = std::numeric_limits<float>::infinity();
 
 struct Place {
     float scale = 1;
@@ -39,7 +41,7 @@ public:
     void start(int i) { sampler_.start(i, stream_, 0); }
     float one() { return sampler_.get_1d(); }
     Vec2 two() { return sampler_.get_2d(); }
-    Vec3 in_cube() { // of side 2 about the origin
+    Vec3 in_cube() { // of side 2 around the origin
         const Vec2 u = two();
         return Vec3(2 * u.x - 1, 2 * u.y - 1, 2 * one() - 1);
     }
@@ -50,7 +52,7 @@ private:
     int stream_;
 };
 
-// Small, tiny and giant ones; twins, and some about one centre.
+// Returns small, tiny and giant spheres, some of them duplicates and some concentric.
 std::vector<Sphere> spheres_of_all_sizes(int count, const Place& place, int seed) {
     Numbers numbers(seed);
     std::vector<Sphere> spheres;
@@ -69,7 +71,8 @@ std::vector<Sphere> spheres_of_all_sizes(int count, const Place& place, int seed
     return spheres;
 }
 
-// Rays from anywhere and from the spheres, many of them towards others; and every kind of numbers that a ray may have.
+// Returns rays from any point and from the spheres, many of them toward other spheres, with every kind of float value
+// that a ray may have.
 std::vector<Ray> rays_among(const std::vector<Sphere>& spheres, int count, const Place& place, int seed) {
     Numbers numbers(seed);
     std::vector<Ray> rays;
@@ -111,7 +114,8 @@ std::vector<std::uint32_t> every(std::size_t count, std::size_t step = 1) {
     return which;
 }
 
-// How many rays hit anything. What is not asked for stays, and what was there before does not count.
+// Returns how many rays hit anything. Rays that are not listed must keep their hits, and stale hits of listed rays
+// must be overwritten.
 int check_hits(const Accelerator& accelerator, const std::vector<Ray>& rays, const std::vector<std::uint32_t>& which) {
     Hit stale;
     stale.object = 5;
@@ -135,7 +139,7 @@ void add_all(SceneBuilder& builder, const std::vector<Sphere>& spheres, std::uin
     for (const Sphere& sphere : spheres) builder.add(sphere, material);
 }
 
-// Spheres in a cube of side 1, of one radius.
+// Returns spheres of one radius in a cube of side 1.
 Scene cloud(int count, float radius, bool ground) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
@@ -153,8 +157,13 @@ Scene cloud(int count, float radius, bool ground) {
 TEST_SUITE("unit") {
 
     TEST_CASE("rays that stream through spheres hit what each alone does, at every scale and far from the origin") {
-        const Place places[] = {{1, {}},       {1e-6f, {}},          {1e6f, {}},
-                                {1e-3f, {1, 2, 3}}, {1, {1e4f, -1e4f, 5e3f}}, {1e-6f, {3, -3, 1.5f}}, {1e3f, {1e7f, -1e7f, 5e6f}}};
+        const Place places[] = {{1, {}},
+                                {1e-6f, {}},
+                                {1e6f, {}},
+                                {1e-3f, {1, 2, 3}},
+                                {1, {1e4f, -1e4f, 5e3f}},
+                                {1e-6f, {3, -3, 1.5f}},
+                                {1e3f, {1e7f, -1e7f, 5e6f}}};
         int seed = 0, streams = 0;
         for (const Place& place : places)
             for (const int count : {40, 150, 300}) {
@@ -220,13 +229,15 @@ TEST_SUITE("unit") {
 
     TEST_CASE("rays stream where they are expected to meet few leaves, whatever the ground") {
         if (!kStreams) return;
-        const auto streams = [](const Scene& scene) { return streamable(prepare(scene, Settings()).data().accelerator.world()); };
+        const auto streams = [](const Scene& scene) {
+            return streamable(prepare(scene, Settings()).data().accelerator.world());
+        };
         for (const bool ground : {false, true}) {
             CHECK(streams(cloud(400, 0.02f, ground)));
             CHECK(streams(cloud(1000, 0.04f, ground)));
             CHECK(!streams(cloud(400, 0.4f, ground)));
             CHECK(!streams(cloud(1000, 0.2f, ground)));  // they overlap
-            CHECK(!streams(cloud(4000, 0.005f, ground))); // more nodes than the lists have room for
+            CHECK(!streams(cloud(4000, 0.005f, ground))); // more nodes than fit into the lists
         }
     }
 }

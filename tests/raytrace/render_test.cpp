@@ -1,4 +1,4 @@
-// The driver: the same bits for any threads, limits, interruption, auxiliary pictures, statistics.
+// These tests check the render loop: the same bits for any thread count, limits, interruption, AOVs and statistics.
 #include "common/system/error.h"
 #include "raytrace/pass.h"
 #include "tests/raytrace/estimates.h"
@@ -74,7 +74,7 @@ TEST_SUITE("unit") {
         CHECK(plain.statistics.passes == 1);
         settings.time_limit = 1e6; // never reached
         const Rendering passes = rendered(scene, settings);
-        CHECK(passes.statistics.passes == 4); // 2, 2, 4 and the rest
+        CHECK(passes.statistics.passes == 4); // 2, 2, 4 and the remainder
         CHECK(plain.radiance.pixels() == passes.radiance.pixels());
         settings.seed = 1;
         CHECK(plain.radiance.pixels() != rendered(scene, settings).radiance.pixels());
@@ -120,12 +120,12 @@ TEST_SUITE("unit") {
         const auto [fewest, most] =
             std::minmax_element(rendering.samples.pixels().begin(), rendering.samples.pixels().end());
         CHECK(*fewest == 32);
-        CHECK(*most == 48); // the tiles of the third pass that were done are kept
+        CHECK(*most == 48); // the finished tiles of the third pass are retained
         const Rgbd mean = mean_of(rendering.radiance);
         settings.samples_per_pixel = 32;
         CHECK(mean.g == doctest::Approx(mean_of(rendered(scene, settings).radiance).g).epsilon(0.02));
 
-        stop = true; // from the start: a black picture, and no trouble
+        stop = true; // stopped from the start: a black image and no error
         control.progress = nullptr;
         const Rendering nothing = rendered(scene, settings, control);
         CHECK(nothing.statistics.interrupted);
@@ -178,7 +178,7 @@ TEST_SUITE("unit") {
                 CHECK(rendering.hit(x, y) == trace(prepared, camera.ray({x + 0.5, y + 0.5})));
                 CHECK(rendering.hit(x, y).object == 0);
             }
-        view.camera.look_at = {0, 0, 1}; // the other way there is nothing
+        view.camera.look_at = {0, 0, 1}; // nothing is visible in the opposite direction
         rendering = render(prepared, view, settings, control);
         CHECK(rendering.depth(3, 3) == kInfinity);
         CHECK(rendering.normal(3, 3) == Vec3());
@@ -238,7 +238,7 @@ TEST_SUITE("unit") {
         settings.environment = false;
         CHECK(with_lamp.radiance.pixels() == render_scene(lit, 16, settings).radiance.pixels());
 
-        // Light samples cannot reach mirrors: nothing is lost by not drawing them.
+        // Light samples cannot contribute at mirrors, so skipping them must not change the result.
         builder = {};
         builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Metal{{Rgb(0.9f)}, 0}));
         builder.scene.environment = SkyEnvironment{};
@@ -254,7 +254,8 @@ TEST_SUITE("unit") {
     TEST_CASE("a BSDF made once a material gives the bits of one made at each hit") {
         const auto sphere_with = [](std::int32_t texture) {
             SceneBuilder builder;
-            builder.scene.textures.textures.push_back(CheckerTexture{Rgb(1.0f), Rgb(1.0f), 1, true}); // white, both
+            // Both colors of the checkerboard are white.
+            builder.scene.textures.textures.push_back(CheckerTexture{Rgb(1.0f), Rgb(1.0f), 1, true});
             builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{{Rgb(0.3f, 0.5f, 0.7f), texture}}));
             builder.scene.environment = SkyEnvironment{};
             Settings settings;

@@ -1,4 +1,4 @@
-// Rooms with lamps of every kind and things of every kind of surface.
+// This header builds rooms with lights and surfaces of every kind.
 #pragma once
 
 #include "common/sampling/sampler.h"
@@ -18,7 +18,9 @@ struct Place {
 
 inline void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
     const float s = place.scale;
-    const auto emissive = [&](bool two_sided) { return builder.material(Emissive{Rgb(9.0f, 8, 6), two_sided, {Rgb(0.0f)}}); };
+    const auto emissive = [&](bool two_sided) {
+        return builder.material(Emissive{Rgb(9.0f, 8, 6), two_sided, {Rgb(0.0f)}});
+    };
     const auto hang = [&](float x, Vec3 u, Vec3 v, bool two_sided) {
         builder.add(quad(place(x, 1.9f, -0.4f), u * s, v * s), emissive(two_sided));
     };
@@ -38,7 +40,8 @@ inline void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
         return;
     }
     case Lamp::kBall: builder.add(Sphere{place(0.2f, 1.6f, 0), 0.2f * s}, emissive(false)); return;
-    case Lamp::kPoint: builder.scene.lights.push_back(PointLight{place(0, 2, 0), Rgb(4 * s * s)}); return; // in the ceiling
+    // The point light is in the ceiling.
+    case Lamp::kPoint: builder.scene.lights.push_back(PointLight{place(0, 2, 0), Rgb(4 * s * s)}); return;
     case Lamp::kSpot:
         builder.scene.lights.push_back(SpotLight{place(0, 1.8f, 0), down, Rgb(4 * s * s), 0.95f, 0.5f});
         return;
@@ -47,10 +50,11 @@ inline void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
     }
 }
 
-// How many things are in the room: so few that rays test them all, or so many that they look for their way through a tree.
+// Selects the number of objects in the room: so few that rays test them all, or so many that rays traverse a BVH.
 enum class Things { kFew, kSome, kMany };
 
-// Metal narrow and wide, coloured and by name, mirrors and glass: on quads, spheres and meshes with normals of their own.
+// Adds narrow and wide metal lobes, given by color and by name, mirrors and glass, on quads, spheres and meshes with
+// vertex normals.
 inline void add_shiny_things(SceneBuilder& builder, int levels, const Place& place) {
     const float s = place.scale;
     const Material materials[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f}, Metal{{Rgb(0.8f)}, 0.1f},
@@ -67,17 +71,20 @@ inline void add_shiny_things(SceneBuilder& builder, int levels, const Place& pla
     }
 }
 
-// What walls and things are of: matt for the most part, or that with metal and glass of all sorts.
+// Selects the materials of walls and objects: mostly matte, or including all kinds of metal and glass.
 enum class Finish { kMatt, kShiny };
 
-// A room without a front, in it things of each kind of surface that goes side by side and of others.
+// Returns a room without a front wall that contains surfaces of every batched kind and of the other kinds.
 inline Scene room(Lamp lamp, Things things, const Place& place, Finish finish = Finish::kMatt) {
     SceneBuilder builder;
     const float s = place.scale;
-    const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}), red = builder.material(Diffuse{{Rgb(0.6f, 0.1f, 0.1f)}});
-    const std::uint32_t black = builder.material(Diffuse{{Rgb(0.0f)}}), brushed = builder.material(Metal{{Rgb(0.9f)}, 0.4f});
+    const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}),
+                        red = builder.material(Diffuse{{Rgb(0.6f, 0.1f, 0.1f)}});
+    const std::uint32_t black = builder.material(Diffuse{{Rgb(0.0f)}}),
+                        brushed = builder.material(Metal{{Rgb(0.9f)}, 0.4f});
     builder.add(quad(place(-1, 0, 1), {2 * s, 0, 0}, {0, 0, -2 * s}), white);
-    if (lamp != Lamp::kSun && lamp != Lamp::kSky) builder.add(quad(place(-1, 2, -1), {2 * s, 0, 0}, {0, 0, 2 * s}), white);
+    if (lamp != Lamp::kSun && lamp != Lamp::kSky)
+        builder.add(quad(place(-1, 2, -1), {2 * s, 0, 0}, {0, 0, 2 * s}), white);
     builder.add(quad(place(-1, 0, -1), {2 * s, 0, 0}, {0, 2 * s, 0}), white);
     builder.add(quad(place(-1, 0, 1), {0, 0, -2 * s}, {0, 2 * s, 0}), red);
     builder.add(quad(place(1, 0, -1), {0, 0, 2 * s}, {0, 2 * s, 0}), black);
@@ -95,19 +102,30 @@ inline Scene room(Lamp lamp, Things things, const Place& place, Finish finish = 
     return builder.finish();
 }
 
-// Things of all materials and shapes wherever they come to lie, through each other: normals that point anywhere, meshes of
-// several materials, and, not side by side, surfaces that move or are placed, and mirrors that take all light.
+// Returns intersecting objects of all materials and shapes at random positions: normals in any direction and meshes
+// of several materials. It also has surfaces that are not batched: moving ones, instances, and mirrors that absorb
+// all light.
 inline Scene wild_room(int seed, const Place& place) {
     SceneBuilder builder;
     Sampler sampler(SamplerKind::kIndependent, static_cast<std::uint64_t>(seed), 1);
     const auto random = [&] { return sampler.get_1d(); };
     const auto direction = [&] { return uniform_sphere(sampler.get_2d()); };
     const float s = place.scale;
-    const Material kinds[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f}, Metal{{Rgb(0.0f)}, 0.5f}, Metal{{Rgb(1.0f)}, 1.0f},
-                              Metal{{Rgb(0.8f)}, 0.0101f}, Metal{{}, 0.5f, *find_conductor("gold")},
-                              Metal{{}, 0, *find_conductor("copper")}, Metal{{Rgb(0.0f)}, 0}, Dielectric{1.0f, {Rgb(1.0f)}},
-                              Dielectric{4.0f, {Rgb(0.5f, 1, 0)}}, Dielectric{1.5f, {Rgb(0.0f)}}, Dielectric{1.0005f, {Rgb(1.0f)}},
-                              Diffuse{{Rgb(0.7f)}}, Diffuse{{Rgb(1.0f)}}, Diffuse{{Rgb(0.0f)}}, Diffuse{{Rgb(0.4f)}, {0.6f}}};
+    const Material kinds[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f},
+                              Metal{{Rgb(0.0f)}, 0.5f},
+                              Metal{{Rgb(1.0f)}, 1.0f},
+                              Metal{{Rgb(0.8f)}, 0.0101f},
+                              Metal{{}, 0.5f, *find_conductor("gold")},
+                              Metal{{}, 0, *find_conductor("copper")},
+                              Metal{{Rgb(0.0f)}, 0},
+                              Dielectric{1.0f, {Rgb(1.0f)}},
+                              Dielectric{4.0f, {Rgb(0.5f, 1, 0)}},
+                              Dielectric{1.5f, {Rgb(0.0f)}},
+                              Dielectric{1.0005f, {Rgb(1.0f)}},
+                              Diffuse{{Rgb(0.7f)}},
+                              Diffuse{{Rgb(1.0f)}},
+                              Diffuse{{Rgb(0.0f)}},
+                              Diffuse{{Rgb(0.4f)}, {0.6f}}};
     std::vector<std::uint32_t> materials;
     for (const Material& kind : kinds) materials.push_back(builder.material(kind));
     const std::uint32_t white = materials[11];
@@ -129,7 +147,8 @@ inline Scene wild_room(int seed, const Place& place) {
         builder.scene.objects[object].materials = {any(i), any(i + 1), white};
     }
     if (seed % 3 == 0) {
-        const std::uint32_t ball = builder.shape(icosphere(1, 0.3f, {}, true)), sphere = builder.shape(Sphere{{}, 0.3f});
+        const std::uint32_t ball = builder.shape(icosphere(1, 0.3f, {}, true)),
+                            sphere = builder.shape(Sphere{{}, 0.3f});
         const Mat4 scaled = scaling(Vec3(s, s, s));
         builder.place_moving(ball, any(3), translation(place.at) * scaled, translation(place(0.5f, 0.2f, 0)) * scaled);
         builder.place(sphere, any(4), translation(place(-0.5f, 0.3f, 0.6f)) * scaled);

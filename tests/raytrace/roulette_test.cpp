@@ -1,4 +1,5 @@
-// Russian roulette by expected contribution: what is learned beforehand, and that it biases nothing.
+// These tests check Russian roulette by expected contribution: its survival estimate from a pilot render, and its
+// lack of bias.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/path_gains.h"
 #include "raytrace/pass.h"
@@ -36,7 +37,7 @@ TEST_SUITE("unit") {
     TEST_CASE("the worth of throughput is learned from scene, view and plan alone") {
         const Scene scene = integrating_sphere();
         const float worth = worth_of(scene, 64, {});
-        CHECK(worth > 2 * kPlainWorth); // where nothing but roulette makes noise, less of it
+        CHECK(worth > 2 * kPlainWorth); // fewer paths are ended where only roulette causes noise
         Settings other;
         other.seed = 99;
         other.threads = 1;
@@ -46,7 +47,7 @@ TEST_SUITE("unit") {
         CHECK(worth_of(scene, 64, other) == worth);
         other.skips.shadow_rays = other.skips.last_bounce = other.skips.light_samples = false;
         CHECK(worth_of(scene, 64, other) == worth);
-        CHECK(worth_of(scene, 8, {}) == kPlainWorth); // too few pixels to tell
+        CHECK(worth_of(scene, 8, {}) == kPlainWorth); // too few pixels for an estimate
         Settings naive;
         naive.integrator = Integrator::kNaive;
         CHECK(worth_of(scene, 64, naive) == kPlainWorth);
@@ -63,7 +64,7 @@ TEST_SUITE("unit") {
                 if (s.what == "paths ended by roulette") return s.count;
             return std::int64_t{-1};
         };
-        CHECK(ended() == 4 * 16 * 16); // nothing else ends them
+        CHECK(ended() == 4 * 16 * 16); // nothing else ends paths
         settings.russian_roulette = false;
         CHECK(ended() == -1);
     }
@@ -71,7 +72,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Five standard errors: exceeded by chance once in 1.7 million times each. A bias of 1 % is five or more.
+    // Each bound is five standard errors, which chance exceeds once in 1.7 million times. A bias of 1 % is at least
+    // five standard errors.
     TEST_CASE("whatever worth is learned, the mean is the integrating sphere's") {
         const Scene scene = integrating_sphere();
         Settings settings;
@@ -94,8 +96,8 @@ TEST_SUITE("statistical") {
         }
     }
 
-    // Each step's light is its throughput × the truth, but for what roulette does. The ratio of the sums scatters by about
-    // 0.4 %.
+    // Each step's light is its throughput × the exact radiance, except for roulette. The ratio of the sums has a
+    // standard deviation of about 0.4 %.
     TEST_CASE("steps of a path know what it gathers, and its rays") {
         const Scene scene = integrating_sphere();
         Settings settings;
@@ -109,7 +111,7 @@ TEST_SUITE("statistical") {
             for (const PathStep& step : path.steps()) {
                 light += static_cast<double>(step.weight * step.light);
                 throughput += static_cast<double>(step.weight * step.throughput);
-                others += step.next_rays != 2; // on, and to the lamp
+                others += step.next_rays != 2; // one continuation ray and one shadow ray
             }
             others += path.camera_rays() != 2 || path.steps().empty() || !path.steps().front().first;
         });

@@ -1,4 +1,4 @@
-// Scenes built by hand, for tests.
+// This header builds scenes for tests.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -21,7 +21,7 @@ struct SceneBuilder {
         scene.shapes.push_back(std::move(shape));
         return static_cast<std::uint32_t>(scene.shapes.size() - 1);
     }
-    /// An object of its own shape, standing in the world.
+    /// Adds an object with its own shape and an identity transform.
     std::uint32_t add(Shape new_shape, std::uint32_t material) {
         return place(shape(std::move(new_shape)), material, Mat4());
     }
@@ -49,7 +49,7 @@ struct SceneBuilder {
 
 inline QuadList quad(Vec3 corner, Vec3 u, Vec3 v) { return {{Quad{corner, u, v}}}; }
 
-/// A unit sphere of 20·4^levels triangles, shared vertices exactly shared.
+/// Returns a unit sphere of 20·4^levels triangles, in which adjacent triangles share their vertices.
 inline Mesh icosphere(int levels, float radius = 1, Vec3 center = {}, bool smooth = false) {
     const float g = (1 + std::sqrt(5.0f)) / 2;
     Mesh mesh;

@@ -1,4 +1,4 @@
-// How many samples pixels get: passes, limits, and samples spread to where the error is.
+// These tests check how many samples pixels get: passes, limits, and adaptive sampling by error.
 #include "raytrace/schedule.h"
 
 #include "tests/raytrace/scene_builder.h"
@@ -14,14 +14,14 @@ using namespace duet::raytrace;
 
 namespace {
 
-// The pixels' next number of samples, where all have the same; −1 where the limit is reached.
+// Returns the next sample count if it is the same for all pixels, or −1 if the limit is reached.
 int planned(const Settings& settings, std::uint32_t done, const Spent& spent = {}) {
     Film film(1, 1);
     for (std::uint32_t i = 0; i < done; ++i) film.add(0, 0, i & 1u, Rgb(i % 2 ? 1.0f : 2.0f));
     return plan_pass(settings, spent, film) ? static_cast<int>(film.pixels()(0, 0).target) : -1;
 }
 
-// Samples of pixels whose spread is `spread` of the pixel, as many as they are to have.
+// Adds samples with the standard deviation `spread` of the pixel until each pixel has its target count.
 template <typename Spread> void take(Film& film, const Spread& spread, std::uint64_t seed) {
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
@@ -36,7 +36,7 @@ void promise_all(Film& film, std::uint32_t samples) {
     for (std::size_t i = 0; i < film.pixels().size(); ++i) film.pixels()[i].target = samples;
 }
 
-// A lamp whose edges are most of the error, in a corner of a dim room.
+// Returns a light whose edges cause most of the error, in a corner of a dim room.
 Scene lamp_scene(float radiance = 10) {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f)}});
@@ -96,18 +96,18 @@ TEST_SUITE("unit") {
         CHECK(planned(settings, 0) == 2);
         CHECK(planned(settings, 64, {1, 64}) == 80);
         CHECK(planned(settings, 4096, {1, 4096}) == 4096 + 32);
-        CHECK(planned(settings, 100, {8.9, 100}) == 112);  // in the 1.1 s that are left there is time for 12.4 more
-        CHECK(planned(settings, 100, {9.5, 100}) == 106);  // and here for 5.3: 6 are nearer to that than 4
-        CHECK(planned(settings, 100, {9.95, 100}) == -1);  // and here for 0.5
+        CHECK(planned(settings, 100, {8.9, 100}) == 112);  // the remaining 1.1 s are enough for 12.4 more
+        CHECK(planned(settings, 100, {9.5, 100}) == 106);  // enough for 5.3 more: 6 is closer than 4
+        CHECK(planned(settings, 100, {9.95, 100}) == -1);  // enough for only 0.5 more
         CHECK(planned(settings, 100, {12, 100}) == -1);
-        CHECK(planned(settings, 200, {8.9, 100}) == 212); // at the rate of this render's own samples
+        CHECK(planned(settings, 200, {8.9, 100}) == 212); // at this render's own sampling rate
         settings.time_limit = 0;
         settings.error_limit = 1e6;
-        CHECK(planned(settings, 1) == 17); // the error is not known yet
-        CHECK(planned(settings, 2) == 18); // two samples are no proof yet
+        CHECK(planned(settings, 1) == 17); // the error is still unknown
+        CHECK(planned(settings, 2) == 18); // two samples are not enough evidence
         CHECK(planned(settings, 16) == -1);
         settings.error_limit = 1e-12;
-        CHECK(planned(settings, 64) == 80); // grows no faster than by a quarter
+        CHECK(planned(settings, 64) == 80); // grows by at most a quarter
     }
 
     TEST_CASE("samples are spread as the square root of the variance, in even numbers, and all are spent") {
@@ -123,7 +123,7 @@ TEST_SUITE("unit") {
                 for (int x = 0; x < 40; ++x) {
                     const std::uint32_t more = film.pixels()(x, y).target - film.taken(x, y);
                     CHECK(more % 2 == 0);
-                    CHECK(more <= 2 * film.taken(x, y)); // rounding of neighbours may add a pair
+                    CHECK(more <= 2 * film.taken(x, y)); // rounding among neighbors may add a pair
                     sum += more;
                 }
             CHECK(std::abs(sum - 40 * 20 * 16) <= 2);
@@ -135,7 +135,7 @@ TEST_SUITE("unit") {
                 if (x < 18) left += film.taken(x, y);
                 if (x >= 22) right += film.taken(x, y);
             }
-        CHECK(left / right == doctest::Approx(10).epsilon(0.35)); // roughly: variances of two replicates scatter
+        CHECK(left / right == doctest::Approx(10).epsilon(0.35)); // approximate: variances from two replicates scatter
     }
 
     TEST_CASE("no pixel's number depends on its own samples, and one alone gets as many as are asked") {
@@ -143,15 +143,15 @@ TEST_SUITE("unit") {
             Film film(9, 9);
             promise_all(film, 32);
             take(film, [](int x, int y) { return 0.1f * static_cast<float>(1 + x + y); }, 5);
-            film.pixels()(4, 4).sum[0] = Rgbd(static_cast<double>(value)); // as if its samples had been others
+            film.pixels()(4, 4).sum[0] = Rgbd(static_cast<double>(value)); // as if its samples had been different
             spread_samples(film, 81 * 8);
             return film;
         };
         const Film quiet = planned_after(16.0f), loud = planned_after(400.0f);
-        // The sum over all is fixed: so compare what the pixel gets with its share.
+        // The total over all pixels is fixed, so compare the pixel's target with its share.
         const auto need = [](const Film& film, int x, int y) { return film.pixels()(x, y).target; };
         CHECK(need(loud, 3, 4) > need(quiet, 3, 4));
-        CHECK(need(loud, 4, 4) <= need(quiet, 4, 4)); // less, as its neighbours take more
+        CHECK(need(loud, 4, 4) <= need(quiet, 4, 4)); // less, because its neighbors get more
         Settings settings;
         settings.adaptive = true;
         CHECK(planned(settings, 32) == 40);
@@ -200,8 +200,8 @@ TEST_SUITE("statistical") {
         }
         MESSAGE("error of even over spread samples: ", even / spread);
         CHECK(spread < 0.7 * even);
-        // The pixels' mean difference from the truth, in its standard errors: about normal. 5 of them: a false alarm in
-        // 2 million runs.
+        // The pixels' mean difference from the exact value, in standard errors, is approximately normal. The bound of
+        // 5 gives a false alarm in 2 million runs.
         double difference = 0, variance = 0;
         for (std::size_t i = 0; i < sum.size(); ++i) {
             const double mean = sum[i].g / kSeeds;
@@ -211,13 +211,14 @@ TEST_SUITE("statistical") {
         CHECK(std::abs(difference) < 5 * std::sqrt(variance));
     }
 
-    // Here a few pixels on the lamp's outline have most of the error, which scatters by more than tenfold, with a median far
-    // below its mean: the render ends in time, but not at the very place. compare stop has the scenes of models/.
+    // A few pixels on the light's silhouette have most of the error. It scatters by more than a factor of ten, with a
+    // median far below its mean, so the render ends near the target but not exactly there. The command compare stop
+    // tests the scenes of models/.
     TEST_CASE("the error got is no more than the error asked for, and not much less") {
         const Scene scene = lamp_scene(1);
         constexpr int kScale = 3;
         const ImageRgb truth = reference(scene, kScale);
-        for (const double asked : {0.0004, 0.0001}) { // with more than the least samples
+        for (const double asked : {0.0004, 0.0001}) { // with more than the minimum number of samples
             std::vector<double> got;
             for (int seed = 0; seed < 20; ++seed) {
                 Settings settings;

@@ -1,4 +1,5 @@
-// Paths side by side, shaded lane by lane, their rays sent in packets: to the bit what each path gives alone.
+// These tests check that batched path tracing with SIMD lanes and ray packets gives the same bits as tracing each
+// path separately.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/pass.h"
 
@@ -24,10 +25,11 @@ std::vector<std::uint32_t> all_of(const std::vector<Ray>& rays) {
     return which;
 }
 
-// How many of the paths of a small picture differ in a bit, of those that bring light at all; and how many bring NaN, whose
-// bits may be any.
+// Counts the paths of a small image whose result differs in any bit, the paths that bring light, and the paths that
+// give NaN, whose bits may differ.
 struct Differences {
-    int differ = 0, lit = 0, not_numbers = 0, plain = 0, smooth = 0; // and of those that stand at plain surfaces first, or at smooth ones
+    // plain and smooth count the paths whose first hit is a batched surface, and of these the ones of form kSmooth.
+    int differ = 0, lit = 0, not_numbers = 0, plain = 0, smooth = 0;
     std::array<int, PlainSurfaces::Kind::kCount> kinds{}; // by kind
     bool same_rays = false;
 };
@@ -77,7 +79,8 @@ Differences check_same(const Scene& scene, const Settings& settings) {
     CHECK(found.differ == 0);
     CHECK(found.lit > 20);
     CHECK(found.same_rays);
-    const bool asked = settings.skips.shadow_rays && settings.skips.textures; // by tests: then none goes side by side
+    // Tests may request these; then no path is batched.
+    const bool asked = settings.skips.shadow_rays && settings.skips.textures;
     if (kDoubleLanes >= 4) CHECK((found.plain > 100) == asked);
     return found;
 }
@@ -112,7 +115,7 @@ TEST_SUITE("unit") {
                     for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += found.kinds[k];
                 }
         if (kDoubleLanes >= 4)
-            for (const int count : kinds) CHECK(count > 10); // all have been seen
+            for (const int count : kinds) CHECK(count > 10); // every kind occurs
         for (const bool roulette : {false, true}) {
             Settings settings;
             settings.russian_roulette = roulette;
@@ -132,7 +135,8 @@ TEST_SUITE("unit") {
             settings.seed = static_cast<std::uint64_t>(seed);
             settings.russian_roulette = seed % 4 != 3;
             settings.max_depth = seed % 4 == 3 ? 12 : 64;
-            const Differences found = side_by_side_and_alone(wild_room(seed, places[seed % 4]), settings, 24); // 1,152 paths
+            // The image of 24 × 24 pixels has 1,152 paths.
+            const Differences found = side_by_side_and_alone(wild_room(seed, places[seed % 4]), settings, 24);
             CHECK(found.differ == 0);
             CHECK(found.not_numbers == 0);
             CHECK(found.lit > 20);
@@ -145,12 +149,15 @@ TEST_SUITE("unit") {
         for (const bool lamp : {false, true}) {
             SceneBuilder builder;
             const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
-            const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f)}, 0.3f}), glass = builder.material(Dielectric{});
+            const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f)}, 0.3f}),
+                                glass = builder.material(Dielectric{});
             Sampler random(SamplerKind::kIndependent, 5, 1);
             for (int i = 0; i < 300; ++i) {
                 random.start(i, 0, 0);
                 const Vec2 at = random.get_2d();
-                builder.add(Sphere{Vec3(6 * at.x - 3, 0.15f, 6 * at.y - 3), 0.15f}, i % 3 == 0 ? white : i % 3 == 1 ? brushed : glass);
+                builder.add(Sphere{Vec3(6 * at.x - 3, 0.15f, 6 * at.y - 3), 0.15f}, i % 3 == 0   ? white
+                                                                                    : i % 3 == 1 ? brushed
+                                                                                                 : glass);
             }
             builder.add(Sphere{Vec3(0, -1000, 0), 1000}, white);
             builder.add(quad(Vec3(-3, 0.5f, -1), {6, 0, 0}, {0, 1, 0.1f}), brushed);
@@ -167,7 +174,7 @@ TEST_SUITE("unit") {
             const Accelerator& accelerator = prepared.data().accelerator;
             REQUIRE(!accelerator.few_primitives());
 #if XSIMD_WITH_AVX512F
-            REQUIRE(accelerator.gathers_scattered()); // and so they stream (ray_stream_test.cpp)
+            REQUIRE(accelerator.gathers_scattered()); // so rays are streamed (ray_stream_test.cpp)
 #endif
             check_same(scene, settings);
         }
@@ -187,7 +194,8 @@ TEST_SUITE("unit") {
             for (std::uint32_t i = 0; i < count; ++i) {
                 sampler.start(static_cast<int>(count), 0, i);
                 const Vec2 at = sampler.get_2d();
-                Ray ray{Vec3(2 * at.x - 1, i % 3 == 0 ? 0.0f : 1.9f * sampler.get_1d(), 2 * at.y - 1), // some on the floor
+                // A third of the rays start on the floor.
+                Ray ray{Vec3(2 * at.x - 1, i % 3 == 0 ? 0.0f : 1.9f * sampler.get_1d(), 2 * at.y - 1),
                         uniform_sphere(sampler.get_2d())};
                 if (i % 5 == 0) ray.direction = Vec3(i % 2 == 0 ? 1.0f : -1.0f, 0, 0);
                 if (i % 7 == 0) ray.t_max = sampler.get_1d();
@@ -215,7 +223,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("and at every scale, far from the origin") {
-        for (const Place& place : {Place{1e-6f, {}}, Place{1e6f, {}}, Place{1, {5000, -3000, 8000}}, Place{1e-3f, {1, 2, 3}}})
+        for (const Place& place :
+             {Place{1e-6f, {}}, Place{1e6f, {}}, Place{1, {5000, -3000, 8000}}, Place{1e-3f, {1, 2, 3}}})
             for (const Lamp lamp : {Lamp::kRectangle, Lamp::kTriangle, Lamp::kPoint, Lamp::kSky}) {
                 CAPTURE(place.scale);
                 CAPTURE(static_cast<int>(lamp));

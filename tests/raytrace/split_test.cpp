@@ -1,4 +1,4 @@
-// The path tracer's light split into parts: they add up to the picture, and each is what it says.
+// These tests check that the path tracer's light components add up to the image and that each has the correct value.
 #include "raytrace/split.h"
 
 #include "tests/raytrace/estimates.h"
@@ -17,8 +17,8 @@ constexpr int kSize = 20;
 
 enum class Objects { kDiffuse, kDiffuseAndBrushed, kAll };
 
-// A corner under a lamp, a point light and a sky, with balls that cast shadows. With all objects: one of every
-// material, and a lamp that moves, which is no light that is sampled.
+// Returns a corner under an area light, a point light and a sky, with spheres that cast shadows. With all objects it
+// also has one of every material and a moving light, which is not sampled as a light.
 Scene corner(Objects objects) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
@@ -52,7 +52,7 @@ Settings with(int samples, int depth = 6) {
 
 View view_of(const Scene& scene) { return {scene.camera, kSize, kSize}; }
 
-/// The mean of something that each sample has, over a picture.
+/// A Look extracts a quantity from a camera sample, and mean_over_samples() averages it over an image.
 using Look = std::function<Rgb(const CameraSample&)>;
 Rgbd mean_over_samples(const Scene& scene, const Settings& settings, const Look& look) {
     const SplitTracer tracer(prepare(scene, settings), view_of(scene), settings);
@@ -64,7 +64,7 @@ Rgbd mean_over_samples(const Scene& scene, const Settings& settings, const Look&
     return sum / (1.0 * kSize * kSize * settings.samples_per_pixel);
 }
 
-/// As estimate(): over seeds, the green channel.
+/// Returns the green channel's mean and standard error over the seeds, as estimate() does.
 Estimate estimate_part(const Scene& scene, Settings settings, const Look& look, int seeds = 10) {
     std::vector<double> means;
     for (int seed = 0; seed < seeds; ++seed) {
@@ -198,8 +198,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Each comparison: six standard errors over ten seeds each, exceeded by chance once in 90,000 times. The other
-    // estimator chooses its lights differently, or knows nothing of parts.
+    // Each bound is six standard errors over ten seeds each, which chance exceeds once in 90,000 times. The other
+    // estimator chooses its lights differently or has no components.
     TEST_CASE("emission and unshadowed light are what the unshadowed integrator finds, emission and direct light what "
               "the lights integrator finds, by diffuse surfaces and rough metal") {
         const Scene scene = corner(Objects::kDiffuseAndBrushed);
@@ -208,7 +208,7 @@ TEST_SUITE("statistical") {
         alone.environment = false;
         const Settings split = [&] {
             Settings s = settings;
-            s.environment = false; // the background is emission, too
+            s.environment = false; // the background counts as emission, too
             return s;
         }();
         alone.integrator = Integrator::kUnshadowed;
@@ -219,10 +219,10 @@ TEST_SUITE("statistical") {
         const Estimate lights = estimate(scene, kSize, alone);
         const Look lit = [](const CameraSample& s) { return s.light.emission + s.light.direct; };
         CHECK(deviations(estimate_part(scene, split, lit), lights) < 6);
-        // The environment among the lights changes neither.
+        // Including the environment among the lights must change neither result.
         const Look open = [](const CameraSample& s) { return s.light.unshadowed(); };
         CHECK(deviations(estimate_part(scene, settings, open), estimate_part(scene, split, open)) < 6);
-        CHECK(unshadowed.mean > lights.mean * 1.02); // shadows are to be seen
+        CHECK(unshadowed.mean > lights.mean * 1.02); // shadows are present
         CHECK(lights.error < 0.01 * lights.mean);
     }
 
@@ -237,7 +237,7 @@ TEST_SUITE("statistical") {
         CHECK(environment.mean > 0.05);
         CHECK(environment.error < 0.01 * environment.mean);
         CHECK(deviations(part, environment) < 6);
-        // Naive path tracing of one scattering finds all direct light but the point light's.
+        // Naive path tracing of one scattering event finds all direct light except that of point lights.
         alone.integrator = Integrator::kNaive;
         alone.samples_per_pixel = 128;
         alone.max_depth = 1;

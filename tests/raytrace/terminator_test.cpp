@@ -1,4 +1,5 @@
-// The border of light and shade on smooth normals over few triangles has no steps.
+// These tests check the shading-terminator fix: smooth normals on coarse meshes must give a smooth boundary between
+// light and shadow.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -9,13 +10,14 @@ using namespace duet::raytrace;
 
 namespace {
 
-/// A smooth ball of 80 triangles under a sun from the side.
+/// Returns a smooth sphere of 80 triangles under a sun from the side.
 Scene ball(const Mat4& to_world) {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(1.0f)}});
     const std::uint32_t shape = builder.shape(icosphere(1, 1, {}, true));
     builder.place(shape, grey, to_world);
-    builder.place(shape, grey, Mat4(translation(Vec3d(50, 0, 0)))); // far off: keeps the first from being baked
+    // A second instance far away prevents the first from being baked.
+    builder.place(shape, grey, Mat4(translation(Vec3d(50, 0, 0))));
     builder.scene.lights.push_back(SunLight{normalize(Vec3(1, -0.3f, -0.2f)), Rgb(kPi)});
     builder.scene.camera.eye = {0, 0, 6};
     builder.scene.camera.fov_degrees = 24;
@@ -52,7 +54,8 @@ TEST_SUITE("unit") {
                     wrong += std::abs(picture.radiance(x, y).g - expected) > 1e-3f;
                 }
             CHECK(seen > 3000);
-            CHECK(below_facet > 20); // facets that turn away from the sun, though the smooth surface does not: the steps
+            // These facets face away from the sun although the smooth surface does not. They would cause steps.
+            CHECK(below_facet > 20);
             CHECK(wrong == 0);
         }
     }
@@ -69,10 +72,10 @@ TEST_SUITE("unit") {
             const SurfacePoint outer = surface_point(smooth, hit, from_outside, Mat4(), Mat4(), true);
             CHECK(outer.horizon == outer.ns);
             CHECK(length(outer.p + outer.lift) > length(outer.p));
-            // Each tangent plane is lifted to in full: the middle lies equally far below all three.
+            // The offset `lift` must reach all three tangent planes, because the center is equally far below each.
             CHECK(dot(outer.p + outer.lift, normalize(middle)) > 0.9f);
             const SurfacePoint inner = surface_point(smooth, hit, from_inside, Mat4(), Mat4(), true);
-            CHECK(inner.horizon == inner.ng); // hollow from inside
+            CHECK(inner.horizon == inner.ng); // concave from inside, so the geometric normal bounds the directions
             CHECK(length(inner.lift) == 0);
             const SurfacePoint facet = surface_point(flat, hit, from_outside, Mat4(), Mat4(), true);
             CHECK(length(facet.lift) == 0);

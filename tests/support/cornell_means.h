@@ -1,4 +1,4 @@
-// The published means of the Cornell box (tests/golden/README.md).
+// This header reads the published means of the Cornell box (tests/golden/README.md).
 #pragma once
 
 #include "common/image/rgb.h"
@@ -13,8 +13,8 @@
 
 namespace duet {
 
-/// A block of 32 x 32 pixels of the image of 512 x 512 pixels, and its published mean. Blocks that are not listed are
-/// black.
+/// Stores the published mean of a block of 32 x 32 pixels of the image of 512 x 512 pixels. Blocks that are not listed
+/// are black.
 struct CornellBlock {
     int row = 0, column = 0;
     Rgbd mean;

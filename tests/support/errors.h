@@ -1,4 +1,4 @@
-// Checks that a call throws the Error that it should.
+// These helpers check that a call throws the expected Error.
 #pragma once
 
 #include "common/system/error.h"
@@ -9,8 +9,8 @@
 
 namespace duet::test {
 
-/// The message of the Error that the call throws, after its exit code where that is not 2 («exit code 1: …»); "no error"
-/// where it throws none.
+/// Returns the message of the Error that the call throws, prefixed with its exit code if that is not 2 ("exit code 1:
+/// …"). Returns "no error" if the call throws none.
 template <typename Call> std::string error_of(const Call& call) {
     try {
         call();
@@ -20,7 +20,7 @@ template <typename Call> std::string error_of(const Call& call) {
     return "no error";
 }
 
-/// CHECK(text == Containing("part")) prints both where it fails.
+/// A failing CHECK(text == Containing("part")) prints both the text and the part.
 struct Containing {
     explicit Containing(std::string part_) : part(std::move(part_)) {}
     std::string part;
@@ -32,7 +32,7 @@ struct Containing {
     }
 };
 
-/// Whether a message is one line that holds the text.
+/// Returns whether a message is a single line that contains the text.
 inline bool says(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos && text.find('\n') == std::string::npos;
 }

@@ -1,4 +1,4 @@
-// A folder for the files a test writes.
+// This header provides a temporary folder for the files that a test writes.
 #pragma once
 
 #include "common/system/error.h"
@@ -11,13 +11,13 @@
 
 namespace duet::test {
 
-/// Empty at first, no other test's, and gone with this object.
+/// The folder starts empty, is shared with no other test, and is deleted with this object.
 class ScratchFolder {
 public:
     ScratchFolder() {
         static std::atomic<int> count{0};
         path_ = std::filesystem::temp_directory_path() / message("duet-test-", ::getpid(), "-", count++);
-        std::filesystem::remove_all(path_); // of a process that was killed
+        std::filesystem::remove_all(path_); // left over from a killed process
         std::filesystem::create_directories(path_);
     }
     ~ScratchFolder() {
@@ -29,7 +29,7 @@ public:
 
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
-    /// Writes a file, and the folders it is in; returns where it is.
+    /// Writes a file, creates its parent folders, and returns its path.
     std::filesystem::path write(const std::string& name, const std::string& text) const {
         std::filesystem::create_directories((path_ / name).parent_path());
         write_file(path_ / name, text);

@@ -45,7 +45,8 @@ std::string describe(JsonRange range) {
     return message("in [", number_text(range.low), ", ", number_text(range.high), "]");
 }
 
-/// Number of insertions, deletions, replacements and exchanges of neighbours between two short words.
+/// Returns the least number of insertions, deletions, replacements and swaps of neighbors that turn one short word
+/// into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -85,7 +86,7 @@ std::string in_quotes(std::string_view text) {
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known) {
     if (name.size() > 40) return "";
     std::string_view nearest;
-    std::size_t least = name.size() / 3 + 2; // a third of the letters, and one more, may be wrong
+    std::size_t least = name.size() / 3 + 2; // up to a third of the letters plus one may differ
     for (const std::string_view candidate : known) {
         if (candidate.size() > 40) continue;
         const std::size_t distance = edit_distance(name, candidate);
@@ -108,7 +109,7 @@ double JsonValue::number(JsonRange range) const {
     const double x = node_->number;
     if (!(x >= range.low && x <= range.high) || (range.open_low && x == range.low))
         expected("a number " + describe(range));
-    // A positive number must stay positive when it is stored as float.
+    // A positive number must also be positive when it is stored as float.
     if (range.open_low && static_cast<float>(x) == static_cast<float>(range.low))
         expected("a number " + describe(range));
     return x;

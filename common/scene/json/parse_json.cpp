@@ -1,4 +1,4 @@
-// The one file that knows nlohmann/json for scenes: its SAX events become a tree of JsonNode.
+// This is the only file that uses nlohmann/json for scenes. It converts SAX events to a tree of JsonNode.
 #include "common/scene/json/json_reader.h"
 #include "common/system/error.h"
 
@@ -11,7 +11,7 @@ namespace duet {
 
 namespace {
 
-/// Line and column (from 1) of the byte at an offset.
+/// Returns the line and column, both from 1, of the byte at an offset.
 std::string line_and_column(std::string_view text, std::size_t offset) {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
@@ -20,15 +20,15 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
     return message("line ", line, ", column ", column);
 }
 
-/// At most 200 bytes, on one line.
+/// Returns at most 200 bytes of the text, on one line. Bytes that are not printable ASCII become "?".
 std::string printable(std::string text) {
     for (char& c : text)
         if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
     return text.size() > 200 ? text.substr(0, 200) + " …" : text;
 }
 
-/// «[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while …» without what comes before
-/// «syntax».
+/// Removes the prefix of nlohmann's messages. Of "[json.exception.parse_error.101] parse error at line 1, column 2:
+/// syntax error while …" it keeps the text from "syntax" on.
 std::string reason(const std::string& what) {
     std::string text = what;
     const std::size_t bracket = text.find("] ");
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    /// JSON path of the innermost open value.
+    /// Returns the JSON path of the innermost open value.
     std::string path() const {
         std::string text = "$";
         for (std::size_t i = 0; i + 1 < open_.size(); ++i)
@@ -75,7 +75,7 @@ private:
         return printable(text);
     }
     bool add_number(double value) { return add({.kind = JsonNode::Kind::kNumber, .number = value}); }
-    /// Puts the value in its place; the pointers of open_ stay valid, as only the innermost open node grows.
+    /// Adds the value to the innermost open node. The pointers in open_ stay valid, because only that node grows.
     bool add(JsonNode&& node) {
         last_ = open_.empty() ? &(root_ = std::move(node)) : &open_.back()->items.emplace_back(std::move(node));
         return true;

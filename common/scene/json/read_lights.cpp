@@ -9,7 +9,7 @@ namespace duet {
 
 namespace {
 
-/// A unit vector; any length but zero is given.
+/// Returns a direction, normalized. The file may give any length except zero.
 Vec3d read_direction(const JsonValue& value) {
     const Vec3d v = value.vec3();
     if (v == Vec3d()) value.fail("a direction must not be the zero vector");

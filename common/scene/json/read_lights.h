@@ -1,4 +1,4 @@
-// Camera, picture size, lights and environment of scene files.
+// This file reads the camera, lights and environment of scene files.
 #pragma once
 
 #include "common/scene/json/json_reader.h"
@@ -7,9 +7,9 @@
 namespace duet {
 
 Camera read_camera(const JsonValue& camera);
-/// One of "lights".
+/// Reads one element of "lights".
 Light read_light(const JsonValue& light);
-/// Appends the picture's file to `files` where there is one.
+/// Reads the environment, and appends its image file to `files` where there is one.
 Environment read_environment(const JsonValue& environment, std::vector<std::filesystem::path>& files);
 
 } // namespace duet

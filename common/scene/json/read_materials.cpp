@@ -33,7 +33,8 @@ std::uint32_t ImageCache::load(const fs::path& file, ImageContent content) {
         pixel = {clamp(pixel.r, 0.0f, 1.0f), clamp(pixel.g, 0.0f, 1.0f), clamp(pixel.b, 0.0f, 1.0f)};
     }
     images.push_back(std::move(image));
-    if (std::find(scene_->files.begin(), scene_->files.end(), file) == scene_->files.end()) scene_->files.push_back(file);
+    if (std::find(scene_->files.begin(), scene_->files.end(), file) == scene_->files.end())
+        scene_->files.push_back(file);
     return entry->second;
 }
 
@@ -120,7 +121,8 @@ ScalarSlot read_scalar(const JsonValue& owner, std::string_view key, const Scala
     return {static_cast<float>(value.number_or("scale", 1, kUnit)), read_texture_name(value.at("texture"), textures)};
 }
 
-/// {"texture": name, "scale": number}.
+/// Reads a map of the form {"texture": name, "scale": number}. Both outputs keep their values where the key is
+/// missing.
 void read_map(const JsonValue& owner, std::string_view key, const NameIndex& textures, std::int32_t& texture,
               float& scale) {
     if (!owner.has(key)) return;
@@ -156,14 +158,16 @@ Conductor read_conductor(const JsonValue& owner) {
     name.fail(message("unknown conductor ", in_quotes(name.string()), hint));
 }
 
-/// A nanometre and more: coefficients stay finite.
+/// Distances of a nanometer or more keep absorption coefficients finite.
 constexpr JsonRange kAbsorptionDistance{1e-9, 1e18, false};
 
-/// {"color": what is left of white light, "distance": after so many metres}: the coefficients of Beer and Lambert's law.
+/// Reads {"color": …, "distance": …}, the transmittance of white light after a distance in meters. Returns the
+/// absorption coefficients of the Beer-Lambert law in 1/m.
 Rgb read_absorption(const JsonValue& value) {
     value.check_keys(scene_keys("absorption"));
     const Rgb color = value.at("color").rgb();
-    const Rgb left(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f)); // black after any finite distance is none
+    // No finite coefficient gives a transmittance of exactly 0, so it is clamped.
+    const Rgb left(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f));
     const auto distance = static_cast<float>(value.at("distance").number(kAbsorptionDistance));
     return Rgb(-std::log(left.r), -std::log(left.g), -std::log(left.b)) / distance;
 }
@@ -178,7 +182,8 @@ Dielectric read_dielectric(const JsonValue& value, const NameIndex& textures) {
     if (value.has("absorption")) material.absorption = read_absorption(value.at("absorption"));
     if (value.has("priority")) material.priority = value.at("priority").integer(0, 100);
     for (const char* key : {"roughness", "absorption", "priority"})
-        if (material.thin && value.has(key)) value.at(key).fail("a thin dielectric has none: it is smooth, and has no inside");
+        if (material.thin && value.has(key))
+            value.at(key).fail("a thin dielectric has none: it is smooth, and has no inside");
     return material;
 }
 

@@ -1,4 +1,4 @@
-// Textures and materials of scene files.
+// This file reads the textures and materials of scene files.
 #pragma once
 
 #include "common/image/image_content.h"
@@ -11,31 +11,33 @@
 
 namespace duet {
 
-/// The images of a scene, each stored once however often it is used.
+/// An ImageCache loads the images of a scene and stores each only once.
 class ImageCache {
 public:
     explicit ImageCache(Scene& scene) : scene_(&scene) {}
-    /// The index in TextureSet::images of the file's picture, its values limited to [0, 1] (it is a reflectance).
-    /// Throws Error for a file that read_image refuses or that holds NaN.
+    /// Returns the index in TextureSet::images of the file's image, loading it if necessary. Values are clamped to
+    /// [0, 1], because they are reflectances. Throws Error for a file that cannot be read or holds a value that is
+    /// not finite.
     std::uint32_t load(const std::filesystem::path& file, ImageContent content = {});
 
 private:
     Scene* scene_;
-    std::map<std::string, std::uint32_t> index_; ///< by canonical path and content
+    std::map<std::string, std::uint32_t> index_; ///< index by canonical path and content
 };
 
-/// The path a name in `owner` stands for: relative names are relative to the owner's folder.
+/// Returns the path for a name in the file `owner`. Relative names are relative to the owner's folder.
 std::filesystem::path beside(const std::filesystem::path& owner, const std::string& name);
-/// A key that is equal for two paths of one file.
+/// Returns a key that is equal for different paths of the same file.
 std::string canonical_key(const std::filesystem::path& path);
 
 using NameIndex = std::map<std::string, std::uint32_t>;
 
-/// Appends the textures of {"name": {…}, …} to the scene; their indices by name.
+/// Appends the textures of {"name": {…}, …} to the scene. Returns their indices by name.
 NameIndex read_textures(const JsonValue& textures, Scene& scene, ImageCache& images);
-/// Appends the materials; their indices by name.
+/// Appends the materials of {"name": {…}, …} to the scene. Returns their indices by name.
 NameIndex read_materials(const JsonValue& materials, const NameIndex& textures, Scene& scene);
-/// The index a name stands for; Error with a suggestion where it is unknown. `what`: "material", "texture".
+/// Returns the index for a name. Throws Error with a suggestion where the name is unknown. `what` is "material" or
+/// "texture", for the message.
 std::uint32_t look_up(const JsonValue& name, const NameIndex& index, std::string_view what);
 
 } // namespace duet

@@ -41,17 +41,18 @@ const SceneNode& group_of(const Scene& scene, const SceneNode& instance, const G
                 suggestion(instance.instance_of, known));
 }
 
-/// Checks that no group holds itself, and that nothing is nested too deep or expands to too much, over all groups,
-/// shown or not. Each node is looked at once: thirty groups of two instances of the next each are a billion objects,
-/// but not a billion steps here.
+/// An ExtentCheck checks that no group contains itself, and that no group, visible or not, is nested too deep or
+/// expands to too many objects. Each node is visited only once: thirty groups of two instances of the next group are
+/// a billion objects, but take few steps here.
 class ExtentCheck {
 public:
     ExtentCheck(const Scene& scene, const GroupIndex& groups) : scene_(&scene), groups_(&groups) {}
 
-    /// The extent of the tree under a node, itself included; `depth` nodes are above it.
+    /// An Extent is the size of the tree under a node, including the node. `depth` in check is the number of nodes
+    /// above it.
     struct Extent {
         std::size_t height = 0, nodes = 1;
-        bool open = false; ///< still being worked out
+        bool open = false; ///< whether the extent is still being computed
     };
     Extent check(const SceneNode& node, std::size_t depth) {
         if (node.shape) return {};
@@ -85,7 +86,7 @@ private:
     std::unordered_map<const SceneNode*, Extent> extents_;
 };
 
-/// Walks the tree and appends an Object for each shape it comes by.
+/// A Flattener traverses the tree and appends an Object for each shape.
 class Flattener {
 public:
     Flattener(const GroupIndex& groups, Scene& scene) : groups_(&groups), scene_(&scene) {}
@@ -104,7 +105,8 @@ public:
     }
 
 private:
-    /// An instance stands for the group with the group's own transform; its members carry the instance's name.
+    /// Adds the members of an instanced group. The group's own transform applies, and the names of the members start
+    /// with the instance's name.
     void show_group(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
         for (const SceneNode& member : group.members) visit(member, motion * group.motion, name + "/");
     }
@@ -118,7 +120,7 @@ private:
         object.materials = node.materials;
         object.to_world = Mat4(motion.start);
         object.to_world_end = Mat4(motion.end);
-        // The inverse of the rounded matrix: of what the pipelines apply.
+        // This is the inverse of the rounded matrix, because the pipelines apply the rounded one.
         object.to_object = Mat4(inverse_affine(Mat4d(object.to_world)));
         object.moving = !(object.to_world == object.to_world_end);
         object.identity = !object.moving && object.to_world == Mat4();

@@ -56,29 +56,29 @@ Mat4d read_list(const JsonValue& list) {
     return m;
 }
 
-/// det3 as a fraction of the product of the columns' lengths: 1 for orthogonal columns, 0 for a singular map.
+/// Returns the determinant divided by the product of the columns' lengths: ±1 for orthogonal columns, 0 for a
+/// singular map.
 double relative_determinant(const Mat4d& m) {
     double lengths = 1;
     for (std::size_t c = 0; c < 3; ++c) lengths *= length(Vec3d(m[0][c], m[1][c], m[2][c]));
     return lengths > 0 ? determinant3(m) / lengths : 0;
 }
 
-/// The times in [0, 1] at which the determinant of the interpolated map, a cubic, could be least: both ends and its
-/// extrema.
+/// Returns the times in (0, 1) at which the determinant of the interpolated map, a cubic polynomial, has an extremum.
 std::vector<double> critical_times(const MotionTransform& m) {
     const auto f = [&](double t) { return determinant3(lerp(m.start, m.end, t)); };
-    // f(t) = f0 + b t + c t² + d t³ through t = 0, ½, 1 and −1.
+    // The cubic f(t) = f0 + b t + c t² + d t³ is interpolated at t = 0, ½, 1 and −1.
     const double f0 = f(0), f1 = f(1), fh = f(0.5), fm = f(-1);
     const double c = 0.5 * (f1 + fm) - f0;
     const double odd = 0.5 * (f1 - fm);                            // b + d
-    const double d = (odd - 2 * (fh - f0 - 0.25 * c)) * (4.0 / 3); // from f(½)
+    const double d = (odd - 2 * (fh - f0 - 0.25 * c)) * (4.0 / 3); // solved from f(½)
     const double b = odd - d;
     std::vector<double> times;
-    const double root = sqr(c) - 3 * b * d; // f' = b + 2 c t + 3 d t²
+    const double root = sqr(c) - 3 * b * d; // discriminant of f' = b + 2 c t + 3 d t²
     if (root < 0) return times;
     const double q = -c - std::copysign(std::sqrt(root), c);
     for (const double t : {q / (3 * d), b / q})
-        if (t > 0 && t < 1) times.push_back(t); // NaN and infinity fail
+        if (t > 0 && t < 1) times.push_back(t); // NaN and infinity fail this test
     return times;
 }
 
@@ -98,7 +98,8 @@ MotionTransform MotionTransform::operator*(const MotionTransform& inner) const {
 }
 
 const char* placement_fault(const MotionTransform& transform) {
-    // In float the columns of a map with less than this are one plane: shading normals and inverses would be noise.
+    // Below this relative determinant the columns are coplanar in float precision, and normals and inverses would be
+    // noise.
     constexpr double kSingular = 1e-7;
     if (!(std::abs(relative_determinant(transform.start)) > kSingular) ||
         !(std::abs(relative_determinant(transform.end)) > kSingular))

@@ -1,4 +1,4 @@
-// Transforms of scene files: lists of steps, applied in order.
+// This file reads the transforms of scene files: lists of steps that are applied in order.
 #pragma once
 
 #include "common/scene/json/json_reader.h"
@@ -6,21 +6,21 @@
 
 namespace duet {
 
-/// A map at the start and at the end of its object's motion; equal for one that stands still.
+/// A MotionTransform is a map at the start and at the end of an object's motion. For a static object both are equal.
 struct MotionTransform {
     Mat4d start, end;
     bool moving = false;
 
-    /// This map after `inner`, at both ends.
+    /// Returns this map applied after `inner`, at both ends of the motion.
     MotionTransform operator*(const MotionTransform& inner) const;
 };
 
-/// The transform of an object of a scene file: its keys "transform" and "transform_end", both optional. Throws Error
-/// where a map, or one that the motion passes through, is singular.
+/// Reads the transform of an object from its keys "transform" and "transform_end", which are both optional. Throws
+/// Error where placement_fault finds a fault.
 MotionTransform read_motion(const JsonValue& object);
 
-/// Why objects cannot be placed by the transform, or nullptr: an entry or one of the inverse too large for float's
-/// squares, or a map that is singular to working precision at some time of the motion.
+/// Returns the reason why the transform cannot place objects, or nullptr where it can. Reasons are an entry of a map
+/// or its inverse beyond 1e18, and a map that is singular to working precision at some time of the motion.
 const char* placement_fault(const MotionTransform& transform);
 
 } // namespace duet

@@ -32,7 +32,8 @@ const std::vector<JsonKeys>& scene_keys() {
         {"absorption", {"color", "distance"}, {}},
         {"principled",
          {"type"},
-         {"base_color", "metallic", "roughness", "ior", "clearcoat", "clearcoat_roughness", "normal", "bump", "opacity", "cutoff"}},
+         {"base_color", "metallic", "roughness", "ior", "clearcoat", "clearcoat_roughness", "normal", "bump", "opacity",
+          "cutoff"}},
         {"coated", {"type"}, {"albedo", "roughness", "ior", "normal", "bump", "opacity", "cutoff"}},
         {"emissive", {"type", "radiance"}, {"radiance_texture", "two_sided", "albedo", "normal", "bump"}},
 

@@ -1,4 +1,4 @@
-// The tree of objects as a scene file describes it, before groups and instances are flattened.
+// This file defines the tree of objects as a scene file describes it, before groups and instances are flattened.
 #pragma once
 
 #include "common/scene/json/json_reader.h"
@@ -14,33 +14,33 @@
 
 namespace duet {
 
-/// One entry of "objects": a shape with its materials, a group of members, or an instance of a group.
+/// A SceneNode is one entry of "objects": a shape with its materials, a group of members, or an instance of a group.
 struct SceneNode {
-    std::string name;   ///< the file's, or one made up for messages and reports: "sphere-3"
-    bool named = false; ///< by the file: a group that instances may show
+    std::string name;   ///< name in the file, or a generated one such as "sphere-3"
+    bool named = false; ///< whether the file gives a name; instances can refer to named groups
     std::string path;   ///< JSON path, for messages
     MotionTransform motion;
-    bool hidden = false;                  ///< a group that is only a definition
+    bool hidden = false;                  ///< whether the group only serves as a definition for instances
     std::optional<std::uint32_t> shape;   ///< index into Scene::shapes
-    std::vector<std::uint32_t> materials; ///< of a shape, one a slot
-    std::vector<SceneNode> members;       ///< of a group
-    std::string instance_of;              ///< the group's name
+    std::vector<std::uint32_t> materials; ///< materials of a shape, one per slot
+    std::vector<SceneNode> members;       ///< members of a group
+    std::string instance_of;              ///< name of the group that is instanced
 };
 
-/// Reads nodes, and puts their shapes and meshes' materials into the scene; a mesh file is read once for each way of
-/// normals.
+/// A SceneNodeReader reads nodes, and adds their shapes and the materials of meshes to the scene. A mesh file is read
+/// once for each value of "normals".
 class SceneNodeReader {
 public:
     SceneNodeReader(const NameIndex& materials, ImageCache& images, Scene& scene)
         : materials_(&materials), images_(&images), scene_(&scene) {}
 
-    /// The nodes of an "objects" array; `depth` is the number of groups around it.
+    /// Returns the nodes of an "objects" array. `depth` is the number of groups around it.
     std::vector<SceneNode> read(const JsonValue& objects, std::size_t depth = 0);
 
 private:
     struct LoadedMesh {
         std::uint32_t shape;
-        std::vector<std::uint32_t> materials; ///< of its MTL file, one a slot
+        std::vector<std::uint32_t> materials; ///< materials of its MTL file, one per slot
         std::size_t slots;
     };
 

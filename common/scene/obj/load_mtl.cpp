@@ -13,13 +13,14 @@ namespace duet {
 
 namespace {
 
-/// A colour limited to [0, 1]: exporters write a little more, and some scale to 255, which no surface reflects.
+/// Returns a color clamped to [0, 1]. Some exporters write slightly larger values, and some scale to 255, but no
+/// surface reflects more than 1.
 Rgb reflectance(const tinyobj::real_t* c) {
     return {clamp(c[0], 0.0f, 1.0f), clamp(c[1], 0.0f, 1.0f), clamp(c[2], 0.0f, 1.0f)};
 }
 
-/// Perceptual roughness of a Phong exponent: alpha² = 2 / (Ns + 2) (Walter et al. 2007, §5.2, after Blinn), roughness =
-/// √alpha.
+/// Returns the perceptual roughness √alpha of a Phong exponent Ns, with alpha² = 2 / (Ns + 2) (Walter et al. 2007,
+/// §5.2, after Blinn).
 float roughness_of_exponent(float ns) { return std::sqrt(std::sqrt(2.0f / (max(ns, 0.0f) + 2.0f))); }
 
 bool is_glass(const tinyobj::material_t& m) {
@@ -31,12 +32,12 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// The pictures that a material's lines name, in the order asked for.
+/// Pictures collects the images that a material's lines name, in the order in which they are added.
 class Pictures {
 public:
     explicit Pictures(const std::filesystem::path& mtl) : mtl_(&mtl) {}
 
-    /// The index of a picture, or −1 where none is named.
+    /// Adds an image and returns its index, or −1 where none is named.
     std::int32_t add(const std::string& name, const tinyobj::texture_option_t& options, ImageContent content = {}) {
         std::string picture = trimmed(name);
         if (picture.empty()) return -1;
@@ -53,7 +54,8 @@ private:
 
 constexpr ImageContent kGreyData{ImageContent::Values::kData, ImageContent::Channel::kRed};
 
-/// A number in [0, 1], or its picture times it (times 1 where there is a picture and no number); 0 without either.
+/// Returns a number clamped to [0, 1] as a slot, times the texture where one is named. With a texture, a number of 0
+/// counts as not given and becomes 1.
 ScalarSlot scalar(float number, const std::string& name, const tinyobj::texture_option_t& options, Pictures& pictures) {
     const std::int32_t map = pictures.add(name, options, kGreyData);
     const float given = clamp(number, 0.0f, 1.0f);
@@ -64,7 +66,8 @@ ScalarSlot roughness_of(const tinyobj::material_t& m, Pictures& pictures) {
     return scalar(m.roughness, m.roughness_texname, m.roughness_texopt, pictures);
 }
 
-/// Whether anything of the PBR extension is given: by its defaults, Pr 0 among them, all surfaces would be varnished.
+/// is_physical returns whether the material uses the PBR extension. Default values do not count: a default roughness
+/// Pr of 0 would make every surface look varnished.
 bool is_metallic(const tinyobj::material_t& m) { return m.metallic > 0 || !m.metallic_texname.empty(); }
 bool is_physical(const tinyobj::material_t& m) {
     return is_metallic(m) || m.roughness > 0 || !m.roughness_texname.empty() || m.clearcoat_thickness > 0;
@@ -91,13 +94,14 @@ Material map_material(const tinyobj::material_t& m, Pictures& pictures) {
     if (!is_metallic(m) && (m.illum == 3 || m.illum == 5) && !is_black(ks)) {
         const RgbSlot specular{ks, pictures.add(m.specular_texname, m.specular_texopt)};
         const ScalarSlot rough = roughness_of(m, pictures);
-        return Metal{specular, rough.constant() && rough.value == 0 ? ScalarSlot{roughness_of_exponent(m.shininess)} : rough};
+        return Metal{specular,
+                     rough.constant() && rough.value == 0 ? ScalarSlot{roughness_of_exponent(m.shininess)} : rough};
     }
     if (is_physical(m)) return physical(m, diffuse(), pictures);
     return Diffuse{diffuse()};
 }
 
-/// MTL files say nothing of the unit of their heights.
+/// MTL files do not define the unit of bump heights, so a height of 1 is assumed to be this many meters.
 constexpr float kMetresABump = 0.01f;
 
 SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, Pictures& pictures) {
@@ -105,7 +109,7 @@ SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, 
     maps.normal = pictures.add(m.normal_texname, m.normal_texopt, {ImageContent::Values::kData});
     maps.bump = pictures.add(m.bump_texname, m.bump_texopt, kGreyData);
     maps.bump_scale = kMetresABump * m.bump_texopt.bump_multiplier;
-    if (std::holds_alternative<Emissive>(material)) return maps; // lamps are whole
+    if (std::holds_alternative<Emissive>(material)) return maps; // emitters have no opacity map
     const std::int32_t map_d = pictures.add(m.alpha_texname, m.alpha_texopt,
                                             {ImageContent::Values::kData, ImageContent::Channel::kOpacity});
     const float d = std::holds_alternative<Dielectric>(material) ? 1.0f : clamp(m.dissolve, 0.0f, 1.0f);
@@ -124,7 +128,7 @@ void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMateri
     std::string warnings, errors;
     tinyobj::LoadMtl(&ignored_names, &parsed, &stream, &warnings, &errors);
     for (const tinyobj::material_t& m : parsed) {
-        if (trimmed(m.name).empty()) continue; // what tinyobjloader makes of a file's beginning
+        if (trimmed(m.name).empty()) continue; // tinyobjloader's unnamed entry for the start of a file
         for (const float e : m.emission)
             if (!(e >= 0 && e <= kLightRange.high))
                 throw Error(message(path.string(), ": the material ", in_quotes(m.name), " has Ke ", e,

@@ -1,4 +1,5 @@
-// MTL files: Wavefront materials, with the PBR extension, mapped to ours. models/README.md has the table.
+// This file reads Wavefront MTL files, with the PBR extension, and maps their materials to Duet's. models/README.md
+// has the table.
 #pragma once
 
 #include "common/scene/obj/load_obj.h"
@@ -9,15 +10,15 @@
 
 namespace duet {
 
-/// A material of an MTL file and the pictures it asks for.
+/// An MtlMaterial is a material of an MTL file with the images that it uses.
 struct MtlMaterial {
-    Material material; ///< its references to textures index `textures`
-    SurfaceMaps maps;  ///< likewise
+    Material material; ///< its texture references are indices into `textures`
+    SurfaceMaps maps;  ///< its texture references are indices into `textures`
     std::vector<ObjTexture> textures;
 };
 
-/// Adds the materials of an MTL file by name; the first of a name stands. Throws Error with path and line for malformed
-/// numbers, and for a file that is missing.
+/// Adds the materials of an MTL file by name; the first of each name wins. Throws Error with path and line for
+/// malformed numbers, and for a missing file.
 void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMaterial>& materials);
 
 } // namespace duet

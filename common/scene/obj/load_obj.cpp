@@ -17,16 +17,17 @@ namespace duet {
 
 namespace {
 
-/// Reads a text where it lies.
+/// A TextStream reads a string in place, without a copy.
 class TextStream : public std::streambuf {
 public:
     explicit TextStream(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
 };
 
-/// The material slots of a mesh, as the usemtl lines ask for them.
+/// Slots assigns the material slots of a mesh in the order in which usemtl lines use them.
 class Slots {
 public:
-    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted) : path_(&path), wanted_(wanted), files_{path} {
+    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted)
+        : path_(&path), wanted_(wanted), files_{path} {
         if (!wanted) return;
         for (const std::string& line : counts.material_files) load_library(line);
     }
@@ -39,7 +40,8 @@ public:
         slot_ = kUnknown;
     }
 
-    /// The slot of the next face; the material is looked up now, so that one which no face uses may be missing.
+    /// Returns the slot of the next face. The material is only looked up here, so that a material may be missing
+    /// where no face uses it.
     std::uint16_t slot() {
         if (slot_ == kUnknown) slot_ = find_slot();
         return static_cast<std::uint16_t>(slot_);
@@ -54,7 +56,8 @@ public:
 private:
     static constexpr std::uint32_t kUnknown = ~0u;
 
-    /// «mtllib a.mtl b.mtl», or one name with blanks in it.
+    /// Loads the files of an mtllib line. The line is a list such as "mtllib a.mtl b.mtl", or a single name that
+    /// contains blanks.
     void load_library(const std::string& line) {
         const auto is_there = [&](const std::string& name) {
             std::error_code error;
@@ -129,7 +132,7 @@ private:
     std::vector<ObjTexture> textures_;
 };
 
-/// What tinyobjloader calls back into.
+/// A Reader is the state that tinyobjloader's callbacks receive.
 struct Reader {
     ObjMeshBuilder mesh;
     Slots slots;

@@ -1,4 +1,5 @@
-// Meshes from Wavefront OBJ files, with the materials of their MTL files. models/README.md says what is read and how.
+// This file reads meshes from Wavefront OBJ files, with the materials of their MTL files. models/README.md describes
+// which parts of the formats are read.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -14,10 +15,10 @@
 namespace duet {
 
 enum class MeshNormals {
-    kFile,   ///< as the file gives them; flat where it gives none
-    kFlat,   ///< none: each triangle its own
-    kSmooth, ///< computed, the file's ignored (smooth_normals.h)
-    kAuto,   ///< the file's, or computed where it gives none
+    kFile,   ///< the file's normals; flat shading where it has none
+    kFlat,   ///< no vertex normals: flat shading
+    kSmooth, ///< computed normals; the file's are ignored (smooth_normals.h)
+    kAuto,   ///< the file's normals; computed where it has none
 };
 
 struct ObjOptions {
@@ -25,7 +26,7 @@ struct ObjOptions {
     bool materials = true; ///< false: no MTL file is read, and the mesh has one material slot
 };
 
-/// A picture that a material asks for.
+/// An ObjTexture is an image that a material uses.
 struct ObjTexture {
     std::filesystem::path file;
     Vec2 scale{1, 1};
@@ -34,26 +35,30 @@ struct ObjTexture {
 
 struct ObjMaterial {
     std::string name;
-    Material material; ///< its references to textures index ObjFile::textures, to be mapped to the scene's
-    SurfaceMaps maps{}; ///< likewise
+    Material material; ///< texture references are indices into ObjFile::textures, to be remapped to the scene's
+    SurfaceMaps maps{}; ///< texture references are indices into ObjFile::textures
 };
 
 struct ObjFile {
-    Mesh mesh;                          ///< all groups and objects of the file; Mesh::closed is not set yet
-    std::vector<ObjMaterial> materials; ///< one a material slot, in order of first use; at least one. Faces without a
-                                        ///< material use the one named "" (default_obj_material)
+    Mesh mesh;                          ///< all groups and objects of the file; Mesh::closed is not set
+    /// There is one material per slot, in order of first use, and at least one. Faces without a material use the one
+    /// named "" (default_obj_material).
+    std::vector<ObjMaterial> materials;
     std::vector<ObjTexture> textures;
-    std::vector<std::filesystem::path> files; ///< the OBJ file, then the MTL files that were read
-    std::size_t degenerate_faces = 0; ///< left out: fewer than three different vertices
+    std::vector<std::filesystem::path> files; ///< the OBJ file, then the MTL files read
+    std::size_t degenerate_faces = 0; ///< number of omitted faces of fewer than three distinct vertices
 };
 
-/// What a face without a material is made of: a clay-like diffuse.
+/// Returns the material of faces without a material, a clay-like diffuse.
 Material default_obj_material();
 
-/// Reads an OBJ file. Throws Error, with the line where there is one, for: a file that cannot be read, of more than 4
-/// GiB or not text; a number that is malformed, not finite or beyond 1e18; an index of no vertex; a face of fewer than
-/// three corners; no face at all; a concave face of more than kMaxConcaveCorners corners; a material of an MTL file
-/// that is missing or does not have it.
+/// Reads an OBJ file. Throws Error, with the line number where there is one, in these cases:
+/// - The file cannot be read, is larger than 4 GiB, or is not text.
+/// - A number is malformed, not finite, or beyond 1e18.
+/// - An index refers to no vertex.
+/// - A face has fewer than three corners, or there is no face at all.
+/// - A concave face has more than kMaxConcaveCorners corners.
+/// - A used material is not in the MTL files, or its MTL file is missing.
 ObjFile load_obj(const std::filesystem::path& path, const ObjOptions& options = {});
 
 } // namespace duet

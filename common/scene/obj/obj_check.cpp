@@ -14,11 +14,12 @@ namespace duet {
 
 namespace {
 
-/// Words of a line, separated by blanks and tabs, as tinyobjloader separates them.
+/// Words splits a line at blanks and tabs, as tinyobjloader does.
 class Words {
 public:
     explicit Words(std::string_view line) : rest_(line) {}
-    /// The next word, empty at the line's end. (By hand: find_first_of calls memchr for each byte.)
+    /// Returns the next word, or an empty one at the end of the line. The loops are written by hand, because
+    /// find_first_of calls memchr for each byte.
     std::string_view next() {
         std::size_t begin = 0, end = 0;
         while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
@@ -34,7 +35,7 @@ private:
     std::string_view rest_;
 };
 
-/// Walks over the lines of a text, which end as in tinyobjloader: by \n, \r\n or \r.
+/// Lines iterates over the lines of a text. Lines end as in tinyobjloader, by \n, \r\n or \r.
 class Lines {
 public:
     explicit Lines(std::string_view text) : rest_(text) {}
@@ -69,14 +70,15 @@ void check_number(const std::filesystem::path& path, std::size_t line, std::stri
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument || std::isnan(value))
         fail(path, line, "found " + in_quotes(word) + ", expected a number");
-    // Out of range is said of numbers too small for a double, too: those are 0 for tinyobjloader, and for us.
+    // from_chars also reports numbers too small for a double as out of range. tinyobjloader reads those as 0, and
+    // they are accepted here.
     const bool tiny = error == std::errc::result_out_of_range &&
                       (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos);
     if ((error == std::errc::result_out_of_range && !tiny) || !(std::abs(value) <= kMaxMeshNumber))
         fail(path, line, "found " + in_quotes(word) + ", expected a number between -1e18 and 1e18");
 }
 
-/// A line of at least `least` numbers, and at most `most` that are looked at.
+/// Checks that a line has at least `least` numbers. At most `most` numbers are checked; any others are ignored.
 void check_numbers(const std::filesystem::path& path, std::size_t line, Words words, std::size_t least,
                    std::size_t most) {
     for (std::size_t i = 0; i < most; ++i) {
@@ -86,8 +88,8 @@ void check_numbers(const std::filesystem::path& path, std::size_t line, Words wo
     }
 }
 
-/// Checks the indices of face corners against the counts so far, and keeps the largest, to be compared with the final
-/// counts: a positive index may name what comes later.
+/// An IndexCheck compares the indices of face corners with the counts so far. It stores the largest index and
+/// compares it with the final counts, because a positive index may refer to a later line.
 class IndexCheck {
 public:
     IndexCheck(const std::filesystem::path& path, const char* what) : path_(&path), what_(what) {}
@@ -121,7 +123,7 @@ private:
     std::size_t line_ = 0;
 };
 
-/// The checks of f lines: «f 1 2 3», «f 1/1 …», «f 1//1 …», «f 1/1/1 …».
+/// A FaceCheck checks f lines, such as "f 1 2 3", "f 1/1 …", "f 1//1 …" and "f 1/1/1 …".
 class FaceCheck {
 public:
     explicit FaceCheck(const std::filesystem::path& path)
@@ -161,7 +163,8 @@ private:
     std::array<IndexCheck, 3> index_;
 };
 
-/// «f 1 2 \⏎ 3 4⏎» becomes «f 1 2   3 4⏎⏎»: tinyobjloader does not know continued lines.
+/// Joins continued lines, which tinyobjloader does not support. A backslash before a line end becomes a blank, and an
+/// empty line after the joined line preserves the line numbers: "f 1 2\⏎3 4⏎" becomes "f 1 2 3 4⏎⏎".
 std::string join_continued(const std::string& text) {
     std::string joined;
     joined.reserve(text.size());
@@ -226,7 +229,7 @@ void check_mtl(const std::filesystem::path& path, std::string_view text) {
     for (std::string_view line; lines.next(line);) {
         Words words(line);
         const std::string_view key = words.next();
-        // "Kd spectral FILE" and "Kd xyz X Y Z" are not read by tinyobjloader, nor accepted here.
+        // tinyobjloader does not read "Kd spectral FILE" and "Kd xyz X Y Z", so they are not accepted here.
         if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf" || key == "Kt")
             check_numbers(path, lines.number(), words, 3, 3);
         else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr" || key == "Pr" || key == "Pm" ||

@@ -9,7 +9,7 @@ namespace duet {
 
 namespace {
 
-/// A hash whose every bit depends on every bit of the three indices (the finalizer is MurmurHash3's).
+/// Returns a hash of which every bit depends on every bit of the three indices (the finalizer is MurmurHash3's).
 std::uint64_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     std::uint64_t h = ((static_cast<std::uint64_t>(a) << 32) | b) * 0x9e3779b97f4a7c15u + c;
     h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdu;
@@ -17,7 +17,7 @@ std::uint64_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return h ^ (h >> 33);
 }
 
-/// v in unit length, of any length that float holds; (0, 0, 0) of the zero vector.
+/// Returns v normalized, for any length that float represents, and (0, 0, 0) for the zero vector.
 Vec3 unit(Vec3d v) { return v == Vec3d() ? Vec3() : Vec3(normalize_scaled(v)); }
 
 } // namespace
@@ -34,8 +34,8 @@ ObjMeshBuilder::ObjMeshBuilder(const std::filesystem::path& path, const ObjCount
 
 void ObjMeshBuilder::add_normal(Vec3 n) { normals_.push_back(unit(Vec3d(n))); }
 
-/// check_obj has refused what is out of range, by its own reading of the text; an index is trusted only after this
-/// second look.
+/// Converts an index of the file to one that counts from 0. check_obj has already refused indices out of range by its
+/// own parsing of the text; this second check guards against a different reading by tinyobjloader.
 std::uint32_t ObjMeshBuilder::resolve(int index, std::size_t so_far, std::size_t total) const {
     if (index == 0) return kNone;
     const long long at = index > 0 ? index - 1LL : static_cast<long long>(so_far) + index;
@@ -79,7 +79,7 @@ Mesh ObjMeshBuilder::finish(std::size_t& degenerate_faces) {
 }
 
 bool ObjMeshBuilder::add_face(std::vector<Corner>& face, std::uint16_t slot) {
-    // Neighbours that name one vertex are one corner.
+    // Adjacent corners with the same vertex are merged into one corner.
     face.erase(std::unique(face.begin(), face.end(),
                            [](const Corner& a, const Corner& b) { return a.position == b.position; }),
                face.end());
@@ -111,7 +111,7 @@ void ObjMeshBuilder::use_face_normal(std::vector<Corner>& face) {
     };
     if (std::none_of(face.begin(), face.end(), lacks)) return;
     const Vec3 normal = unit(newell_normal(polygon_));
-    normals_.push_back(normal == Vec3() ? Vec3(0, 1, 0) : normal); // a face without area is never seen
+    normals_.push_back(normal == Vec3() ? Vec3(0, 1, 0) : normal); // a face without area is never visible
     for (Corner& corner : face)
         if (lacks(corner)) corner.normal = static_cast<std::uint32_t>(normals_.size() - 1);
 }

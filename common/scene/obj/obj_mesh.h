@@ -1,5 +1,5 @@
-// The faces of an OBJ file become a mesh: corners that agree in all three indices become one vertex, polygons
-// triangles.
+// This file converts the faces of an OBJ file to a mesh. Corners with the same three indices become one vertex, and
+// polygons become triangles.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -12,14 +12,15 @@
 
 namespace duet {
 
-/// Fed in the order of the file. Indices are as written: from 1, negative from the end so far, 0 where there is none.
+/// An ObjMeshBuilder receives the elements in the order of the file. Indices are those of the file: they count from
+/// 1, negative ones count back from the last element so far, and 0 means none.
 ///
-/// Corners without a uv in a mesh that has some get (0, 0). Corners without a normal in a mesh that has some, and those
-/// whose normal is zero, get their face's. A face whose corners name fewer than three vertices has no triangles and is
-/// counted.
+/// In a mesh with uvs, corners without a uv get (0, 0). In a mesh with normals, corners without a normal or with a
+/// zero normal get their face's normal. A face with fewer than three distinct vertices has no triangles and is
+/// counted as degenerate.
 class ObjMeshBuilder {
 public:
-    /// `normals`: whether the file's are wanted.
+    /// `normals` selects whether the file's normals are used.
     ObjMeshBuilder(const std::filesystem::path& path, const ObjCounts& counts, bool normals);
 
     void add_position(Vec3 p) { positions_.push_back(p); }
@@ -29,13 +30,13 @@ public:
     void add_corner(int position, int uv, int normal);
     void end_face() { face_ends_.push_back(corners_.size()); }
 
-    /// The mesh, and the number of faces left out. Throws Error where no face has a triangle.
+    /// Returns the mesh, and sets the number of omitted faces. Throws Error where no face has a triangle.
     Mesh finish(std::size_t& degenerate_faces);
 
 private:
     static constexpr std::uint32_t kNone = ~0u;
     struct Corner {
-        std::uint32_t position, uv, normal; ///< from 0, or kNone
+        std::uint32_t position, uv, normal; ///< indices from 0, or kNone
         friend bool operator==(const Corner&, const Corner&) = default;
     };
 
@@ -56,10 +57,11 @@ private:
     std::vector<std::uint16_t> slots_;
     bool any_uv_ = false, any_normal_ = false;
 
-    std::vector<Vec3> polygon_; ///< of the face at hand
+    std::vector<Vec3> polygon_; ///< polygon of the current face
     std::vector<std::array<std::uint32_t, 3>> split_;
     std::vector<Corner> vertices_;
-    std::vector<std::uint32_t> table_; ///< indices into vertices_ by hash, open addressing; its size is a power of two
+    /// This is a hash table of indices into vertices_ with open addressing. Its size is a power of two.
+    std::vector<std::uint32_t> table_;
     Mesh mesh_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// For each vertex the number of its position: equal positions, equal numbers.
+/// Returns an index for each vertex such that equal positions have equal indices.
 std::vector<Index> weld(const std::vector<Vec3>& positions) {
     std::vector<Index> order(positions.size()), welded(positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -25,7 +25,7 @@ std::vector<Index> weld(const std::vector<Vec3>& positions) {
     return welded;
 }
 
-/// Sets of triangle corners (3·triangle + k) that share a normal.
+/// CornerSets is a union-find structure over triangle corners (3·triangle + k). Corners of one set share a normal.
 class CornerSets {
 public:
     explicit CornerSets(std::size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -48,9 +48,9 @@ Vec3d unit_or_zero(Vec3d v) {
 }
 
 struct Edge {
-    Index low, high; ///< welded ends
-    Index corner;    ///< at which its triangle's edge begins
-    bool forward;    ///< the triangle runs it from low to high
+    Index low, high; ///< welded indices of the edge's ends
+    Index corner;    ///< corner of the triangle at which the edge begins
+    bool forward;    ///< whether the triangle's winding runs from low to high
 };
 
 class Smoother {
@@ -64,7 +64,7 @@ public:
         join_over_edges();
     }
 
-    /// One normal a corner set, at the index of its first corner.
+    /// Returns one normal for each corner set, at the index of the set's first corner.
     std::vector<Vec3d> normals() {
         std::vector<Vec3d> sums(3 * mesh_.triangles.size());
         for (Index t = 0; t < mesh_.triangles.size(); ++t)
@@ -78,7 +78,7 @@ private:
 
     double angle(Index t, Index k) const {
         const Vec3d p = position(t, k), u = position(t, k + 1) - p, v = position(t, k + 2) - p;
-        return std::atan2(length(cross(u, v)), dot(u, v)); // right for needles, too
+        return std::atan2(length(cross(u, v)), dot(u, v)); // accurate for needle triangles too
     }
 
     void join_over_edges() {
@@ -95,7 +95,8 @@ private:
         for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
             for (end = i + 1; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high;)
                 ++end;
-            // Only where exactly two triangles meet, both with the same side out, is there one surface to smooth.
+            // Corners are only joined where exactly two triangles share the edge with consistent winding, because
+            // only there is one surface to smooth.
             if (end - i == 2 && edges[i].forward != edges[i + 1].forward) join_if_smooth(edges[i], edges[i + 1]);
         }
     }
@@ -104,13 +105,13 @@ private:
         static const double least = std::cos(radians(kCreaseDegrees));
         if (!(dot(normals_[a.corner / 3], normals_[b.corner / 3]) >= least)) return;
         const auto next = [](Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
-        sets_.join(a.corner, next(b.corner)); // they run the edge in opposite directions
+        sets_.join(a.corner, next(b.corner)); // the triangles traverse the edge in opposite directions
         sets_.join(next(a.corner), b.corner);
     }
 
     const Mesh& mesh_;
     std::vector<Index> welded_;
-    std::vector<Vec3d> normals_; ///< of the triangles, unit or zero
+    std::vector<Vec3d> normals_; ///< normals of the triangles, unit or zero
     CornerSets sets_;
 };
 
@@ -121,8 +122,8 @@ void add_smooth_normals(Mesh& mesh) {
     const std::vector<Vec3d> normals = smoother.normals();
     const std::size_t vertices = mesh.positions.size();
     constexpr Index kNone = ~0u;
-    std::vector<Index> first_set(vertices, kNone);    // the set each vertex's normal is of
-    std::unordered_map<std::uint64_t, Index> doubled; // (vertex, set) → new vertex, on creases
+    std::vector<Index> first_set(vertices, kNone);    // set of each vertex's normal
+    std::unordered_map<std::uint64_t, Index> doubled; // maps (vertex, set) to the new vertex on a crease
     mesh.normals.assign(vertices, Vec3(0, 1, 0));
     const auto give_normal = [&](Index vertex, Index set) {
         const Vec3d n = unit_or_zero(normals[set]);

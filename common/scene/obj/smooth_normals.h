@@ -1,17 +1,17 @@
-// Vertex normals for meshes that come without.
+// This file computes vertex normals for meshes without any.
 #pragma once
 
 #include "common/geometry/shape.h"
 
 namespace duet {
 
-/// Edges at which the surface bends by more than this stay sharp.
+/// Edges whose triangles' normals differ by more than this angle stay sharp.
 inline constexpr double kCreaseDegrees = 60;
 
-/// Gives the mesh smooth normals: around each point the triangles that hang together by edges bent by at most
-/// kCreaseDegrees share one normal, the mean of theirs weighted by the angle each has there (Thürmer and Wüthrich
-/// 1998). Vertices are taken together by position, so seams of the texture don't show; vertices on a crease are
-/// doubled. Triangles without area get (0, 1, 0) where nothing else says better.
+/// Computes smooth vertex normals for the mesh. Around each point, the triangles that are connected by edges of at
+/// most kCreaseDegrees share one normal: the mean of their normals, weighted by each triangle's angle at the point
+/// (Thürmer and Wüthrich 1998). Vertices are merged by position, so that texture seams remain smooth. Vertices on a
+/// crease are duplicated. The normal is (0, 1, 0) where only triangles without area meet.
 void add_smooth_normals(Mesh& mesh);
 
 } // namespace duet

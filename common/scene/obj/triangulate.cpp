@@ -9,7 +9,8 @@ namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-/// The corners projected along the axis nearest to the normal, relative to the first, counter-clockwise.
+/// Projects the corners along the axis nearest to the normal. The result is relative to the first corner and
+/// counter-clockwise.
 std::vector<Vec2d> project(std::span<const Vec3> polygon) {
     const Vec3d n = newell_normal(polygon), size = abs(n);
     const std::size_t axis = longest_axis(size);
@@ -23,7 +24,7 @@ std::vector<Vec2d> project(std::span<const Vec3> polygon) {
     return flat;
 }
 
-/// Twice the signed area of abc: positive where counter-clockwise.
+/// Returns twice the signed area of abc, which is positive where abc is counter-clockwise.
 double area(Vec2d a, Vec2d b, Vec2d c) {
     const Vec2d u = b - a, v = c - a;
     return difference_of_products(u.x, v.y, u.y, v.x);
@@ -31,8 +32,9 @@ double area(Vec2d a, Vec2d b, Vec2d c) {
 
 bool is_convex(const std::vector<Vec2d>& p) {
     const std::size_t n = p.size();
-    int turns_of_x =
-        0; // a polygon that winds twice turns left at each corner, too: its x changes direction more than twice
+    // turns_of_x counts the direction changes of x. A polygon that winds twice also turns left at each corner,
+    // but its x changes direction more than twice.
+    int turns_of_x = 0;
     double last = 0, first = 0;
     for (std::size_t i = 0; i < n; ++i) {
         if (!(area(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0)) return false;
@@ -48,7 +50,8 @@ bool is_convex(const std::vector<Vec2d>& p) {
 double distance_squared(Vec3 a, Vec3 b) { return length_squared(Vec3d(a) - Vec3d(b)); }
 
 void split_quad(std::span<const Vec3> q, const std::vector<Vec2d>& p, Triangles& triangles) {
-    // The lesser area of the two halves, for either diagonal: negative where the diagonal lies outside.
+    // For each diagonal this is the smaller area of the two triangles. It is negative where the diagonal lies
+    // outside.
     const double by_02 = min(area(p[0], p[1], p[2]), area(p[0], p[2], p[3]));
     const double by_13 = min(area(p[0], p[1], p[3]), area(p[1], p[2], p[3]));
     const bool both = by_02 > 0 && by_13 > 0;
@@ -62,7 +65,7 @@ void split_quad(std::span<const Vec3> q, const std::vector<Vec2d>& p, Triangles&
     }
 }
 
-/// The corners that are left, as a ring.
+/// An EarClipper holds the remaining corners of a polygon as a doubly linked ring.
 class EarClipper {
 public:
     explicit EarClipper(const std::vector<Vec2d>& points) : p_(points), next_(points.size()), previous_(points.size()) {
@@ -81,7 +84,7 @@ public:
             at = next_ear(at, left);
             triangles.push_back({previous_[at], at, next_[at]});
             remove(at);
-            at = next_[at]; // not the neighbour just clipped again and again: that makes slivers around one corner
+            at = next_[at]; // moves on: clipping at the same corner again would make a fan of slivers
         }
         triangles.push_back({previous_[at], at, next_[at]});
     }
@@ -89,7 +92,8 @@ public:
 private:
     double turn(std::uint32_t i) const { return area(p_[previous_[i]], p_[i], p_[next_[i]]); }
 
-    /// The next ear of the ring; where rounding or a crossing leaves none, the corner nearest to one.
+    /// Returns the next ear of the ring. Rounding or a self-intersection may leave none. The result is then the first
+    /// corner that is not reflex, or `start` if all are.
     std::uint32_t next_ear(std::uint32_t start, std::size_t left) const {
         std::uint32_t flattest = start;
         for (std::size_t k = 0; k < left; ++k, start = next_[start]) {
@@ -99,7 +103,8 @@ private:
         return flattest;
     }
 
-    /// A convex corner whose triangle holds no other corner: only one that is not convex can be in it.
+    /// Returns whether corner i is an ear: a convex corner whose triangle contains no other corner. Only reflex
+    /// corners can lie in it.
     bool is_ear(std::uint32_t i) const {
         const Vec2d a = p_[previous_[i]], b = p_[i], c = p_[next_[i]];
         if (!(area(a, b, c) > 0)) return false;
@@ -114,7 +119,7 @@ private:
     void remove(std::uint32_t i) {
         next_[previous_[i]] = next_[i];
         previous_[next_[i]] = previous_[i];
-        // Only the neighbours' angles change, and a convex one stays so.
+        // Only the angles of the two neighbors change, and a convex neighbor stays convex.
         std::erase_if(reflex_,
                       [&](std::uint32_t r) { return r == i || ((r == previous_[i] || r == next_[i]) && turn(r) > 0); });
     }

@@ -1,4 +1,4 @@
-// ---- bench.js: the page from the report.
+// ---- bench.js: builds the page from the report.
 
 const report = data;
 const contenderName = row => row.sampler ? `${row.technique}, ${row.sampler}` : row.technique;
@@ -17,7 +17,7 @@ function sceneCurves(scene, x) {
   for (const row of scene.rows) {
     const name = contenderName(row), e = measure.error(row), at = x(row);
     if (!curves.has(name)) curves.set(name, { name, index: curves.size, points: [] });
-    if (!(e.value > 0) || !(at > 0)) continue; // logarithms know no zero
+    if (!(e.value > 0) || !(at > 0)) continue; // not representable on a logarithmic scale
     curves.get(name).points.push({ x: at, y: e.value, low: e.low || e.value, high: e.high || e.value, text: pointText(row, e) });
   }
   return [...curves.values()].filter(curve => curve.points.length);

@@ -1,5 +1,6 @@
-// ---- plot.js: a log-log plot in SVG. Curves differ by shape and dashes as well as by colour; each point can be
-// reached by pointer and by keyboard and tells its values.
+// ---- plot.js: a log-log plot in SVG.
+// Curves differ in shape and dashes as well as in color. Each point can be reached by pointer and by keyboard
+// and shows its values.
 
 const svgNode = (name, attributes = {}, children = []) => {
   const node = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -8,7 +9,7 @@ const svgNode = (name, attributes = {}, children = []) => {
   return node;
 };
 
-// Outlines around the origin, for a radius of 6.
+// Marker shapes around the origin, for a radius of 6.
 const shapes = [
   "M-5.5-5.5h11v11h-11z", "M0-6a6 6 0 1 0 0.001 0z", "M0-7L6.5 5h-13z", "M0-7.5L7 0L0 7.5L-7 0z", "M0 7L6.5-5h-13z",
   "M-2-6h4v4h4v4h-4v4h-4v-4h-4v-4h4z", "M-6-3L0-7L6-3V4L0 7.5L-6 4z", "M-6-6L0-2.5L6-6L2.5 0L6 6L0 2.5L-6 6L-2.5 0z",
@@ -35,7 +36,7 @@ class LogAxis {
     this.to = to;
   }
   at(value) { return this.from + (Math.log10(value) - this.low) / (this.high - this.low) * (this.to - this.from); }
-  // Powers of ten, and the values between them where there are few.
+  // Ticks are powers of ten, with intermediate values if there are few.
   ticks() {
     const whole = [], fine = [];
     for (let e = Math.floor(this.low); e <= Math.ceil(this.high); ++e)
@@ -88,7 +89,7 @@ function drawGrid(svg, x, y, xTicks) {
     }
 }
 
-// Dotted lines along which error × cost stays the same: independent samples follow them.
+// Draws dotted lines of constant error × cost. Independent samples follow them.
 function drawGuides(svg, x, y) {
   const clip = `plot-${document.querySelectorAll("clipPath").length}-${Math.random().toString(36).slice(2)}`;
   svg.append(svgNode("clipPath", { id: clip }, [svgNode("rect", { x: x.from, y: y.to, width: x.to - x.from, height: y.from - y.to })]));
@@ -122,7 +123,7 @@ function drawCurve(svg, curve, x, y) {
   return { group, points };
 }
 
-// Each curve's name at its last point, moved apart where they would touch; a name singles its curve out.
+// Places each curve's name at its last point, moved apart where names would overlap. A name highlights its curve.
 function nameCurves(svg, curves, groups, x, y) {
   const names = curves.map((curve, i) => ({ curve, i, at: y.at(curve.points[curve.points.length - 1].y) })).sort((a, b) => a.at - b.at);
   const gap = 17;
@@ -139,7 +140,7 @@ function nameCurves(svg, curves, groups, x, y) {
   }
 }
 
-// One stop of the Tab key a plot; arrows go along a curve and from curve to curve.
+// A plot is a single tab stop. The arrow keys move along a curve and between curves.
 function steerByKeys(rows) {
   const all = rows.flat();
   if (all.length) all[0].setAttribute("tabindex", 0);

@@ -1,4 +1,4 @@
-// ---- tables.js: figures as text, and the tables.
+// ---- tables.js: formatting of values, and the tables.
 
 const put = (tag, attributes, children = []) => make(tag, attributes, ...[].concat(children));
 function duration(s) {
@@ -6,7 +6,7 @@ function duration(s) {
   return s < 0.0995 ? `${(s * 1e3).toPrecision(3)} ms` : `${s.toPrecision(3)} s`;
 }
 const percent = part => part === null ? "–" : `${(100 * part).toFixed(part < 0.0995 ? 1 : 0)} %`;
-// The half width of the band, upwards.
+// Returns the upper half-width of the confidence band.
 const bandOf = e => e.high === null || !e.value ? "" : `± ${percent(e.high / e.value - 1)}`;
 const withBand = (e, text) => [text(e.value), " ", put("small", {}, bandOf(e))];
 
@@ -31,7 +31,7 @@ function sortableTable(rows, columns, caption) {
 }
 
 function efficiencyTable(rows, measure, indexOf) {
-  // What converges to something else has no efficiency to compare: it never reaches a small error.
+  // Efficiency is omitted for techniques that converge to something else, because they never reach a small error.
   const best = Math.max(...rows.filter(row => !row.note).map(row => measure.efficiency(row).value || 0));
   const meter = row => {
     if (row.note) return "–";

@@ -1,9 +1,9 @@
-// ---- causes.js: the false-colour picture of the largest cause in each pixel.
+// ---- causes.js: the false-color image of the main cause in each pixel.
 
 const causeNames = data.report.shares.map(share => share.title);
 const swatch = i => make("span", { class: "swatch", style: `background:rgb(${data.colors[i].join(",")})` });
 
-// Whether a pattern darkens a pixel: each cause has a texture of its own, for eyes that see no colours.
+// Return whether a cause's pattern darkens a pixel. Each cause has its own pattern, for users who do not see colors.
 const patterns = [
   (x, y) => (x + y) % 8 < 2, (x, y) => (x - y + 32768) % 8 < 2, x => x % 6 < 2, (x, y) => y % 6 < 2,
   (x, y) => x % 6 < 3 && y % 6 < 3, (x, y) => (x + y) % 8 < 2 || (x - y + 32768) % 8 < 2,
@@ -13,7 +13,7 @@ class CauseView {
   constructor(cause, steps) {
     this.cause = cause;
     this.steps = steps;
-    this.alone = -1; // the cause that is shown alone, or −1
+    this.alone = -1; // the only cause that is shown, or −1
     this.patterned = false;
     this.canvas = element("cause");
     this.canvas.width = width;
@@ -41,7 +41,7 @@ class CauseView {
 
   show(alone) { this.alone = this.alone === alone ? -1 : alone; this.paint(); }
 
-  // As cause_picture() in compare/ladder/shares.cpp: what isn't seen is dark.
+  // Paints as cause_picture() in compare/ladder/shares.cpp does: invisible differences are dark.
   paint() {
     const context = this.canvas.getContext("2d"), picture = context.createImageData(width, height);
     for (let i = 0; i < pixelCount; ++i) {

@@ -1,4 +1,4 @@
-// ---- ladder.js: the tables, the climb and the rungs.
+// ---- ladder.js: the tables, the images of the ladder, and the rungs.
 
 const report = data.report;
 const shareText = share => share === null ? "none" : Math.abs(share) < 5e-5 ? "0 %" : minus((100 * share).toFixed(2)) + " %";
@@ -19,7 +19,7 @@ function lede() {
     `${second.title} (${shareText(second.share)}). ${noisy}${setting}`];
 }
 
-// A bar from zero to the share, all bars on one scale.
+// Draws a bar from zero to the share. All bars have the same scale.
 function bar(share, color, low, high) {
   const at = v => 100 * (v - low) / (high - low);
   const left = at(Math.min(share, 0)), right = at(Math.max(share, 0));
@@ -39,7 +39,7 @@ function sharesTable() {
       make("td", { class: "number", colspan: 2 }, report.shares_sum === null ? "none" : report.shares_sum.toFixed(12)), cell())));
 }
 
-// The picture at step k and what the step changed.
+// Shows the image at step k and what that step changed.
 function showStep(k, buttons) {
   buttons.forEach((b, i) => b.setAttribute("aria-pressed", String(i === k)));
   const caption = k === 0 ? "the rasterizer's picture" : k === report.rungs.length ? "all replaced: the path tracer's picture"
@@ -64,7 +64,7 @@ function climb() {
   });
   fill("range", radianceText(data.range));
   const shares = report.shares.slice(0, -1).map(s => s.share ?? 0);
-  showStep(shares.indexOf(Math.max(...shares)) + 1, buttons); // what matters most
+  showStep(shares.indexOf(Math.max(...shares)) + 1, buttons); // the largest share
 }
 
 function figures(q) {

@@ -1,10 +1,10 @@
-// ---- base.js: what all pages of the compare tool share: their data, elements, the theme, numbers as text.
+// ---- base.js: code that all pages of the compare tool share: data, elements, theme, number formatting.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const element = id => document.getElementById(id);
 const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 
-// An element with attributes and children (strings become text: nothing from the data is ever read as HTML).
+// Creates an element with attributes and children. Strings become text nodes, so data is never parsed as HTML.
 function make(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
@@ -13,9 +13,9 @@ function make(tag, attributes = {}, ...children) {
 }
 function fill(id, ...children) { element(id).replaceChildren(...children); }
 
-// ---- the theme: the system's, or the one chosen by the button #theme; the page's address remembers it (#theme=dark)
+// ---- The theme: the system's, or the one chosen with the button #theme and stored in the page's URL (#theme=dark).
 
-const themes = { auto: "light", light: "dark", dark: "auto" }; // each with the one after it
+const themes = { auto: "light", light: "dark", dark: "auto" }; // maps each theme to the next one
 const themeNow = () => document.documentElement.dataset.theme || "auto";
 
 function showTheme(theme) {
@@ -24,11 +24,11 @@ function showTheme(theme) {
   element("theme").textContent = `Theme: ${themeNow()}`;
 }
 
-// The part of the address behind the #, as it was last read or written by this page.
+// The fragment of the URL (after the #), as this page last read or wrote it.
 let knownHash = location.hash;
 
-// Replaces the part of the address behind the # by these [key, value] pairs, and the theme where one is chosen. Does
-// nothing while an address that someone has just entered waits to be read: its hashchange event comes later.
+// Replaces the URL's fragment by these [key, value] pairs, and the theme if one is chosen. Does nothing while a
+// fragment that the user has just entered is still unread, because its hashchange event comes later.
 function setAddress(pairs) {
   if (location.hash !== knownHash) return;
   const parts = [...pairs, ...(themeNow() === "auto" ? [] : [["theme", themeNow()]])].map(([key, value]) => `${key}=${encodeURIComponent(value)}`);
@@ -37,7 +37,7 @@ function setAddress(pairs) {
 }
 const addressPairs = () => [...new URLSearchParams(location.hash.slice(1))].filter(([key]) => key !== "theme");
 
-// `themeChanged` is called after the button has changed the theme: for pictures that are drawn in its colours.
+// Calls `themeChanged` after the button has changed the theme, for canvases that are drawn in its colors.
 function startTheme(themeChanged = () => {}) {
   const read = () => {
     knownHash = location.hash;
@@ -54,14 +54,14 @@ function startTheme(themeChanged = () => {}) {
   });
 }
 
-// The value of one of base.css's colours in the present theme: themeColor("raster").
+// Returns one of base.css's colors in the current theme: themeColor("raster").
 const themeColor = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-// ---- numbers as text, with a real minus sign
+// ---- Numbers as text, with a true minus sign.
 
 const minus = text => String(text).replaceAll("-", "−");
 
-// A radiance in four significant digits or so.
+// Formats a radiance with about four significant digits.
 function radianceText(v) {
   if (Number.isNaN(v)) return "NaN";
   if (!Number.isFinite(v)) return v > 0 ? "∞" : "−∞";
@@ -74,7 +74,7 @@ const signedText = v => (v > 0 ? "+" : "") + radianceText(v);
 const superscripts = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const powerText = exponent => `10${[...String(exponent)].map(d => superscripts[d]).join("")}`;
 
-// A figure of a metric: three or four digits, small and large ones with a power of ten.
+// Formats a metric with three or four digits; small and large values get a power of ten.
 function figure(v) {
   if (v === null || v === undefined) return "none";
   const size = Math.abs(v);
@@ -85,10 +85,10 @@ function figure(v) {
   return minus(size === 0 ? "0" : size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2) : size >= 1 ? v.toFixed(3) : size >= 0.01 ? v.toFixed(4) : v.toPrecision(3));
 }
 
-// A round number as it is: 0.5, −1, 10⁻⁵.
+// Formats a round number exactly: 0.5, −1, 10⁻⁵.
 const roundText = v => v !== 0 && Math.abs(v) < 0.001 ? figure(v) : minus(String(Number(v.toPrecision(3))));
 
-// A share of 1 in per cent, never rounded to all or nothing.
+// Formats a fraction as a percentage that is never rounded to 0 % or 100 %.
 function percentText(share) {
   if (share === 0 || share === 1) return `${share * 100} %`;
   if (share > 0 && share < 0.0001) return "< 0.01 %";

@@ -1,4 +1,4 @@
-// ---- decode.js: from text to numbers. The counterpart of compare/report/encode.h.
+// ---- decode.js: decoding of images from text, the counterpart of compare/report/encode.h.
 
 const width = data.width, height = data.height, pixelCount = width * height;
 
@@ -10,7 +10,7 @@ async function inflate(base64) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Undoes encode_plane: planes of bytes, the highest first, then running sums along each row.
+// Inverts encode_plane: joins byte planes, the highest first, then computes running sums along each row.
 async function decodePlane(text, bytes) {
   const planes = await inflate(text);
   const Numbers = { 1: Uint8Array, 2: Uint16Array, 4: Uint32Array }[bytes];
@@ -23,7 +23,7 @@ async function decodePlane(text, bytes) {
   return values;
 }
 
-// The value of every half-precision number, by its bits.
+// The value of every half-precision number, indexed by its bits.
 const halfValue = (() => {
   const table = new Float32Array(65536);
   for (let bits = 0; bits < 65536; ++bits) {
@@ -35,17 +35,17 @@ const halfValue = (() => {
   return table;
 })();
 
-// The largest half-precision number: it stands for all that are larger.
+// The largest half-precision number. It stands for all values that are larger.
 const largestHalf = 65504;
 const isBeyond = v => Math.abs(v) >= largestHalf && Number.isFinite(v);
 const pixelText = v => isBeyond(v) ? (v > 0 ? `≥ ${largestHalf}` : `≤ −${largestHalf}`) : radianceText(v);
 const signedPixelText = v => isBeyond(v) ? pixelText(v) : signedText(v);
 
-// A picture: three planes of half-precision bits.
+// An image as three planes of half-precision bits.
 class Picture {
   constructor(planes) { this.planes = planes; }
   value(i, channel) { return halfValue[this.planes[channel][i]]; }
-  isBeyond(i) { return this.planes.some(plane => (plane[i] & 0x7fff) === 0x7bff); } // a channel is ±largestHalf
+  isBeyond(i) { return this.planes.some(plane => (plane[i] & 0x7fff) === 0x7bff); } // for any channel
   rgb(i) { return [0, 1, 2].map(channel => this.value(i, channel)); }
 }
 
@@ -53,8 +53,8 @@ async function decodePicture(texts) {
   return new Picture(await Promise.all(texts.map(text => decodePlane(text, 2))));
 }
 
-// Which object and primitive each side saw, and the verdict on the two. Object 0 stands for none; what B saw is stored
-// as the bits that differ.
+// Decodes the object and primitive that each side hit, and the verdicts. Object 0 is a miss. B's hits are
+// stored as the exclusive or with A's.
 async function decodeHits(hits) {
   const [object, primitive, objectChange, primitiveChange, verdict] = await Promise.all([
     decodePlane(hits.object, 4), decodePlane(hits.primitive, 4),
@@ -65,7 +65,7 @@ async function decodeHits(hits) {
       i => ({ object: (object[i] ^ objectChange[i]) >>> 0, primitive: (primitive[i] ^ primitiveChange[i]) >>> 0 })] };
 }
 
-// FLIP's errors, from steps of 1/4095; one step more is NaN.
+// Decodes FLIP errors from steps of 1/4095. Code 4096 is NaN.
 async function decodeFlip(flip) {
   return Float32Array.from(await decodePlane(flip.map, 2), code => code > 4095 ? NaN : code / 4095);
 }

@@ -1,8 +1,8 @@
-// ---- hands.js: what hands do to the stage: pointers, wheel, keys, and steps from pixel to pixel.
+// ---- hands.js: input on the stage: pointers, wheel, keys, and stepping between pixels.
 
 const handle = element("handle");
-const pointers = new Map(); // those that touch the stage, and where
-let drag = null, held = false; // a clicked pixel is held until the next click
+const pointers = new Map(); // active pointers on the stage, with their positions
+let drag = null, held = false; // a clicked pixel stays selected until the next click
 
 function stagePoint(event) {
   const box = canvas.getBoundingClientRect();
@@ -57,13 +57,13 @@ function pointerUp(event) {
     const before = `${state.px},${state.py}`, wasHeld = held;
     held = false;
     inspectAt(stagePoint(event));
-    held = !(wasHeld && before === `${state.px},${state.py}`); // a second click lets go
+    held = !(wasHeld && before === `${state.px},${state.py}`); // a second click releases the pixel
   }
   pointers.delete(event.pointerId);
   drag = null;
 }
 
-// The wheel zooms; where the picture already fits, turning it further scrolls the page.
+// The wheel zooms. When the image already fits, scrolling further scrolls the page.
 function wheel(event) {
   if (event.deltaY > 0 && fitted() && !event.ctrlKey) return;
   event.preventDefault();
@@ -79,7 +79,7 @@ function handleKey(event) {
   setSplit(state.split + by);
 }
 
-// The arrow keys choose a pixel, from the middle of what is seen; with Shift ten at a time.
+// The arrow keys select a pixel, starting from the middle of the visible part. With Shift they move by ten pixels.
 function stageKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
@@ -104,7 +104,7 @@ function wireStage() {
   handle.addEventListener("keydown", handleKey);
 }
 
-// ---- the chosen pixel
+// ---- The selected pixel.
 
 function inspectAt([sx, sy]) {
   const [x, y] = toPicture(sx, sy).map(Math.floor);
@@ -121,7 +121,7 @@ function inspect(x, y, announce = false) {
   writeAddress();
 }
 
-// Chooses a pixel by keyboard and brings it into sight.
+// Selects a pixel by keyboard and scrolls it into view.
 function moveTo(x, y, zoom = 0) {
   held = true;
   if (zoom) state.zoom = Math.max(zoomNow(), zoom);
@@ -133,8 +133,8 @@ function moveTo(x, y, zoom = 0) {
   changed();
 }
 
-// To the next pixel of the chosen bin; where none is chosen, to the next whose hits differ: the unexplained first, then
-// ties, then edges.
+// Selects the next pixel of the selected bin. Without one, selects the next pixel whose hits differ:
+// unexplained ones first, then ties, then edges.
 function step(by) {
   const list = state.bin >= 0 ? lit : disagreeing;
   if (!list.length) return;

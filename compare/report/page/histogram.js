@@ -1,15 +1,15 @@
-// ---- histogram.js: how many pixels err by how much; a chosen bin lights its pixels on the stage.
+// ---- histogram.js: a histogram of pixel errors. A selected bin highlights its pixels on the stage.
 
-// A round number (1, 2 or 5 times a power of ten) at least as large as v.
+// Returns a round number (1, 2 or 5 times a power of ten) that is at least v.
 function roundUp(v) {
   const power = 10 ** Math.floor(Math.log10(v));
   return [1, 2, 5, 10].find(step => step * power >= v * (1 - 1e-9)) * power;
 }
 
-// Evenly spaced edges. Values beyond the first and the last edge belong to the first and the last bin.
+// Returns evenly spaced bin edges. Values beyond the first and last edge belong to the first and last bin.
 const evenly = (low, high, bins) => Array.from({ length: bins + 1 }, (_, k) => low + (high - low) * k / bins);
 
-// The differences of luminance over √(reference² + 0.01): their mean square is a relMSE.
+// Returns the differences of luminance over √(reference² + 0.01). Their mean square is a relMSE.
 function relativeDifferences() {
   const difference = channelOf(decoded.difference, "luminance"), reference = channelOf(decoded.pictures[1], "luminance");
   return difference.map((d, i) => d / Math.sqrt(reference[i] ** 2 + 0.01));
@@ -20,7 +20,7 @@ function quantile(values, share) {
   return sorted.length ? sorted[Math.floor((sorted.length - 1) * share)] : 0;
 }
 
-// What can be counted: the values of all pixels, the bins' edges, the values marked below them, and a value's colour.
+// Quantities for the histogram: the values of all pixels, the bin edges, the tick values, and the color of a value.
 const quantities = {
   signed: {
     title: "signed relative difference",
@@ -51,7 +51,7 @@ const quantities = {
   },
 };
 
-let histogram = null; // of state.histogram: { quantity, edges, counts, binOf (255: not finite), values, finite }
+let histogram = null; // for state.histogram: { quantity, edges, counts, binOf (255: not finite), values, finite }
 
 function countBins() {
   const quantity = quantities[state.histogram], values = quantity.values(), edges = quantity.edges(values);
@@ -59,7 +59,7 @@ function countBins() {
   let finite = 0;
   for (let i = 0; i < pixelCount; ++i) {
     if (!Number.isFinite(values[i])) continue;
-    let low = 0, high = bins - 1; // the last bin whose lower edge is not above the value
+    let low = 0, high = bins - 1; // finds the last bin whose lower edge is not above the value
     while (low < high) {
       const middle = (low + high + 1) >> 1;
       if (edges[middle] <= values[i]) low = middle; else high = middle - 1;
@@ -71,7 +71,7 @@ function countBins() {
   histogram = { quantity, edges, counts, binOf, values, finite };
 }
 
-// Where a value lies, in bins from the left.
+// Returns the position of a value, in bins from the left.
 function placeOf(v) {
   const { edges } = histogram, k = edges.findIndex(edge => edge > v);
   return k < 0 ? edges.length - 1 : k === 0 ? 0 : k - 1 + (v - edges[k - 1]) / (edges[k] - edges[k - 1]);
@@ -88,7 +88,7 @@ function binText(k) {
   return `${histogram.quantity.title} ${binRange(k)}: ${countText(n)} ${n === 1 ? "pixel" : "pixels"}, ${percentText(n / pixelCount)}`;
 }
 
-// Bars on a logarithmic scale from 1/2 (no pixel: no bar) to the next power of ten.
+// Draws bars on a logarithmic scale from 1/2 (an empty bin has no bar) to the next power of ten.
 function showHistogram() {
   const { edges, counts, quantity, finite } = histogram, bins = counts.length;
   const top = 10 ** Math.ceil(Math.log10(Math.max(...counts, 2))), heightOf = n => n > 0 ? Math.log(2 * n) / Math.log(2 * top) * 100 : 0;
@@ -106,7 +106,7 @@ function showHistogram() {
   showBin();
 }
 
-// The chosen bin: in the chart, in words, and on the stage.
+// Shows the selected bin in the chart, as text and on the stage.
 function showBin() {
   if (state.bin >= histogram.counts.length) state.bin = -1;
   const bars = element("bins"), k = state.bin;

@@ -1,4 +1,4 @@
-// ---- inspector.js: the chosen pixel: both values, their difference, and what each side saw.
+// ---- inspector.js: details of the selected pixel: both values, their difference, and the hit of each side.
 
 const seen = hit => hit.object === 0 ? "nothing" : `${data.hits.objects[hit.object - 1]} (object ${hit.object - 1}), primitive ${countText(hit.primitive)}`;
 

@@ -1,4 +1,4 @@
-// ---- main.js: the controls, and the start.
+// ---- main.js: the controls and the start-up code.
 
 function changed() {
   settle();
@@ -7,7 +7,7 @@ function changed() {
   handle.style.left = `${state.split * 100}%`;
   handle.setAttribute("aria-valuenow", Math.round(state.split * 100));
   handle.setAttribute("aria-valuetext", `${sides[0].name} on the left ${Math.round(state.split * 100)} percent`);
-  // At rest a finger scrolls the page up and down; zoomed in, it moves the picture.
+  // When the image fits, a touch drag scrolls the page vertically. When zoomed in, it pans the image.
   canvas.style.touchAction = fitted() ? "pan-y" : "none";
   redraw();
   writeAddress();
@@ -46,7 +46,7 @@ function setMode(mode) {
   changed();
 }
 
-// The buttons to the next and the last pixel are there where there are such pixels.
+// Shows the buttons for the previous and next pixel if there are such pixels.
 function showSteps() {
   const list = state.bin >= 0 ? lit : state.mode === "hits" ? disagreeing : [];
   element("steps").hidden = state.bin < 0 && !list.length;
@@ -55,7 +55,7 @@ function showSteps() {
   element("steps-text").textContent = state.bin < 0 ? "" : list.length === 1 ? "Lit: 1 pixel" : `Lit: ${countText(list.length)} pixels`;
 }
 
-// ---- exposure, difference, FLIP, flicker
+// ---- Exposure, difference, FLIP, flicker.
 
 function updateExposure() {
   element("exposure").value = state.ev;
@@ -107,7 +107,7 @@ function updateFlicker() {
   element("period-value").textContent = `${(state.period / 1000).toFixed(2)} s`;
 }
 
-// To the pixel that differs most in what the stage shows: FLIP's error, or the difference.
+// Selects the pixel with the largest error of what the stage shows: FLIP, or the difference.
 function showWorst() {
   const values = state.mode === "flip" ? decoded.flip : difference;
   let worst = -1;
@@ -115,7 +115,7 @@ function showWorst() {
   if (worst >= 0) moveTo(worst % width, Math.floor(worst / width), 24);
 }
 
-// ---- wiring
+// ---- Event handlers.
 
 function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -8, 8); updateExposure(); changed(); }
 function setChannel(channel) { state.channel = channel; difference = channelOf(decoded.difference, channel); updateDifference(); changed(); }
@@ -166,9 +166,9 @@ function pageKey(event) {
   action();
 }
 
-// ---- the start
+// ---- Start-up.
 
-// What depends on the page's data but not on its state.
+// Fills in the content that depends on the page's data but not on its state.
 function fillIn() {
   fill("modes", ...modes.map((mode, k) => make("button", { type: "button", "data-mode": mode.key, "aria-keyshortcuts": k + 1, "aria-pressed": "false" }, mode.title)));
   ["chip-a", "chip-b"].forEach((id, k) => fill(id, make("i", { "aria-hidden": "true" }, sides[k].symbol), ` ${sides[k].name}`));
@@ -192,7 +192,7 @@ function fillIn() {
   }
 }
 
-// Brings everything in line with the state.
+// Updates everything to match the state.
 function refresh() {
   held = state.px >= 0;
   difference = channelOf(decoded.difference, state.channel);
@@ -203,7 +203,7 @@ function refresh() {
   setMode(state.mode);
 }
 
-// Says where the page could not keep a value: the figures come from the values themselves.
+// Tells how many pixels exceed half precision. The metrics are computed from the original values.
 function showBeyond() {
   let count = 0;
   for (let i = 0; i < pixelCount; ++i) count += decoded.pictures.some(picture => picture.isBeyond(i));

@@ -1,7 +1,7 @@
-// ---- metrics.js: the figures of the pictures' distance, each with what it means.
+// ---- metrics.js: the table of error metrics, each with an explanation.
 
-// What a metric's key is called and means, in the table's order. A key that is not here stands there itself; one that
-// begins with another's name (flip_max) stands under it.
+// The name and meaning of each metric's key, in the order of the table. An unknown key is shown as it is. A key
+// that starts with another key's name (flip_max) is listed below that one.
 const metricTexts = {
   mse: ["MSE", "mean squared difference"],
   rmse: ["RMSE", "its root"],
@@ -28,7 +28,7 @@ function row(name, explanation, value, options = {}) {
     make("td", { class: "number" }, value, ...[options.below || []].flat().map(line => make("small", {}, line))));
 }
 
-// A link that shows a pixel on the stage.
+// Returns a link that shows a pixel on the stage.
 function pixelLink([x, y], mode) {
   const link = make("a", { href: "#stage" }, `${x}, ${y}`);
   link.addEventListener("click", event => {
@@ -41,7 +41,7 @@ function pixelLink([x, y], mode) {
   return link;
 }
 
-// Any value in words: a number, three by channel, or several with names of their own.
+// Formats any value as text: a number, three numbers per channel, or several named values.
 function valueText(value, key) {
   if (typeof value === "number") return Number.isInteger(value) && Math.abs(value) > 1 ? countText(value) : figure(value);
   if (value === null) return key === "psnr" && data.metrics.mse === 0 ? "∞" : "none"; // JSON has no infinity
@@ -50,7 +50,7 @@ function valueText(value, key) {
   return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
 }
 
-// The value in large, and what belongs to it in small: [value, …lines].
+// Formats a value in large type and its details in small type: [value, …lines].
 const metricCells = {
   mean_signed_error: value => [make("span", { class: "lines" }, ...value.map((v, c) => make("span", {}, `${"RGB"[c]} ${v === null ? "none" : (v > 0 ? "+" : "") + figure(v)}`)))],
   z_test: ({ p, ...others }) => [`p = ${figure(p)}`, ...Object.entries(others).map(([name, v]) => `${plainName(name)} ${valueText(v)}`)],
@@ -71,7 +71,8 @@ function metricRow(key) {
 }
 
 const listed = key => key in metricTexts;
-const partOrder = ["flip_min", "flip_first_quartile", "flip_weighted_median", "flip_third_quartile", "flip_max"]; // others after these
+// Parts that are not in this list follow after it.
+const partOrder = ["flip_min", "flip_first_quartile", "flip_weighted_median", "flip_third_quartile", "flip_max"];
 const rank = part => partOrder.includes(part) ? partOrder.indexOf(part) : partOrder.length;
 const partsOf = key => Object.keys(data.metrics).filter(part => part.startsWith(key + "_") && !listed(part) && part !== "worst_pixel").sort((a, b) => rank(a) - rank(b));
 const worthARow = key => key === "nan" || key === "infinite" ? Object.values(data.metrics[key]).some(n => n > 0) : true;

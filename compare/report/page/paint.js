@@ -1,26 +1,26 @@
-// ---- paint.js: from numbers to colours.
+// ---- paint.js: conversion of values to colors.
 
-// The sRGB curve (IEC 61966-2-1), as a byte.
+// Encodes a value by the sRGB curve (IEC 61966-2-1) as a byte.
 function encodeSrgb(v) {
   const x = Math.min(Math.max(v, 0), 1);
   return Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 }
 
-// The byte of every half-precision number at an exposure in stops: one table look-up a channel makes the slider quick.
+// Returns the byte of every half-precision number at an exposure in stops. This table makes the exposure slider fast.
 function exposureTable(stops) {
   const table = new Uint8Array(65536), gain = 2 ** stops;
   for (let bits = 0; bits < 65536; ++bits) table[bits] = encodeSrgb(halfValue[bits] * gain);
   return table;
 }
 
-// A picture to paint, to draw on the stage and to read again, for texts that stand out from it.
+// Creates a canvas for an image. It is also read back, to choose text colors with enough contrast.
 function newCanvas() {
   const canvas = make("canvas", { width, height });
   canvas.getContext("2d", { willReadFrequently: true });
   return canvas;
 }
 
-// Calls color(i, bytes, at) for every pixel, to write its red, green and blue.
+// Calls color(i, bytes, at) for every pixel to write its red, green and blue.
 function paint(canvas, color) {
   const context = canvas.getContext("2d");
   const image = context.createImageData(width, height), bytes = image.data;
@@ -31,7 +31,7 @@ function paint(canvas, color) {
   context.putImageData(image, 0, 0);
 }
 
-const invalidColor = [255, 0, 255]; // of what is NaN or infinite: magenta
+const invalidColor = [255, 0, 255]; // magenta, for NaN and infinity
 const invalid = bits => (bits & 0x7c00) === 0x7c00;
 function write(bytes, at, r, g, b) { bytes[at] = r; bytes[at + 1] = g; bytes[at + 2] = b; }
 
@@ -43,7 +43,7 @@ function paintPicture(canvas, picture, stops) {
   });
 }
 
-// A picture in pale grey: the ground for marks.
+// Paints an image in pale gray, as a background for marks.
 function paintGround(canvas, picture) {
   const table = exposureTable(0), [r, g, b] = picture.planes;
   paint(canvas, (i, bytes, at) => {
@@ -52,7 +52,7 @@ function paintGround(canvas, picture) {
   });
 }
 
-// Grey over all pixels but those that are `lit`: they keep their colours, which stand out whether dark or bright.
+// Paints gray over all pixels except those that are `lit`, so that these stand out whether they are dark or bright.
 function paintVeil(canvas, lit) {
   paint(canvas, (i, bytes, at) => {
     write(bytes, at, 116, 116, 116);
@@ -60,8 +60,9 @@ function paintVeil(canvas, lit) {
   });
 }
 
-// Anchors of the false colours. "hue": for signed values as in compare/report/false_color.cpp, for errors matplotlib's
-// "magma" (Smith and van der Walt 2015), whose lightness rises evenly; "grey" does without hues.
+// Anchors of the false colors. "hue" uses the colors of compare/report/false_color.cpp for signed values and
+// matplotlib's "magma" (Smith and van der Walt 2015), whose lightness increases evenly, for errors. "grey" uses
+// no hues.
 const palettes = {
   hue: {
     signed: [[8, 48, 107], [33, 102, 172], [82, 148, 206], [167, 205, 230], [246, 246, 244], [250, 203, 150], [233, 143, 53], [190, 92, 8], [115, 49, 6]],
@@ -73,18 +74,18 @@ const palettes = {
   },
 };
 
-// The colour of a position in [0, 1] along the anchors.
+// Returns the color at a position in [0, 1] along the anchors.
 function colorAt(anchors, position) {
   if (Number.isNaN(position)) return invalidColor;
   const at = clamp(position, 0, 1) * (anchors.length - 1);
   const low = Math.min(Math.floor(at), anchors.length - 2), f = at - low;
   return anchors[low].map((v, c) => Math.round(v + (anchors[low + 1][c] - v) * f));
 }
-const signedColor = value => colorAt(palettes[state.palette].signed, (value + 1) / 2); // of −1 to 1
-const errorColor = value => colorAt(palettes[state.palette].error, value); // of 0 to 1
+const signedColor = value => colorAt(palettes[state.palette].signed, (value + 1) / 2); // for −1 to 1
+const errorColor = value => colorAt(palettes[state.palette].error, value); // for 0 to 1
 const css = color => `rgb(${color.join(" ")})`;
 
-// Paints values between low and high and returns how many lie beyond.
+// Paints values between low and high. Returns how many are outside that range.
 function paintValues(canvas, values, low, high, anchors) {
   const steps = 1024, table = [];
   for (let k = 0; k <= steps; ++k) table.push(colorAt(anchors, k / steps));
@@ -101,7 +102,7 @@ function paintValues(canvas, values, low, high, anchors) {
 const channels = { r: [1, 0, 0], g: [0, 1, 0], b: [0, 0, 1], luminance: [0.2126, 0.7152, 0.0722] };
 const luminance = rgb => rgb.reduce((sum, v, c) => sum + v * channels.luminance[c], 0);
 
-// A picture's value in one channel or in luminance, for every pixel.
+// Returns an image's value in one channel or in luminance, for every pixel.
 function channelOf(picture, channel) {
   const result = new Float32Array(pixelCount), weights = channels[channel];
   for (let c = 0; c < 3; ++c) {

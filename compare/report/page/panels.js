@@ -1,11 +1,11 @@
-// ---- panels.js: what was found and what it cost, as sentences and tables.
+// ---- panels.js: results and costs as sentences and tables.
 
-const rendered = sides.every(side => side.rendering); // made by pipelines: times and skips are known
+const rendered = sides.every(side => side.rendering); // so times and skips are known
 const tag = side => make("span", { class: side.style }, `${side.symbol} ${side.name}`);
 const secondsOf = side => side.rendering.statistics.seconds;
 const workSeconds = side => secondsOf(side).prepare + secondsOf(side).render;
 
-// The sections that have something to say.
+// Shows only the sections that have content.
 function showSections() {
   const there = { hits: Boolean(data.hits), rendered };
   for (const section of document.querySelectorAll("[data-needs]")) section.hidden = !there[section.dataset.needs];

@@ -1,9 +1,9 @@
-// ---- stage.js: the stage: what is drawn on it.
+// ---- stage.js: drawing of the stage.
 
 const sides = data.sides.map((side, k) => ({ ...side, symbol: "▲●"[k], style: ["side-a", "side-b"][k] }));
 const layers = { pictures: [newCanvas(), newCanvas()], difference: newCanvas(), flip: newCanvas(), ground: newCanvas(), veil: newCanvas() };
 let decoded = null, difference = null, disagreeing = [];
-let lit = []; // the pixels of the histogram's chosen bin, the largest error first
+let lit = []; // pixels of the histogram's selected bin, largest error first
 
 const verdicts = [
   { key: "same", title: "same" },
@@ -49,7 +49,7 @@ function hitTexts(i) {
   return decoded.hits.verdict[i] ? names.map((name, k) => `${sides[k].symbol} ${name}`) : [names[0]];
 }
 
-// A layer in a pane, cut to `window`; from a zoom of 10 with a grid, from 64 with each pixel's texts.
+// Draws a layer in a pane, clipped to `window`. From zoom 10 on it has a grid, from zoom 64 on a text in each pixel.
 function drawLayer(context, layer, pane, window, texts) {
   const z = zoomNow();
   context.save();
@@ -82,7 +82,8 @@ function drawGrid(context, pane, z) {
   context.stroke();
 }
 
-// The relative luminance above which black text has more contrast than white: √(1.05 · 0.05) − 0.05 (WCAG 2.1).
+// The relative luminance above which black text has more contrast than white text: √(1.05 · 0.05) − 0.05 (WCAG
+// 2.1).
 const middleLuminance = 0.179;
 const relativeLuminance = (r, g, b) => luminance([r, g, b].map(byte => byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
 
@@ -99,7 +100,7 @@ function drawTexts(context, layer, pane, z, texts) {
   }
 }
 
-// A mark for every pixel whose hits differ: of one size on screen until pixels are larger than it.
+// Draws a mark for every pixel whose hits differ. Marks have a constant screen size until pixels are larger.
 function drawMarks(context, pane) {
   const z = zoomNow();
   for (const kind of [1, 2, 3]) {
@@ -132,7 +133,7 @@ function drawMark(context, kind, x, y, size) {
   }
 }
 
-// The chosen bin: all other pixels are veiled; where it has few, each is framed, or one would look for them in vain.
+// Highlights the selected bin by covering all other pixels. If it has few pixels, each is framed to be easy to find.
 function drawLit(context, pane) {
   const z = zoomNow(), [left, top] = toStage(pane, 0, 0), side = Math.max(z, 7), pad = (side - z) / 2;
   context.save();
@@ -152,7 +153,7 @@ function drawLit(context, pane) {
   context.restore();
 }
 
-// A frame around the inspected pixel, dark within light: seen on any ground.
+// Draws a frame around the inspected pixel, dark inside light, so that it is visible on any background.
 function drawCursor(context, pane) {
   if (state.px < 0) return;
   const z = zoomNow(), [x, y] = toStage(pane, state.px, state.py), size = Math.max(z, 9), pad = (size - z) / 2;

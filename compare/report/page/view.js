@@ -1,4 +1,4 @@
-// ---- view.js: which part of the picture is seen, how large; and what the page's address says of it.
+// ---- view.js: the visible part of the image, the zoom, and the state in the page's URL.
 
 const modes = [
   { key: "split", title: "Split" },
@@ -9,8 +9,8 @@ const modes = [
   ...(data.hits ? [{ key: "hits", title: "Hits" }] : []),
 ];
 
-// All that can be linked to, beside the theme. Zoom is in screen pixels a picture pixel; 0 fits the picture. `bin` is
-// the histogram's chosen one; −1: none.
+// The state that a link can contain, besides the theme. Zoom is in screen pixels per image pixel; 0 fits the
+// image to the pane. `bin` is the histogram's selected bin; −1 means none.
 const state = {
   mode: "split", split: 0.5, zoom: 0, x: width / 2, y: height / 2, ev: 0, range: data.difference_range, channel: "luminance",
   palette: "hue", show: "a", play: !matchMedia("(prefers-reduced-motion: reduce)").matches, period: 700, px: -1, py: -1, histogram: "signed", bin: -1,
@@ -18,7 +18,7 @@ const state = {
 const defaults = { ...state };
 
 function readAddress() {
-  Object.assign(state, defaults); // what the address doesn't say is as at the start
+  Object.assign(state, defaults); // values that are not in the URL get their defaults
   for (const [key, text] of addressPairs()) {
     if (!Object.hasOwn(defaults, key)) continue;
     const kind = typeof defaults[key];
@@ -55,12 +55,12 @@ function writeAddress() {
 
 const maxZoom = 128;
 const stage = element("stage"), canvas = element("canvas");
-let stageWidth = 1, stageHeight = 1; // CSS pixels
+let stageWidth = 1, stageHeight = 1; // in CSS pixels
 
-// Side by side where there is room, one above the other on a narrow screen.
+// Whether panes are stacked vertically, as on a narrow screen, instead of side by side.
 const stacked = () => stageWidth < 620;
 
-// The rectangles pictures are shown in: one, or two side by side.
+// Returns the rectangles in which images are shown: one, or two for comparison.
 function panes() {
   if (state.mode !== "side") return [{ x: 0, y: 0, w: stageWidth, h: stageHeight }];
   const gap = 2;
@@ -72,7 +72,7 @@ function panes() {
   return [{ x: 0, y: 0, w, h: stageHeight }, { x: w + gap, y: 0, w, h: stageHeight }];
 }
 
-// The stage takes the picture's shape, but never more of the window than leaves its controls in sight.
+// Gives the stage the image's aspect ratio, limited in height so that the controls stay in view.
 function layoutStage() {
   stageWidth = stage.clientWidth;
   const columns = state.mode === "side" && !stacked() ? 2 : 1, rows = state.mode === "side" && stacked() ? 2 : 1;
@@ -91,7 +91,7 @@ function fitZoom() {
 const zoomNow = () => state.zoom || fitZoom();
 const fitted = () => zoomNow() <= fitZoom() * 1.001;
 
-// Keeps the picture from leaving its pane; where it is smaller than the pane, it is centred.
+// Keeps the image within its pane. If it is smaller than the pane, it is centered.
 function settle() {
   const pane = panes()[0];
   if (state.zoom && state.zoom <= fitZoom() * 1.001) state.zoom = 0;
@@ -101,7 +101,7 @@ function settle() {
 }
 
 const paneAt = (sx, sy) => panes().find(p => sx >= p.x && sx < p.x + p.w && sy >= p.y && sy < p.y + p.h) || panes()[0];
-// From a place on the stage to one in the picture, and back.
+// These two convert a position on the stage to one in the image, and back.
 function toPicture(sx, sy) {
   const p = paneAt(sx, sy), z = zoomNow();
   return [(sx - p.x - p.w / 2) / z + state.x, (sy - p.y - p.h / 2) / z + state.y];
@@ -111,7 +111,7 @@ function toStage(pane, x, y) {
   return [(x - state.x) * z + pane.x + pane.w / 2, (y - state.y) * z + pane.y + pane.h / 2];
 }
 
-// Zooms by a factor, what lies at (sx, sy) staying where it is.
+// Zooms by a factor and keeps the point at (sx, sy) in place.
 function zoomAt(factor, sx = stageWidth / 2, sy = stageHeight / 2) {
   const before = toPicture(sx, sy);
   state.zoom = clamp(zoomNow() * factor, fitZoom(), maxZoom);

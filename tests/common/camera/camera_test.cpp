@@ -1,4 +1,5 @@
-// The camera maps both ways, through any point of the lens.
+// These tests check that the camera maps pixels to rays and points to pixels consistently, through any point of the
+// lens.
 #include "common/camera/camera.h"
 
 #include <doctest/doctest.h>
@@ -58,7 +59,8 @@ TEST_SUITE("unit") {
                 random_view(engine, trial % 4 ? Camera::Projection::kPerspective : Camera::Projection::kOrthographic);
             if (trial % 3 == 0) view.camera.aperture_radius = 0;
             const CameraModel model(view);
-            std::vector<CameraModel::Point> points(static_cast<std::size_t>(1 + trial)); // with and without a rest
+            // The counts give whole batches and batches with a remainder.
+            std::vector<CameraModel::Point> points(static_cast<std::size_t>(1 + trial));
             for (CameraModel::Point& point : points) {
                 point.pixel = Vec2d(static_cast<double>(200 * u(engine)), static_cast<double>(100 * u(engine)));
                 point.lens = trial % 5 == 0 ? Vec2(0.5f, 0.5f) : Vec2(u(engine), u(engine));
@@ -75,8 +77,8 @@ TEST_SUITE("unit") {
                 CHECK(rays[i].t_max == one.t_max);
                 CHECK(rays[i].time == one.time);
                 const Pinhole pinhole = model.through(lens);
-                // Its direction meets the very point it starts at: an origin that was not rounded first would be
-                // farther off than the rounding of the direction.
+                // The ray's direction must aim from the rounded origin at the focus point. If it aimed from the
+                // unrounded origin, the error would exceed the rounding of the direction.
                 CHECK(length(Vec3d(one.direction) - pinhole.ray(points[i].pixel).direction) < 1.5 * 0x1p-25);
                 if (view.camera.projection == Camera::Projection::kPerspective)
                     CHECK(Vec3d(Vec3(pinhole.origin)) == pinhole.origin);

@@ -25,13 +25,13 @@ TEST_SUITE("unit") {
         CHECK_FALSE(film.add(0, 0, 1, Rgb(0, 0, -1)));
         CHECK(film.invalid_samples() == 3);
         CHECK(film.mean(0, 0) == Rgbd(2));
-        CHECK(std::isinf(film.variance(0, 0).r)); // one replicate is empty: unknown
+        CHECK(std::isinf(film.variance(0, 0).r)); // one replicate is empty, so the variance is unknown
         CHECK(film.estimated_relmse() == -1);
         CHECK(is_black(film.mean(1, 0)));
     }
 
     TEST_CASE("a rare bright sample does not hide itself in the estimate of relMSE; what both replicates find counts in full") {
-        const auto estimate = [](float first, float second) { // the middle one of 3 × 3 pixels, the others 1 and known
+        const auto estimate = [](float first, float second) { // the center of 3 × 3 pixels; the others are 1 and exact
             Film film(3, 3);
             for (int y = 0; y < 3; ++y)
                 for (int x = 0; x < 3; ++x)
@@ -39,19 +39,21 @@ TEST_SUITE("unit") {
                         film.add(x, y, replicate, Rgb(x == 1 && y == 1 ? (replicate == 0 ? first : second) : 1.0f));
             return film.estimated_relmse();
         };
-        // ((101 − 1) / 2)² over 1 + 0.01, a ninth of it: not over the mean 51².
+        // The squared half difference ((101 − 1) / 2)² is divided by 1 + 0.01, not by the squared mean 51². The pixel
+        // counts for a ninth of the image.
         CHECK(estimate(101, 1) == doctest::Approx(50.0 * 50 / 1.01 / 9));
         CHECK(estimate(1, 101) == estimate(101, 1));
-        CHECK(estimate(100, 102) == doctest::Approx(1.0 / (100.0 * 100 + 0.01) / 9)); // a lamp
-        CHECK(estimate(0, 1) == doctest::Approx(0.25 / (0.25 + 0.01) / 9));           // darker than its neighbours: as it is
+        CHECK(estimate(100, 102) == doctest::Approx(1.0 / (100.0 * 100 + 0.01) / 9)); // a light
+        // A pixel that is darker than its neighbors is not clamped.
+        CHECK(estimate(0, 1) == doctest::Approx(0.25 / (0.25 + 0.01) / 9));
     }
 
 } // TEST_SUITE
 
 TEST_SUITE("statistical") {
 
-    // The estimate's mean over 4,000 pixels has a relative standard error of about sqrt(2/4000) = 2.2 %; a tolerance of
-    // 11 % is five of them: a false alarm in 2 million.
+    // The estimate's mean over 4,000 pixels has a relative standard error of about sqrt(2/4000) = 2.2 %. The
+    // tolerance of 11 % is five standard errors, so a false alarm has odds of 1 in 2 million.
     TEST_CASE("the variance estimate is unbiased, for unequal replicates too") {
         std::mt19937 engine(3);
         std::uniform_real_distribution<float> u(0, 1);

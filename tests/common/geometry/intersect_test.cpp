@@ -1,4 +1,5 @@
-// Rays against triangles, quads and spheres: watertight, symmetric, accurate from tiny to huge.
+// These tests intersect rays with triangles, quads and spheres. Intersection must be watertight, symmetric, and
+// accurate from tiny to huge sizes.
 #include "common/geometry/quad.h"
 #include "common/geometry/shape.h"
 #include "common/geometry/sphere.h"
@@ -66,7 +67,7 @@ TEST_SUITE("unit") {
                 continue;
             ++tried;
             const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
-            if (!hit) continue; // the target may have been rounded out of the triangle: the fan test covers leaks
+            if (!hit) continue; // rounding may have moved the target out of the triangle; the fan test covers leaks
             ++hits;
             const double exact = dot(n, Vec3d(a) - Vec3d(ray.origin)) / dot(n, d);
             CHECK(std::abs(static_cast<double>(hit->t) - exact) * std::abs(cosine) <= 2e-6 * std::abs(exact));
@@ -78,12 +79,13 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the distance is within its error bound of a double-precision plane's, for rays of any length") {
         Random random;
-        std::array<int, 13> tried{}; // by the length's power of ten, from −6 to 6
+        std::array<int, 13> tried{}; // indexed by the decimal exponent of the length, from −6 to 6
         double worst = 0;
         for (int trial = 0; trial < 400000; ++trial) {
             const float scale = std::pow(10.0f, random.uniform(-3, 3)), away = trial % 3 ? 1.0f : 30.0f;
             const Vec3 a = random.vector() * scale, b = random.vector() * scale;
-            // Every other one thin, seen from anywhere: where the bound is tight, and where it gives up.
+            // Every other triangle is thin, as seen from any direction. Thin triangles make the bound tight or make
+            // it give up.
             const Vec3 c = trial % 2 ? random.vector() * scale
                                      : lerp(a, b, random.uniform(0, 1)) + random.vector() * (scale * 1e-2f);
             const float u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
@@ -103,7 +105,7 @@ TEST_SUITE("unit") {
             ++tried[static_cast<std::size_t>(power + 6)];
         }
         CHECK(worst <= 1);
-        CHECK(worst > 0.01); // the bound says something
+        CHECK(worst > 0.01); // the bound is not trivially loose
         for (const int count : tried) CHECK(count > 10000);
     }
 
@@ -113,7 +115,7 @@ TEST_SUITE("unit") {
             const Vec3 a = random.vector(), b = random.vector(), c = random.vector();
             const Ray unit = towards(random.vector() * 3.0f, a * 0.3f + b * 0.3f + c * 0.4f);
             const auto expected = intersect_triangle(ShearedRay(unit), a, b, c);
-            for (const int power : {-20, -10, 10, 20}) { // of two: all numbers are the same but for the exponent
+            for (const int power : {-20, -10, 10, 20}) { // scaling by a power of two changes only the exponents
                 Ray ray = unit;
                 ray.direction = unit.direction * std::ldexp(1.0f, power);
                 const auto found = intersect_triangle(ShearedRay(ray), a, b, c);
@@ -148,7 +150,7 @@ TEST_SUITE("unit") {
             worst = max(worst, max(low - static_cast<double>(hit->t), static_cast<double>(hit->t) - high));
         }
         CHECK(hits > 1000);
-        CHECK(worst < 4e-6); // of distances up to 5, some roundings
+        CHECK(worst < 4e-6); // a few rounding errors at distances up to 5
     }
 
     TEST_CASE("degenerate triangles and rays are missed, not hit at NaN") {
@@ -176,7 +178,7 @@ TEST_SUITE("unit") {
             const auto hit = intersect_quad(ShearedRay({above, down}), ground);
             REQUIRE(hit.has_value());
             const double exact = -static_cast<double>(above.y) / static_cast<double>(down.y);
-            CHECK(std::abs(static_cast<double>(hit->t) - exact) <= 4e-3); // rounding of the corners' distances
+            CHECK(std::abs(static_cast<double>(hit->t) - exact) <= 4e-3); // rounding of the vertices' distances
             const SurfacePoint point =
                 surface_point(shape, {0, 0, hit->u, hit->v, hit->t}, {above, down}, Mat4(), Mat4(), true);
             const Vec3 up(down.x, -down.y, down.z);
@@ -220,7 +222,7 @@ TEST_SUITE("unit") {
             const auto t = intersect_sphere(ray, sphere);
             REQUIRE(t.has_value());
             const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(*t);
-            // t is rounded once: the point may leave the sphere by half an ulp of t.
+            // t is rounded once, so the point may be off the sphere by half an ulp of t.
             const double off = std::abs(length(p - Vec3d(sphere.center)) - static_cast<double>(radius));
             CHECK(off <= 6.0e-8 * static_cast<double>(*t) + 1e-12 * static_cast<double>(radius));
             const auto from_inside = intersect_sphere(towards(aim, eye), sphere);
@@ -251,15 +253,15 @@ TEST_SUITE("unit") {
         }
     }
 
-    // Text on a globe must be readable: for an eye outside with v up, u grows to its right. So (∂p/∂u, ∂p/∂v, n) is
-    // right-handed, as on a quad and on a mesh whose texture isn't mirrored. A sky is seen from inside.
+    // Text on a globe must be readable: for a viewer outside with v up, u increases to the right. So (∂p/∂u, ∂p/∂v,
+    // n) is right-handed, as on a quad and on a mesh whose texture is not mirrored. A sky is viewed from the inside.
     TEST_CASE("a texture on a sphere is not mirrored, seen from outside; a sky is not, seen from inside") {
         Random random;
         const float step = 1e-3f;
         for (int trial = 0; trial < 2000; ++trial) {
             const Vec3 n = normalize(random.vector());
             if (std::abs(n.y) > 0.95f || (n.z < 0 && std::abs(n.x) < 0.05f)) continue; // near a pole or the seam
-            const Vec3 right = normalize(cross(Vec3(0, 1, 0), n)); // of an eye outside that looks along −n
+            const Vec3 right = normalize(cross(Vec3(0, 1, 0), n)); // for a viewer outside who looks along −n
             CHECK(sphere_uv(normalize(n + right * step)).x > sphere_uv(n).x);
             const Vec3 w = -n, right_inside = normalize(cross(w, Vec3(0, 1, 0)));
             if (w.z > 0 && std::abs(w.x) < 0.05f) continue; // the seam of the sky
@@ -271,7 +273,7 @@ TEST_SUITE("unit") {
             REQUIRE(t.has_value());
             const SurfacePoint point = surface_point(Shape(sphere), Hit{0, 0, 0, 0, *t}, ray, Mat4(), Mat4(), true);
             CHECK(dot(cross(point.dpdu, point.dpdv), point.ng) > 0);
-            // And they are the derivatives of where it is.
+            // Finite differences of the position must agree with the derivatives.
             const Vec2 uv = point.uv;
             const float h = 1e-3f;
             const auto at = [&](Vec2 place) { return sphere.center + sphere_direction(place) * sphere.radius; };
@@ -313,9 +315,9 @@ TEST_SUITE("unit") {
             const SurfacePoint point = surface_point(shape, hit, ray, Mat4(), Mat4(), true);
             if (!is_finite(point.ng)) continue; // a degenerate triangle cannot be hit
             Vec3 w = normalize(random.vector());
-            if (trial % 5 == 0) w = normalize(w - point.ng * (0.999f * dot(w, point.ng))); // grazing
+            if (trial % 5 == 0) w = normalize(w - point.ng * (0.999f * dot(w, point.ng))); // grazing incidence
             if (std::holds_alternative<Sphere>(shape) && dot(w, point.ng) < 0)
-                w = -w; // inwards it hits the far side, rightly
+                w = -w; // an inward ray correctly hits the far side
             const Ray spawned{offset_origin(point, w), w};
             bool again = false;
             if (const auto* sphere = std::get_if<Sphere>(&shape))
@@ -350,7 +352,7 @@ TEST_SUITE("unit") {
         tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
         CHECK(is_closed_outwards(tetrahedron));
-        Mesh seamed = tetrahedron; // the last face on vertices of its own, at the same places
+        Mesh seamed = tetrahedron; // the last face uses its own vertices, at the same positions
         seamed.positions.insert(seamed.positions.end(), {{1, 0, 0}, {0, 1, 0}, {-0.0f, 0, 1}});
         seamed.triangles[3] = {4, 5, 6};
         CHECK(is_closed_outwards(seamed));
@@ -360,7 +362,7 @@ TEST_SUITE("unit") {
         Mesh inside_out = tetrahedron;
         for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
         CHECK_FALSE(is_closed_outwards(inside_out));
-        Mesh two_parts = tetrahedron; // a large part outwards, a small one inside-out beside it
+        Mesh two_parts = tetrahedron; // a large outward-facing part and a small inside-out part beside it
         for (const Vec3& p : tetrahedron.positions) two_parts.positions.push_back(p * 0.5f + Vec3(3, 0, 0));
         for (const auto& t : tetrahedron.triangles) two_parts.triangles.push_back({t[0] + 4, t[2] + 4, t[1] + 4});
         CHECK_FALSE(is_closed_outwards(two_parts));
@@ -381,7 +383,7 @@ TEST_SUITE("unit") {
                 CHECK(box.contains(transform_point(m, s.center + normalize(random.vector()) * s.radius)));
             }
         }
-        for (const Quad& quad : box_quads({-1, -2, -3}, {1, 2, 3}).quads) // normals point outwards
+        for (const Quad& quad : box_quads({-1, -2, -3}, {1, 2, 3}).quads) // normals point outward
             CHECK(dot(cross(quad.u, quad.v), quad.corner + quad.u * 0.5f + quad.v * 0.5f) > 0);
     }
 

@@ -1,4 +1,5 @@
-// EXR files built byte by byte (openexr.com, «OpenEXR File Layout»), uncompressed: what our own writer never writes.
+// This header builds uncompressed EXR files byte by byte (openexr.com, "OpenEXR File Layout"), including files that
+// our writer never produces.
 #pragma once
 
 #include <bit>
@@ -8,7 +9,7 @@
 
 namespace duet::test {
 
-/// Bytes, numbers little endian.
+/// Builds a byte string to which numbers are appended in little-endian order.
 class Bytes {
 public:
     template <typename Number> Bytes& add(Number value) {
@@ -26,11 +27,13 @@ public:
     std::string text;
 };
 
-/// What the header claims and the pixels that follow; by default a true file of 3 x 2 half-float pixels.
+/// Holds the header fields and the pixels of an EXR file. The defaults describe a valid file of 3 x 2 half-float
+/// pixels.
 struct ExrBytes {
-    int min_x = -5, min_y = 7, max_x = -3, max_y = 8; // the data window; the display window is elsewhere
-    std::uint32_t version = 2;                        // and flags: 0x200 tiles, 0x800 deep, 0x1000 several parts
-    std::int32_t type = 1, sampling = 1;              // 0 UINT, 1 HALF, 2 FLOAT
+    int min_x = -5, min_y = 7, max_x = -3, max_y = 8; // the data window; the display window differs
+    // The version includes flags: 0x200 is tiled, 0x800 deep, 0x1000 multipart.
+    std::uint32_t version = 2;
+    std::int32_t type = 1, sampling = 1;              // type: 0 UINT, 1 HALF, 2 FLOAT
     std::uint8_t compression = 0;
     std::uint32_t tile_width = 0, tile_height = 0;
     int extra_channels = 0;
@@ -63,7 +66,8 @@ struct ExrBytes {
         return file.add(std::uint8_t{0}).text;
     }
 
-    /// The whole file: value(channel, x, y), x and y from the window's corner, gives a pixel's bits.
+    /// Returns the whole file. value(channel, x, y) gives a pixel's bits, with x and y relative to the window's
+    /// corner.
     template <typename Value> std::string build(Value value) const {
         const bool tiled = tile_width > 0;
         const int width = max_x - min_x + 1, height = max_y - min_y + 1;

@@ -1,4 +1,4 @@
-// EXR files of other writers, and such as lie about themselves.
+// These tests read EXR files as other writers produce them, and files whose headers are false.
 #include "common/image/image_file.h"
 #include "tests/common/image/exr_bytes.h"
 #include "tests/common/image/picture_bytes.h"
@@ -12,7 +12,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("EXR: half floats, any data window, tiles") {
         const test::ScratchFolder folder;
-        // Halves: 0x3c00 is 1, its exponent in bits 10 to 14.
+        // The values are half floats: 0x3c00 is 1, and the exponent is in bits 10 to 14.
         const auto value = [](std::size_t c, int x, int y) {
             return (static_cast<unsigned>(x + 3 * y) + 10) << 10 | static_cast<unsigned>(c) << 8;
         };

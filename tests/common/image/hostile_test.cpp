@@ -1,5 +1,5 @@
-// Pictures that lie about themselves, end early, or are none: one Error each, before memory is taken for what isn't
-// there.
+// These tests read files that have false headers, are truncated, or are not images. Each must give one Error before
+// memory is allocated for data that is missing.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
 #include "tests/common/image/picture_bytes.h"
@@ -51,7 +51,8 @@ TEST_SUITE("unit") {
             for (std::size_t i = 1; i < 30 && i < bytes.size(); ++i) sizes.push_back(i);
             for (const std::size_t size : sizes) {
                 CAPTURE(size);
-                // A TGA whose runs end early is noticed; one cut within its footer has lost no pixel.
+                // A TGA that ends within its run-length data is rejected. A TGA that is cut within its footer has
+                // lost no pixel.
                 CHECK(error_of_bytes(path, bytes.substr(0, size)) != "no error");
             }
         }
@@ -67,11 +68,11 @@ TEST_SUITE("unit") {
             const std::string bytes = read_file(path);
             for (int trial = 0; trial < 150; ++trial) {
                 std::string changed = bytes;
-                const std::size_t reach = trial % 2 == 0 ? 400 : changed.size(); // headers more often
+                const std::size_t reach = trial % 2 == 0 ? 400 : changed.size(); // changes hit the header more often
                 for (int i = 0; i <= trial % 4; ++i)
                     changed[random() % std::min(reach, changed.size())] = static_cast<char>(random() & 255u);
                 const std::string error = error_of_bytes(path, changed);
-                // A checksum covers each byte.
+                // PNG checksums cover every byte.
                 if (std::string(ending) == "png" && changed != bytes) CHECK(error != "no error");
             }
         }
@@ -95,7 +96,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("PNG: 16 bits are read with 16 bits; grey and alpha") {
         const test::ScratchFolder folder;
-        // Two grey pixels of 16 bits: 0x1234 and 0xffff.
+        // The file has two gray pixels of 16 bits: 0x1234 and 0xffff.
         write_file(folder / "grey.png", png(2, 1, 16, 0, std::string("\0\x12\x34\xff\xff", 5)));
         const PixelFile grey = read_pixel_file(folder / "grey.png");
         CHECK(grey.channels == 1);
@@ -133,7 +134,7 @@ TEST_SUITE("unit") {
         const auto error = [&](const std::string& changed) { return error_of_bytes(folder / "b.jpg", changed); };
         const std::size_t table = bytes.find("\xff\xc4"), frame = bytes.find("\xff\xc0");
         REQUIRE(table != std::string::npos);
-        // Found by fuzzing: stb writes beyond its table.
+        // Fuzzing found this case: stb writes beyond its table.
         CHECK(error(std::string(bytes).replace(table + 5, 16, std::string(16, '\xff'))) ==
               Containing("a Huffman table of 4080 codes"));
         CHECK(error(std::string(bytes).replace(table + 2, 2, std::string(2, '\0'))) ==
@@ -141,7 +142,7 @@ TEST_SUITE("unit") {
         CHECK(error(std::string(bytes).replace(table + 2, 2, "\xff\xff")) == Containing("truncated"));
         CHECK(error(bytes.substr(0, bytes.size() - 2)) == Containing("before its end marker (EOI)"));
         CHECK(error(bytes.substr(0, frame) + "\xff\xd9") == Containing("before its frame (SOF)"));
-        // No tables at all, or no scan: whatever comes of it, the same each time.
+        // The file has no tables or no scan. Any result is accepted, but it must be the same each time.
         const std::size_t scan = bytes.find("\xff\xda");
         for (const std::string& part :
              {bytes.substr(0, table) + bytes.substr(scan), bytes.substr(0, scan) + "\xff\xd9"}) {
@@ -172,11 +173,12 @@ TEST_SUITE("unit") {
               Containing("truncated"));
         CHECK(error_of_bytes(folder / "f.tga", tga(2, 2, 2, 24, std::string(12, 'a'))) == "no error");
         CHECK(error_of_bytes(folder / "g.tga", tga(10, 2, 2, 24, std::string("\1abcdef\1abcdef", 14))) == "no error");
-        // Found by fuzzing: 0xff before a JPEG's start is allowed, and led stb to decode as a TGA what is a JPEG.
+        // Fuzzing found this case: 0xff is allowed before the start of a JPEG, and it made stb decode the JPEG as a
+        // TGA.
         write_image(folder / "a.jpg", some_picture());
         CHECK(error_of_bytes(folder / "i.tga", message('\xff', read_file(folder / "a.jpg"))) ==
               Containing("no TGA header"));
-        // A colour map that reaches beyond the file.
+        // The color map extends beyond the end of the file.
         std::string mapped = tga(1, 2, 2, 8, std::string(4, '\0'));
         mapped[1] = 1;
         mapped[5] = static_cast<char>(255);
@@ -203,11 +205,11 @@ TEST_SUITE("unit") {
         CHECK(error(hdr("-Y 1 +X 8", start + run + run + run +
                                          "\x89"
                                          "a")) == Containing("beyond its scanline"));
-        // A run of none: stb_image 2.27 never returns from it.
+        // The run has length zero: stb_image 2.27 never returns from it.
         CHECK(error(hdr("-Y 1 +X 8", start + run + run + run + std::string("\0\0", 2))) ==
               Containing("beyond its scanline"));
         CHECK(error(hdr("-Y 1 +X 9", start + run + run + run + run)) == Containing("another length"));
-        // The older runs: a pixel, then (1, 1, 1, count).
+        // The old run-length encoding is a pixel followed by (1, 1, 1, count).
         CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\x2b\1\1\1\1", 12))) == "no error");
         CHECK(read_pixel_file(folder / "a.hdr").values[3 * 299] == 1.0f);
         CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\xff\1\1\1\1", 12))) ==
@@ -248,7 +250,7 @@ TEST_SUITE("unit") {
         CHECK(error("P3 # no end") == Containing("expected the width"));
         CHECK(error("P5 1 1 255 a") == Containing("unknown format"));
 
-        // Both byte orders, grey, the unit, rows from the bottom.
+        // The files cover both byte orders, gray, the scale factor, and rows stored from the bottom.
         CHECK(values(std::string("Pf\n1 2\n1\n\x3f\x80\0\0\x40\0\0\0", 17)) == std::vector{2.0f, 1.0f});
         CHECK(values(std::string("Pf\n1 2\n-1.0\n\0\0\x80\x3f\0\0\0\x40", 20)) == std::vector{2.0f, 1.0f});
         CHECK(values(std::string("PF\n1 1\n-2e0\n\0\0\x80\x3f\0\0\0\x40\0\0\0\0", 24)) ==

@@ -1,4 +1,4 @@
-// Pictures written and read again: the same bits where the format is lossless.
+// These tests write images and read them back. The bits must be equal where the format is lossless.
 #include "common/image/image_file.h"
 #include "common/image/same_bits.h"
 #include "common/image/srgb.h"
@@ -20,7 +20,7 @@ using duet::test::error_of;
 
 namespace {
 
-// Values of all sizes, a few of them special.
+// The pixels have values of all magnitudes, a few of them special.
 ImageRgb radiance_picture(int width, int height) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> exponent(-20, 20), sign(-0.2f, 1);
@@ -33,7 +33,8 @@ ImageRgb radiance_picture(int width, int height) {
     return image;
 }
 
-// Each pixel one of the 256 codes' linear values; the top left one is red, the top right green, the bottom left blue.
+// Each pixel is the linear value of one of the 256 codes. The top left one is red, the top right green, the bottom
+// left blue.
 ImageRgb encoded_picture(int width, int height) {
     std::mt19937 random(8);
     ImageRgb image(width, height);
@@ -64,7 +65,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("8-bit files hold runs too") { // TGA's run lengths, PNG's matches
+    TEST_CASE("8-bit files hold runs too") { // TGA run lengths and PNG matches
         const test::ScratchFolder folder;
         ImageRgb image = encoded_picture(500, 9);
         for (int y = 0; y < 9; ++y)
@@ -116,7 +117,7 @@ TEST_SUITE("unit") {
         const test::ScratchFolder folder;
         std::mt19937 random(9);
         std::uniform_real_distribution<float> exponent(-100, 100), share(0, 1);
-        for (const int width : {5, 8, 200}) { // flat below 8, in runs from there on
+        for (const int width : {5, 8, 200}) { // uncompressed scanlines below 8, run-length encoded from there on
             ImageRgb image(width, 50);
             for (std::size_t i = 0; i < image.size(); ++i)
                 image[i] = std::exp2(exponent(random)) * Rgb(share(random), share(random), share(random));
@@ -131,8 +132,8 @@ TEST_SUITE("unit") {
                     bias += difference[c] / largest;
                 }
             }
-            // Errors are uniform within ±1/256 at most: 5 standard deviations of their sum. Odds of a false alarm:
-            // 6e-7.
+            // Errors are uniform within at most ±1/256. The bound is 5 standard deviations of their sum, so a false
+            // alarm has odds of 6e-7.
             const double count = 3.0 * static_cast<double>(image.size());
             CHECK(std::abs(bias) < 5 * std::sqrt(count / 3) / 256);
         }
@@ -140,7 +141,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("HDR: runs, the largest and smallest values, what it cannot hold") {
         const test::ScratchFolder folder;
-        ImageRgb image(400, 3, Rgb(0.5f, 0.25f, 1.0f)); // exact: the runs are what is tested
+        ImageRgb image(400, 3, Rgb(0.5f, 0.25f, 1.0f)); // exactly representable: only the runs are under test
         for (int x = 0; x < 400; x += 1 + x % 7) image(x, 1) = Rgb(static_cast<float>(x % 256), 0, 128);
         image(7, 2) = Rgb(0x1p126f, 0, 0);
         image(8, 2) = Rgb(0x1p-120f, 0, 0);
@@ -196,10 +197,14 @@ TEST_SUITE("unit") {
         const ImageRgb image = radiance_picture(200, 200);
         for (const char* ending : {"png", "jpg", "tga", "ppm", "pfm", "hdr", "exr"}) {
             CAPTURE(ending);
-            CHECK(error_of([&] { write_image(folder / "none" / message("a.", ending), image); }).starts_with("exit code 1: "));
+            CHECK(error_of([&] {
+                      write_image(folder / "none" / message("a.", ending), image);
+                  }).starts_with("exit code 1: "));
             write_file(folder / "file", "");
-            CHECK(error_of([&] { write_image(folder / "file" / message("a.", ending), image); }).starts_with("exit code 1: "));
-            // A disk that is full after 100 bytes.
+            CHECK(error_of([&] {
+                      write_image(folder / "file" / message("a.", ending), image);
+                  }).starts_with("exit code 1: "));
+            // The file size limit stands for a disk that is full after 100 bytes.
             rlimit old_limit{};
             REQUIRE(getrlimit(RLIMIT_FSIZE, &old_limit) == 0);
             const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
@@ -240,8 +245,10 @@ TEST_SUITE("unit") {
         };
         CHECK(value("duet:scene") == "models/cornell.json");
         CHECK(value("empty").empty());
-        // An attribute that OpenEXR needs for itself.
-        CHECK(error_of([&] { write_exr(folder / "b.exr", 30, 20, {depth}, {{"channels", "x"}}); }).starts_with("exit code 1: "));
+        // OpenEXR reserves this attribute.
+        CHECK(error_of([&] {
+                  write_exr(folder / "b.exr", 30, 20, {depth}, {{"channels", "x"}});
+              }).starts_with("exit code 1: "));
         CHECK(!std::filesystem::exists(folder / "b.exr"));
     }
 

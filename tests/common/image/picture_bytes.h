@@ -1,4 +1,5 @@
-// Picture files byte by byte, as no writer of ours would write them, and what the reader says of them.
+// This header builds image files byte by byte, including files that no writer of ours produces, and returns the error
+// of the reader.
 #pragma once
 
 #include "common/image/image_file.h"
@@ -16,7 +17,7 @@ inline std::string error_of_bytes(const std::filesystem::path& path, const std::
     const std::string error = error_of([&] { read_pixel_file(path); });
     if (error != "no error") {
         CHECK(error.starts_with(path.string() + ": "));
-        CHECK(error.find('\n') == std::string::npos); // one line
+        CHECK(error.find('\n') == std::string::npos); // a single line
     }
     return error;
 }
@@ -38,8 +39,10 @@ inline std::string png_chunk(const std::string& type_and_data) {
 
 inline const std::string kPngSignature = "\x89PNG\r\n\x1a\n";
 
-// Pixels as zlib's stored blocks (RFC 1950, 1951); its own checksum is left wrong, no reader of ours looks at it.
-inline std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour_type, const std::string& pixels) {
+// The pixels are in stored zlib blocks (RFC 1950, 1951). The zlib checksum is wrong on purpose, because our reader
+// does not check it.
+inline std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour_type,
+                       const std::string& pixels) {
     const auto size = static_cast<unsigned>(pixels.size());
     std::string data = "IDAT\x78\x01\x01";
     for (const unsigned part : {size & 255u, size >> 8, ~size & 255u, ~size >> 8 & 255u})

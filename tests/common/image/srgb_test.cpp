@@ -8,7 +8,7 @@ using namespace duet;
 
 namespace {
 
-// The definition, in long double: the code whose interval [k − ½, k + ½) holds 255·encode(x).
+// Returns the code whose interval [k − ½, k + ½) contains 255·encode(x), computed in long double from the definition.
 int nearest_code(float linear) {
     if (!(linear > 0)) return 0;
     const long double x = linear;
@@ -33,7 +33,7 @@ TEST_SUITE("unit") {
         for (int i = 0; i <= 10000; ++i) {
             const double x = i / 10000.0;
             CAPTURE(x);
-            CHECK(std::abs(srgb_decode(srgb_encode(x)) - x) < 1e-8); // the standard's own gap
+            CHECK(std::abs(srgb_decode(srgb_encode(x)) - x) < 1e-8); // the standard's two segments do not meet exactly
             CHECK(std::abs(srgb_decode(srgb_encode(static_cast<float>(x))) - static_cast<float>(x)) < 1e-6f);
             if (i > 0) {
                 CHECK(srgb_encode(x) > srgb_encode((i - 1) / 10000.0));
@@ -84,7 +84,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a whole picture is encoded pixel by pixel, whatever the number of threads") {
-        ImageRgb image(701, 307); // bands end within the picture
+        ImageRgb image(701, 307); // the size is no multiple of the bands' height
         for (std::size_t i = 0; i < image.size(); ++i) {
             const float x = static_cast<float>(i) / static_cast<float>(image.size());
             image[i] = {x, 1.5f * x - 0.25f, x * x};

@@ -1,4 +1,4 @@
-// Environments: mapping, sampling, irradiance.
+// These tests check the mapping, the sampling and the irradiance of environments.
 #include "common/geometry/sphere.h"
 #include "common/light/environment.h"
 #include "common/sampling/sampler.h"
@@ -17,7 +17,7 @@ using namespace duet;
 
 namespace {
 
-/// A picture of smooth hills, a black region, a bright sun and a bright pixel at the seam.
+/// Returns an image with smooth variation, a black region, a bright sun and a bright pixel at the seam.
 ImageRgb picture(int width, int height) {
     ImageRgb image(width, height);
     for (int y = 0; y < height; ++y)
@@ -36,7 +36,7 @@ ImageRgb picture(int width, int height) {
 struct Named {
     std::string name;
     Environment environment;
-    bool sampled = true; // it is uneven enough
+    bool sampled = true; // true if its variation is large enough for importance sampling
 };
 std::vector<Named> environments() {
     std::vector<Named> all;
@@ -50,7 +50,7 @@ std::vector<Named> environments() {
     return all;
 }
 
-/// Calls f(u, corner) for 64 × 64 points inside the square and the points around its border.
+/// Calls f(u, corner) for 64 × 64 points inside the unit square and for points along its border.
 template <typename F> void for_numbers(F f) {
     for (int i = 0; i < 64; ++i) {
         const float x = (static_cast<float>(i) + 0.37f) / 64, last = kOneMinusEpsilon;
@@ -79,7 +79,7 @@ TEST_SUITE("unit") {
                 REQUIRE(s->radiance == radiance(e, s->wi));
                 mismatches += !corner && std::abs(pdf(e, s->wi) - s->pdf) > 1e-4f * s->pdf;
             });
-            // A sample within rounding of a cell's border may come to lie in the neighbour.
+            // Rounding may move a sample that is next to a cell's border into the neighboring cell.
             CHECK(mismatches <= 2);
         }
     }
@@ -101,7 +101,7 @@ TEST_SUITE("unit") {
                     dark += light < 0.5f * mean;
                     dark_sampled += light < 0.5f * mean && density > 0;
                 }
-            CHECK(dark_sampled * 10 <= dark); // but for cells that mix with brighter neighbours
+            CHECK(dark_sampled * 10 <= dark); // except for cells that bilinear filtering mixes with brighter neighbors
             CHECK(std::isfinite(pdf(e, {0, 1, 0})));
             CHECK(std::isfinite(pdf(e, {0, -1, 0})));
         }
@@ -109,17 +109,17 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the picture: row 0 on top, its middle column at −z, counter-clockwise turns, no seam") {
         ImageRgb image(8, 4, Rgb(0.0f));
-        image(4, 0) = Rgb(1.0f); // just right of the middle, top row
+        image(4, 0) = Rgb(1.0f); // just right of the center, in the top row
         image(6, 2) = Rgb(2.0f);
         const Environment e = make_image_environment(image, 3, 0);
-        const auto at = [](int x, int y) { // direction of a pixel's centre
+        const auto at = [](int x, int y) { // the direction of a pixel's center
             return latlong_direction({(static_cast<float>(x) + 0.5f) / 8, 1 - (static_cast<float>(y) + 0.5f) / 4});
         };
         CHECK(radiance(e, at(4, 0)).r == doctest::Approx(3).epsilon(1e-5));
         CHECK(radiance(e, at(6, 2)).r == doctest::Approx(6).epsilon(1e-5));
         CHECK(at(4, 0).y > 0);
         CHECK(at(4, 0).z < 0);
-        CHECK(at(6, 2).x > 0); // u = ½ + atan2(x, −z)/2π: right of the middle is +x
+        CHECK(at(6, 2).x > 0); // u = ½ + atan2(x, −z)/2π, so right of the center is +x
         const float turn = 0.8f;
         const Environment turned = make_image_environment(image, 3, turn);
         const Mat4 rotate = rotation(Vec3(0, 1, 0), turn);
@@ -159,11 +159,11 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     TEST_CASE("directions are distributed as pdf says, which integrates to 1") {
         const auto all = environments();
-        for (const Named& named : all) { // 1e-4 for all together
+        for (const Named& named : all) { // significance 1e-4 for all environments together
             if (!named.sampled) continue;
             compare::DirectionTest setup;
             setup.axis = {0, 1, 0};
-            setup.subdivisions = 12; // a picture's density has steps within cells
+            setup.subdivisions = 12; // an image's density has steps within cells
             const auto result = compare::test_directions(
                 setup,
                 [&](Vec2 u) -> std::optional<Vec3> {
@@ -179,7 +179,7 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("irradiance and mean radiance agree with sampling") {
-        // 4.5 standard errors: odds 7e-6 a comparison.
+        // The tolerance is 4.5 standard errors, so a false alarm has odds of 7e-6 per comparison.
         for (const Named& named : environments())
             for (const Vec3 n : {Vec3(0, 1, 0), normalize(Vec3(0.5f, -0.7f, 0.2f))}) {
                 const Environment& e = named.environment;
@@ -189,8 +189,9 @@ TEST_SUITE("statistical") {
                 double sum = 0, squares = 0, mean = 0, mean_squares = 0, uniform = 0, uniform_squares = 0;
                 for (int i = 0; i < kSamples; ++i) {
                     sampler.start(0, 0, static_cast<std::uint32_t>(i));
-                    // One direction in two by its light, the other uniform, weighed by the balance heuristic: light at
-                    // and below the mean is not sampled by itself.
+                    // Every second direction is sampled from the environment and the others uniformly, weighted by
+                    // the balance heuristic. The uniform ones are needed because radiance at or below the mean is
+                    // never sampled from the environment.
                     const Vec2 u = sampler.get_2d();
                     const auto s = i % 2 == 0 && named.sampled ? sample(e, u) : std::nullopt;
                     const Vec3 wi = s ? s->wi : uniform_sphere(u);
@@ -199,7 +200,8 @@ TEST_SUITE("statistical") {
                     const double value = whole * static_cast<double>(std::max(0.0f, dot(wi, n)));
                     sum += value / kSamples, squares += value * value / kSamples;
                     mean += whole / kSamples, mean_squares += whole * whole / kSamples;
-                    const Vec3 w = uniform_sphere(sampler.get_2d()); // found without the environment's own sampling
+                    // Uniform directions do not depend on the environment's sampling.
+                    const Vec3 w = uniform_sphere(sampler.get_2d());
                     const double other =
                         static_cast<double>(radiance(e, w).g * std::max(0.0f, dot(w, n)) / kUniformSpherePdf);
                     uniform += other / kSamples, uniform_squares += other * other / kSamples;
@@ -212,7 +214,8 @@ TEST_SUITE("statistical") {
                     CHECK(std::abs(sum - static_cast<double>(exact->g)) < 4.5 * std::sqrt(variance));
                 else
                     CHECK(std::holds_alternative<ImageEnvironment>(e));
-                // Of a picture the mean is that of the pixels, without the bilinear blur: 2 % here
+                // The mean radiance of an image is that of its pixels without the bilinear blur, which makes a
+                // difference of 2 % here.
                 const double blur = std::holds_alternative<ImageEnvironment>(e) ? 0.02 * mean : 1e-6 * mean;
                 CHECK(std::abs(mean - 4 * kPiDouble * static_cast<double>(mean_radiance(e).g)) <
                       4.5 * std::sqrt(mean_variance) + blur);

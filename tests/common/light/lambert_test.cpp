@@ -1,4 +1,4 @@
-// Irradiance in closed form: published values, laws, limits and hard cases.
+// These tests compare closed-form irradiance with published values, laws, limits and hard cases.
 #include "common/light/lambert.h"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,8 @@ double factor(Vec3 p, Vec3 n, std::vector<Vec3> polygon) { return polygon_form_f
 
 std::vector<Vec3> rectangle(Vec3 corner, Vec3 u, Vec3 v) { return {corner, corner + u, corner + u + v, corner + v}; }
 
-/// ∫ max(0, n·w) dw over the sphere's cap by midpoints in (1 − cos, φ) about its centre.
+/// Integrates max(0, n·w) over the sphere's spherical cap with the midpoint rule in (1 − cos, φ) around the cap's
+/// center.
 double sphere_by_quadrature(double sine, double c) {
     constexpr int kRings = 400, kSectors = 400;
     const double gap = sine * sine / (1 + std::sqrt(1 - sine * sine)), s = std::sqrt(1 - c * c);
@@ -32,9 +33,9 @@ double sphere_by_quadrature(double sine, double c) {
 
 TEST_SUITE("unit") {
     TEST_CASE("published configuration factors of rectangles") {
-        // Howell, «A Catalog of Radiation Heat Transfer Configuration Factors», B-3 and B-4: an element facing a
-        // parallel rectangle a × b from below its corner at distance c; an element whose plane is perpendicular to the
-        // rectangle's.
+        // The values are factors B-3 and B-4 of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors".
+        // In B-3 an element faces a parallel rectangle a × b from below its corner at distance c. In B-4 the
+        // element's plane is perpendicular to the rectangle.
         for (const double a : {0.1, 1.0, 7.0})
             for (const double b : {0.3, 1.0, 20.0})
                 for (const double c : {0.01, 1.0, 5.0}) {
@@ -48,13 +49,14 @@ TEST_SUITE("unit") {
                     const double parallel = 0.5 * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
                     CHECK(factor({}, {0, 0, 1}, rectangle({0, 0, fc}, {fa, 0, 0}, {0, fb, 0})) ==
                           doctest::Approx(parallel).epsilon(1e-12));
-                    // The wall x = c: width b along y, height a along z.
+                    // The wall is at x = c and has width b along y and height a along z.
                     const double h = std::sqrt(x * x + 1);
                     const double upright = 0.5 * (std::atan(y) - std::atan(y / h) / h);
                     CHECK(factor({}, {0, 0, 1}, rectangle({fc, 0, 0}, {0, fb, 0}, {0, 0, fa})) ==
                           doctest::Approx(upright).epsilon(1e-11));
                 }
-        // A unit square seen from below its middle at distance 1: four corner squares of side ½, F = 0.2395.
+        // A unit square is above the point, centered at distance 1. It is four corner squares of side ½, so F =
+        // 0.2395.
         CHECK(factor({}, {0, 0, 1}, rectangle({-0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1, 0})) / kPiDouble ==
               doctest::Approx(0.23947).epsilon(1e-4));
     }
@@ -67,7 +69,7 @@ TEST_SUITE("unit") {
         CHECK(value > 0.01);
         CHECK(factor({}, n, {whole[3], whole[2], whole[1], whole[0]}) == doctest::Approx(value).epsilon(1e-13));
         CHECK(factor({}, n, {whole[2], whole[3], whole[0], whole[1]}) == doctest::Approx(value).epsilon(1e-13));
-        const Vec3 middle = whole[0] + Vec3(0.125f, 1, 1); // the parallelogram's centre: all exact in binary
+        const Vec3 middle = whole[0] + Vec3(0.125f, 1, 1); // the parallelogram's center; all values are exact in binary
         double sum = 0;
         for (std::size_t i = 0; i < 4; ++i) sum += factor({}, n, {middle, whole[i], whole[(i + 1) % 4]});
         CHECK(sum == doctest::Approx(value).epsilon(1e-13));
@@ -88,7 +90,7 @@ TEST_SUITE("unit") {
             CHECK(sphere_form_factor_times_pi({}, {0, 0.6f, 0.8f}, {{0, 0, d}, 2}) ==
                   doctest::Approx(4 * kPiDouble * 0.8 * exact).epsilon(1e-7));
         }
-        // Both sides of the change to the far field agree.
+        // The near and far formulas must agree on both sides of the switch.
         const auto at = [&](float d) {
             return factor({0, 0, 0}, {0.6f, 0, 0.8f}, rectangle({0.2f * d, 0.1f * d, d}, {1, 0, 0.5f}, {0, 1, 0})) *
                    static_cast<double>(d) * static_cast<double>(d);
@@ -107,26 +109,27 @@ TEST_SUITE("unit") {
         for (const Vec3 p :
              {Vec3(0.5f, 0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(5, 5, 0), Vec3(2, 0, 0)})
             for (const Vec3 n : {up, side, -up}) CHECK(factor(p, n, square) == 0);
-        // On the edge's line, a hair above the plane: half of the hemisphere's wedge, finite and within bounds
+        // The point is on the line of the edge, just above the plane. The result must be finite and within bounds;
+        // the limit is half of the hemisphere's wedge.
         for (const float h : {1e-3f, 1e-6f, 1e-12f}) {
             const double value = factor({0.5f, 0, h}, {0, 0, -1}, square);
             CHECK(value == doctest::Approx(kPiDouble / 2).epsilon(3e-3));
         }
-        // Two vertices exactly on the horizon, or a whole edge of the plane through p
+        // Two vertices are exactly on the horizon, or a whole edge is in the receiver's plane.
         CHECK(factor({}, up, {{1, -1, 0}, {1, 1, 0}, {1, 0, 1}}) > 0);
         const double above = factor({}, up, {{1, -1, 1e-7f}, {1, 1, 1e-7f}, {1, 0, 1}});
         CHECK(factor({}, up, {{1, -1, 0}, {1, 1, 0}, {1, 0, 1}}) == doctest::Approx(above).epsilon(1e-6));
-        // What lies below the horizon adds nothing
+        // The part below the horizon contributes nothing.
         const double cut = factor({}, up, {{1, -1, -3}, {1, 1, -3}, {1, 1, 2}, {1, -1, 2}});
         CHECK(cut == doctest::Approx(factor({}, up, {{1, -1, 0}, {1, 1, 0}, {1, 1, 2}, {1, -1, 2}})).epsilon(1e-13));
         CHECK(factor({}, up, {{1, -1, -3}, {1, 1, -3}, {1, 1, 0}, {1, -1, 0}}) == doctest::Approx(0));
         CHECK(factor({}, up, {{1, -1, -3}, {1, 1, -3}, {1, 1, -1}, {1, -1, -1}}) == 0);
-        // No area, too few vertices
+        // Polygons without area or with too few vertices contribute nothing.
         CHECK(factor({}, up, {{1, 0, 1}, {1, 0, 1}, {1, 0, 1}}) == 0);
         CHECK(factor({}, up, {{1, 0, 1}, {1, 0, 2}}) == 0);
-        // A needle of 1e-9 width
+        // The triangle is a needle of width 1e-9.
         const double needle = factor({}, up, {{-1, 0, 1}, {1, 0, 1}, {1, 1e-9f, 1}, {-1, 1e-9f, 1}});
-        // ∫ w/(1 + x²)² dx over [−1, 1] = w·(½ + π/4)
+        // The exact value is ∫ w/(1 + x²)² dx over [−1, 1] = w·(½ + π/4).
         CHECK(needle == doctest::Approx(1e-9 * (0.5 + kPiDouble / 4)).epsilon(1e-6));
     }
 
@@ -143,7 +146,7 @@ TEST_SUITE("unit") {
                 CAPTURE(share);
                 CHECK(std::abs(sphere_form_factor_times_pi({}, {0, 0, 1}, sphere) - exact) < 2e-4 * sine * sine * sine);
             }
-        // The two forms of the clipped case meet: sin σ just below and above 1e-4
+        // The two forms of the clipped case must agree: sin σ is just below and just above 1e-4.
         for (const double k : {-0.9, -0.3, 0.0, 0.4, 0.8}) {
             const auto at = [&](double sine) {
                 const Sphere sphere{{1, 0, static_cast<float>(k * sine)}, static_cast<float>(sine)};
@@ -151,7 +154,8 @@ TEST_SUITE("unit") {
             };
             CHECK(at(0.99e-4) == doctest::Approx(at(1.01e-4)).epsilon(1e-5));
         }
-        // On the surface half the sky is filled, tilted normals see (1 + cos θ)/2 of π; inside all of it.
+        // On the surface the sphere covers half of the directions, so a tilted normal receives (1 + cos θ)/2 of π.
+        // Inside, the sphere covers all directions.
         CHECK(sphere_form_factor_times_pi({}, {0, 0, 1}, {{0, 0, 1}, 0.99999f}) ==
               doctest::Approx(kPiDouble).epsilon(1e-4));
         CHECK(sphere_form_factor_times_pi({}, {0, 1, 0}, {{0, 0, 1}, 0.9999999f}) ==

@@ -1,4 +1,4 @@
-// The choice among lights: bounds that miss no light, a tree whose probabilities are those of its samples.
+// These tests check the light tree: its bounds miss no light, and its probabilities match its samples.
 #include "common/light/lambert.h"
 #include "common/light/light_choice.h"
 #include "common/sampling/sampler.h"
@@ -49,8 +49,7 @@ LightReceiver random_receiver(Sampler& s) {
     return {p, s.get_1d() < 0.2f ? Vec3() : normalize(n)};
 }
 
-/// Irradiance at a receiver without shadows; of one without a side, an upper bound of what any side gets… is not
-/// needed: only whether there is any.
+/// Returns whether the light can reach the receiver, ignoring shadows.
 bool can_light(const Light& light, const LightReceiver& receiver) {
     if (const auto* point = std::get_if<PointLight>(&light))
         return receiver.n == Vec3() || dot(point->position - receiver.p, receiver.n) > 0;
@@ -82,7 +81,7 @@ TEST_SUITE("unit") {
             }
         }
         CHECK(lit > 1000);
-        CHECK(dark > 100); // and they do leave lights out
+        CHECK(dark > 100); // the bounds do exclude some lights
     }
 
     TEST_CASE("a cone about cones holds them") {
@@ -102,7 +101,7 @@ TEST_SUITE("unit") {
             if (both.cos_normals <= -1) continue;
             const auto angle = [](Vec3 v, Vec3 w) { return 2 * std::atan2(length(v - w), length(v + w)); };
             const float half = std::acos(both.cos_normals);
-            const float room = 1e-3f; // a cosine near 1 keeps half of an angle's digits
+            const float room = 1e-3f; // tolerance: a cosine near 1 has only half of an angle's digits
             REQUIRE(angle(both.axis, a.axis) + half_a <= half + room);
             REQUIRE(angle(both.axis, b.axis) + half_b <= half + room);
         }
@@ -125,7 +124,8 @@ TEST_SUITE("unit") {
                 }
                 const bool any = chooser.sample(receiver, 0.5f).has_value();
                 if (any && n <= LightTree::kLeafLights) CHECK(sum == doctest::Approx(1).epsilon(1e-5));
-                CHECK(sum <= 1 + 1e-4); // a fork whose bounds promise light may lead to none
+                // An inner node with a positive bound may have only leaves that contribute nothing.
+                CHECK(sum <= 1 + 1e-4);
                 double remapped = 0;
                 int chosen = 0;
                 for (int i = 0; i < 4000; ++i) {
@@ -151,7 +151,7 @@ TEST_SUITE("unit") {
         CHECK(chooser.probability(towards, 0) == doctest::Approx(100.0 / 101));
         CHECK(chooser.probability(towards, 1) == doctest::Approx(1.0 / 101));
         CHECK(chooser.probability(towards, 2) == 0);
-        CHECK(chooser.probability(towards, 3) == 0); // it is black
+        CHECK(chooser.probability(towards, 3) == 0); // its emission is black
         CHECK(chooser.probability(towards, 4) == 0);
         CHECK(chooser.probability({{}, {}}, 2) > 0.9f);
         CHECK_FALSE(chooser.sample({{20, 0, 0}, {1, 0, 0}}, 0.5f).has_value());
@@ -165,7 +165,7 @@ TEST_SUITE("unit") {
         CHECK(chooser.environment_index() == 3);
         CHECK(chooser.probability(up, 0) == doctest::Approx(0.5 / 3 + 0.5 * 900 / 1000));
         CHECK(chooser.probability(up, 1) == doctest::Approx(0.5 / 3 + 0.5 * 1 / 1000));
-        CHECK(chooser.probability(up, 2) == 0); // it shines from below
+        CHECK(chooser.probability(up, 2) == 0); // it emits from below
         CHECK(chooser.probability(up, 3) == doctest::Approx(0.5 / 3 + 0.5 * 99 / 1000));
         double counts[4]{};
         for (int i = 0; i < 10'000; ++i) {
@@ -190,7 +190,7 @@ TEST_SUITE("unit") {
         const LightChooser bright({PointLight{{0, 1e-15f, 0}, Rgb(huge)}, PointLight{{0, 1e-15f, 0}, Rgb(huge)}}, 1);
         for (std::size_t i = 0; i < 3; ++i) CHECK(std::isfinite(bright.probability(origin, i)));
         CHECK(bright.sample(origin, 0.2f).has_value());
-        // A thousand at one place: the tree halves them.
+        // A thousand lights are at one position, so the tree must split them by index.
         const LightChooser heap(std::vector<Light>(1000, PointLight{{0, 1, 0}, Rgb(1.0f)}), 0);
         for (const std::size_t i : {0u, 7u, 999u})
             CHECK(heap.probability(origin, i) == doctest::Approx(1e-3).epsilon(0.1));

@@ -1,4 +1,4 @@
-// Lights: what they send, how they are sampled, how one among them is chosen.
+// These tests check the emission and the sampling of lights.
 #include "common/light/lambert.h"
 #include "common/light/light.h"
 #include "common/light/light_choice.h"
@@ -31,9 +31,11 @@ struct Setting {
     SurfaceLight light;
     Vec3 p, n;
 };
-/// Lights and points on their emitting side: far and near, in front of a corner, slanted, dipping below p's horizon.
+/// Returns lights with points on their emitting side: far, near, in front of a corner, slanted, and partly below p's
+/// horizon.
 std::vector<Setting> settings() {
-    const Triangle triangle{{-1, 2, -1}, {1, 2.2f, -0.5f}, {0.2f, 1.8f, 1.5f}}; // seen from below it emits: normal down
+    // The triangle emits downward because its normal points down.
+    const Triangle triangle{{-1, 2, -1}, {1, 2.2f, -0.5f}, {0.2f, 1.8f, 1.5f}};
     const Quad square{{-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}};                 // normal (1,0,0) × (0,0,1) = −y
     const Quad slanted{{-1, 1, -1}, {2, 0.3f, 0}, {0.7f, 0, 2}};
     const Sphere ball{{0.3f, 2, -0.4f}, 0.7f};
@@ -53,7 +55,7 @@ std::vector<Setting> settings() {
             {"sphere, far", lamp(ball), {100, -300, 20}, up}};
 }
 
-/// Where a ray from p meets the shape's plane or surface, by the test's own arithmetic.
+/// Returns where a ray from p meets the shape's plane or surface, computed independently of the code under test.
 std::optional<Vec3d> meet(const Triangle& t, Vec3d p, Vec3d w, bool parallelogram) {
     const Vec3d a(t.a), e1 = Vec3d(t.b) - a, e2 = Vec3d(t.c) - a, n = cross(e1, e2);
     const double distance = dot(n, a - p) / dot(n, w);
@@ -64,7 +66,7 @@ std::optional<Vec3d> meet(const Triangle& t, Vec3d p, Vec3d w, bool parallelogra
     return inside ? std::optional<Vec3d>(q) : std::nullopt;
 }
 std::optional<Vec3d> meet(const SurfaceLight& light, Vec3d p, Vec3d direction) {
-    const Vec3d w = normalize(direction); // a float unit vector is one to seven digits only
+    const Vec3d w = normalize(direction); // a float unit vector is normalized to only seven digits
     if (const auto* t = std::get_if<Triangle>(&light.shape)) return meet(*t, p, w, false);
     if (const auto* q = std::get_if<Quad>(&light.shape))
         return meet(Triangle{q->corner, q->corner + q->u, q->corner + q->v}, p, w, true);
@@ -127,7 +129,7 @@ TEST_SUITE("unit") {
         CHECK(light_power(lamp(Triangle{{}, {2, 0, 0}, {1, 3, 0}}, true), 1) ==
               doctest::Approx(kPiDouble * 6 * 3.5 / 3));
         CHECK(light_power(lamp(Sphere{{}, 2}), 1) == doctest::Approx(kPiDouble * 16 * kPiDouble * 3.5 / 3));
-        // A spot's, against the integral of what it sends.
+        // The power of a spot light must equal the integral of its intensity.
         const SpotLight spot{{}, {0, 0, 1}, Rgb(2.0f), 0.9f, 0.4f};
         double sum = 0;
         constexpr int kSteps = 10'000;
@@ -141,7 +143,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a sample's point lies on the light, its density is light_pdf's, at every scale") {
         for (const Setting& s : settings())
-            for (const int exponent : {-20, 0, 20}) { // × 1e-6, 1, 1e6
+            for (const int exponent : {-20, 0, 20}) { // scales of 1e-6, 1 and 1e6
                 const float scale = std::ldexp(1.0f, exponent);
                 SurfaceLight light = s.light;
                 if (auto* t = std::get_if<Triangle>(&light.shape)) *t = {t->a * scale, t->b * scale, t->c * scale};
@@ -161,7 +163,8 @@ TEST_SUITE("unit") {
                         REQUIRE(found->radiance == light.radiance);
                         const Vec3 q = p + found->wi * found->distance;
                         REQUIRE(light_pdf(light, p, q) == doctest::Approx(found->pdf).epsilon(1e-4));
-                        // Moved a little towards the middle, so that rounding cannot push the ray past the rim
+                        // The point is moved slightly toward the center, so that rounding cannot push the ray past
+                        // the rim.
                         const Vec3 inwards = normalize(q + (center(light) - q) * 1e-3f - p);
                         const auto met = meet(light, Vec3d(p), Vec3d(inwards));
                         REQUIRE(met.has_value());
@@ -173,7 +176,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE(
         "only the emitting side sends light; flat lights send none into their own plane; degenerate ones none at all") {
-        const Quad quad{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}; // emits to +z
+        const Quad quad{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}; // emits toward +z
         const Triangle triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         const Vec2 u{0.3f, 0.4f};
         for (const SurfaceLight& one : {lamp(quad), lamp(triangle)}) {
@@ -205,16 +208,17 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     TEST_CASE("directions to each light are distributed as light_pdf says, which integrates to 1") {
         const auto all = settings();
-        for (const Setting& s : all) { // odds of a false alarm: 1e-4 for all settings together
+        for (const Setting& s : all) { // false alarm odds: 1e-4 for all settings together
             CAPTURE(s.name);
-            // Smaller or thinner than the test's cells: the next case has these.
+            // These lights are smaller or thinner than the test's cells. The next test case covers them.
             if (s.name.ends_with("far") || s.name.ends_with("aside")) continue;
             compare::DirectionTest setup;
             setup.axis =
-                normalize(normalize(center(s.light) - s.p) + Vec3(0.05f, 0.02f, -0.03f)); // no ring along a rim
+                // The axis is tilted so that no ring of cells follows a rim.
+                normalize(normalize(center(s.light) - s.p) + Vec3(0.05f, 0.02f, -0.03f));
             setup.axis_power = 2;
             setup.samples = 50'000;
-            setup.subdivisions = 20; // the rim cuts through cells
+            setup.subdivisions = 20; // the rim crosses cells
             const auto result = compare::test_directions(
                 setup,
                 [&](Vec2 u) -> std::optional<Vec3> {
@@ -232,8 +236,8 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("sampled irradiance is Lambert's") {
-        // 4.5 standard errors: odds 7e-6 a setting. Where the light stays above the horizon and far, the error is far
-        // smaller than 1 %.
+        // The tolerance is 4.5 standard errors, so a false alarm has odds of 7e-6 per setting. The error is far below
+        // 1 % for a light that is far and above the horizon.
         for (const Setting& s : settings()) {
             constexpr int kSamples = 40'000;
             Sampler sampler(SamplerKind::kIndependent, 5, kSamples);

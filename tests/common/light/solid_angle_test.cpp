@@ -1,4 +1,4 @@
-// Spherical triangles, and lights sampled near and far at any slant.
+// These tests check the sampling of spherical triangles and rectangles, near and far and at any slant.
 #include "common/light/solid_angle.h"
 #include "common/light/spherical_rectangle.h"
 #include "common/light/spherical_triangle.h"
@@ -15,11 +15,11 @@ using namespace duet;
 
 namespace {
 
-/// Number i of a fixed stream, in [0, 1).
+/// Returns number i of a fixed random stream, in [0, 1).
 double number(std::uint64_t i) { return static_cast<double>(unit_float(high_bits(stream_number(99, i)))); }
 Vec3d vector(std::uint64_t i) { return {2 * number(3 * i) - 1, 2 * number(3 * i + 1) - 1, 2 * number(3 * i + 2) - 1}; }
 
-/// Inside, up to rounding: on the same side of the planes of all edges.
+/// Returns whether w is inside, up to rounding: it must be on the same side of the planes of all edges.
 bool contains(const SphericalTriangle& t, Vec3d w) {
     const double side = dot(t.a, cross(t.b, t.c)) > 0 ? 1 : -1, bound = -1e-7;
     return side * dot(w, cross(t.a, t.b)) > bound && side * dot(w, cross(t.b, t.c)) > bound &&
@@ -80,12 +80,14 @@ TEST_SUITE("unit") {
                     const double along_u = dot(w, u) / dot(u, u), along_v = dot(w, v) / dot(v, v);
                     REQUIRE((along_u > -1e-9 && along_u < 1 + 1e-9 && along_v > -1e-9 && along_v < 1 + 1e-9));
                     REQUIRE(length(w - u * along_u - v * along_v) < 1e-9);
-                    if (a != 0.3) continue; // the part to the left of the sample is as much of the whole as the number
+                    // The fraction of the solid angle to the left of the sample must equal its first coordinate.
+                    if (a != 0.3) continue;
                     REQUIRE(SphericalRectangle(corner, u * along_u, v).solid_angle() ==
                             doctest::Approx(a * expected).epsilon(1e-6));
                 }
         }
-        // The middle of a rectangle seen straight on is its middle, and a quarter of the numbers fills a quarter of it.
+        // A rectangle faces the point. The sample (½, ½) must be its center, and a quarter of the unit square must
+        // fill a quarter of it.
         const SphericalRectangle straight({-1, -2, -3}, {2, 0, 0}, {0, 4, 0});
         CHECK(length(straight.sample({0.5, 0.5}) - Vec3d(0, 0, -3)) < 1e-12);
     }
@@ -94,7 +96,8 @@ TEST_SUITE("unit") {
         "lights at any place, near or far, edge-on or full: what is drawn is finite, in reach, with its own density") {
         int drawn = 0;
         for (std::uint64_t i = 0; i < 20'000; ++i) {
-            const double reach = std::pow(10.0, 6 * number(i + 1'000'000) - 3); // 1e-3 to 1e3 extents away
+            // The distance is 1e-3 to 1e3 times the rectangle's extent.
+            const double reach = std::pow(10.0, 6 * number(i + 1'000'000) - 3);
             const Vec3 p(vector(5 * i) * reach + Vec3d(0.3, 0.2, 0));
             const SurfaceLight::Triangle triangle{Vec3(vector(5 * i + 1)), Vec3(vector(5 * i + 2)),
                                                   Vec3(vector(5 * i + 3))};
@@ -118,7 +121,7 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    TEST_CASE("directions are uniform over spherical rectangles") { // odds of a false alarm 1e-4 for all together
+    TEST_CASE("directions are uniform over spherical rectangles") { // false alarm odds: 1e-4 for all together
         struct Case {
             Vec3d corner, u, v;
         };
@@ -130,7 +133,7 @@ TEST_SUITE("statistical") {
             const Vec3d n = cross(c.u, c.v);
             compare::DirectionTest setup;
             setup.axis = normalize(Vec3(normalize(c.corner + (c.u + c.v) * 0.5)) + Vec3(0.05f, 0.02f, -0.03f));
-            setup.subdivisions = 100; // edges cut through cells, and no ring of them may lie along one
+            setup.subdivisions = 100; // edges cross cells, and no ring of cells may follow an edge
             const auto result = compare::test_directions(
                 setup, [&](Vec2 u) { return Vec3(normalize(rectangle.sample(Vec2d(u)))); },
                 [&](Vec3 w) {
@@ -144,7 +147,7 @@ TEST_SUITE("statistical") {
         }
     }
 
-    TEST_CASE("directions are uniform over spherical triangles") { // odds of a false alarm 1e-4 for all together
+    TEST_CASE("directions are uniform over spherical triangles") { // false alarm odds: 1e-4 for all together
         const SphericalTriangle triangles[] = {
             {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
             {normalize(Vec3d(1, 0.1, 0)), normalize(Vec3d(-1, 1, 0.1)), normalize(Vec3d(-0.7, -1, 0.4))},
@@ -153,7 +156,7 @@ TEST_SUITE("statistical") {
             const double omega = t.solid_angle();
             compare::DirectionTest setup;
             setup.axis = Vec3(normalize(t.a + t.b + t.c));
-            setup.subdivisions = 20; // edges cut through cells
+            setup.subdivisions = 20; // edges cross cells
             const auto result = compare::test_directions(
                 setup, [&](Vec2 u) { return Vec3(t.sample(omega, Vec2d(u))); },
                 [&](Vec3 w) { return contains(t, Vec3d(w)) ? 1 / omega : 0.0; });

@@ -1,4 +1,4 @@
-// Glass, smooth, rough and thin: refraction, reciprocity, energy.
+// These tests check refraction, reciprocity and energy of smooth, rough and thin dielectrics.
 #include "common/material/fresnel.h"
 #include "tests/common/material/test_materials.h"
 
@@ -19,7 +19,7 @@ TEST_SUITE("unit") {
             const auto radiance = glass.sample(wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
             const auto importance = glass.sample(wo, kOneMinusEpsilon, {}, TransportMode::kImportance);
             REQUIRE(radiance.has_value());
-            if (!radiance->transmitted) { // total reflection, from inside only
+            if (!radiance->transmitted) { // total internal reflection
                 CHECK(z < 0);
                 CHECK(std::sqrt(1 - z * z) * eta > 0.999999f);
                 continue;
@@ -29,18 +29,18 @@ TEST_SUITE("unit") {
             CHECK(radiance->wi.y * relative == doctest::Approx(-wo.y).epsilon(1e-5));
             CHECK(importance->weight == Rgb(1.0f));
             CHECK(radiance->weight.r * relative * relative == doctest::Approx(1).epsilon(1e-6));
-            // Back through the same boundary: the same way, with the inverse factor.
+            // Refraction back through the same interface must return the original direction and the inverse factor.
             const auto back = glass.sample(radiance->wi, kOneMinusEpsilon, {}, TransportMode::kRadiance);
             REQUIRE(back.has_value());
             REQUIRE(back->transmitted);
-            // Near the critical angle a cosine is the root of a rounded difference: √2⁻²³ is all a float direction
-            // holds.
+            // Near the critical angle a cosine is the square root of a rounded difference, so a float direction is
+            // only accurate to √2⁻²³.
             const bool grazing = std::abs(z) < 0.01f;
             CHECK(length(back->wi - wo) < (grazing ? 5e-4f : 2e-5f));
             CHECK(back->weight.r * radiance->weight.r == doctest::Approx(1).epsilon(1e-6));
             if (!grazing) CHECK(back->pdf == doctest::Approx(radiance->pdf).epsilon(1e-4));
         }
-        // η = 1: as if it were not there.
+        // An interface with η = 1 must not deflect light.
         const Vec3 w = direction(1e-6f, 0.4f);
         const auto through = DielectricBsdf{1.0f, Rgb(1.0f)}.sample(w, 0, {}, TransportMode::kRadiance);
         REQUIRE(through.has_value());
@@ -102,7 +102,7 @@ TEST_SUITE("unit") {
             const double cos_t = std::sqrt(cos2_refracted(static_cast<double>(z), 1.5));
             for (std::size_t c = 0; c < 3; ++c) {
                 const double t = std::pow(static_cast<double>(pane.tint[c]), 1 / cos_t);
-                double through = 0, back = f, inside = 1 - f; // towards the far side
+                double through = 0, back = f, inside = 1 - f; // directed toward the far side
                 for (int i = 0; i < 4000; ++i) {
                     inside *= t;
                     (i % 2 == 0 ? through : back) += inside * (1 - f);

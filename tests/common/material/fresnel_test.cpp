@@ -1,4 +1,4 @@
-// Fresnel's formulas, and the named conductors' colours by them.
+// These tests check the Fresnel equations and the colors of the named conductors computed from them.
 #include "common/material/fresnel.h"
 #include "common/material/material.h"
 #include "common/vec/simd.h"
@@ -20,10 +20,11 @@ TEST_SUITE("unit") {
         CHECK(fresnel_dielectric(1e-7f, 1.5f) == doctest::Approx(1).epsilon(1e-5));
         CHECK(fresnel_dielectric(0.5, 1 / 1.5) == 1.0); // sin 60° · 1.5 > 1
         for (const double z : {0.0, 1e-9, 0.5, 1.0}) CHECK(fresnel_dielectric(z, 1.0) == 0);
-        // Brewster's angle: the parallel part vanishes, ½ of the perpendicular one is left: ½((η² − 1)/(η² + 1))².
+        // At Brewster's angle the parallel component vanishes and half of the perpendicular one remains: ½((η² −
+        // 1)/(η² + 1))².
         const double eta = 1.5, brewster = std::cos(std::atan(eta)), rest = (eta * eta - 1) / (eta * eta + 1);
         CHECK(fresnel_dielectric(brewster, eta) == doctest::Approx(0.5 * rest * rest).epsilon(1e-12));
-        for (int i = 1; i <= 100; ++i) { // the same from both sides, along one ray
+        for (int i = 1; i <= 100; ++i) { // both sides must give the same value along one ray
             const double cos_i = i / 100.0, cos_t = std::sqrt(cos2_refracted(cos_i, eta));
             CHECK(fresnel_dielectric(cos_i, eta) == doctest::Approx(fresnel_dielectric(cos_t, 1 / eta)).epsilon(1e-9));
         }
@@ -38,12 +39,14 @@ TEST_SUITE("unit") {
             CHECK(fresnel_conductor(z, 1.5, 0.0) == doctest::Approx(fresnel_dielectric(z, 1.5)).epsilon(1e-9));
             CHECK(fresnel_conductor(z, 0.01, 1000.0) > 0.9999);
         }
-        // Born and Wolf 1999, §14.2: ((n − 1)² + k²)/((n + 1)² + k²) at normal incidence.
-        CHECK(fresnel_conductor(1.0, 0.47, 2.4) == doctest::Approx((0.53 * 0.53 + 5.76) / (1.47 * 1.47 + 5.76)).epsilon(1e-12));
+        // The formula at normal incidence is ((n − 1)² + k²)/((n + 1)² + k²) (Born and Wolf 1999, §14.2).
+        CHECK(fresnel_conductor(1.0, 0.47, 2.4) ==
+              doctest::Approx((0.53 * 0.53 + 5.76) / (1.47 * 1.47 + 5.76)).epsilon(1e-12));
         using Lanes = FloatBatch<kSimdLanes>;
         std::array<float, kSimdLanes> cosines{}, together{};
         for (std::size_t i = 0; i < kSimdLanes; ++i) cosines[i] = (static_cast<float>(i) + 0.5f) / kSimdLanes;
-        fresnel_conductor(Lanes::load_unaligned(cosines.data()), Lanes(0.3f), Lanes(3.1f)).store_unaligned(together.data());
+        fresnel_conductor(Lanes::load_unaligned(cosines.data()), Lanes(0.3f), Lanes(3.1f))
+            .store_unaligned(together.data());
         for (std::size_t i = 0; i < kSimdLanes; ++i) CHECK(together[i] == fresnel_conductor(cosines[i], 0.3f, 3.1f));
     }
 
@@ -69,8 +72,8 @@ TEST_SUITE("unit") {
             CAPTURE(name);
             for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs(normal[c] - known[c]) < bound);
         };
-        // Linear Rec. 709 at normal incidence: by the same measurements as physicallybased.info has it; by others as in
-        // Akenine-Möller et al. 2018, «Real-Time Rendering», table 9.2.
+        // The reference colors are linear Rec. 709 at normal incidence. One group is from the same measurements as on
+        // physicallybased.info, the other from table 9.2 of Akenine-Möller et al. 2018, "Real-Time Rendering".
         near("iron", {0.531f, 0.512f, 0.496f}, 0.01f);
         near("nickel", {0.697f, 0.641f, 0.563f}, 0.01f);
         near("copper", {0.932f, 0.623f, 0.522f}, 0.01f);

@@ -1,4 +1,5 @@
-// Microfacets: normals, shadowing and densities against their definitions, tables against sums.
+// These tests compare microfacet normals, masking and densities with their definitions, and the energy tables with
+// sums.
 #include "common/material/fresnel.h"
 #include "common/material/ggx.h"
 #include "common/material/ggx_albedo.h"
@@ -37,7 +38,7 @@ TEST_SUITE("unit") {
     TEST_CASE("float formulas agree with double ones from narrow to wide lobes and at grazing angles") {
         for (const float alpha : {1e-3f, 1e-2f, 0.1f, 1.0f})
             for (const float z : {1.0f, 0.9f, 0.1f, 1e-3f, 1e-7f})
-                for (const float tilt : {0.0f, 0.5f, 1.0f, 3.0f}) { // of the normal, in units of alpha
+                for (const float tilt : {0.0f, 0.5f, 1.0f, 3.0f}) { // tilt of the normal, in units of alpha
                     CAPTURE(alpha);
                     CAPTURE(z);
                     CAPTURE(tilt);
@@ -53,7 +54,7 @@ TEST_SUITE("unit") {
                           doctest::Approx(ggx_visibility(wod, wid, a)).epsilon(3e-6));
                     CHECK(static_cast<double>(ggx_reflection_pdf(wo, h, alpha)) ==
                           doctest::Approx(ggx_reflection_pdf(wod, hd, a)).epsilon(3e-6));
-                    // Definitions, in double: G₁ = 1/(1 + Λ), G₂ = 1/(1 + Λₒ + Λᵢ)
+                    // The definitions, computed in double precision, are G₁ = 1/(1 + Λ) and G₂ = 1/(1 + Λₒ + Λᵢ).
                     const double lo = ggx_lambda(wod, a), li = ggx_lambda(wid, a);
                     CHECK(ggx_g1(wod, a) == doctest::Approx(1 / (1 + lo)).epsilon(1e-12));
                     CHECK(ggx_visibility(wod, wid, a) * 4 * wod.z * wid.z ==
@@ -72,8 +73,8 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     TEST_CASE("GGX: ∫ D cos = 1, and visible normals have the density G₁ max(0, w·h) D / cos") {
         for (const double alpha : {1e-3, 0.05, 0.5, 1.0}) {
-            // Over t = tan²/α², ∫ D cos dω = ∫ 1/(1 + t)² dt: midpoint rule in s = t/(1 + t), in which the integrand
-            // is 1.
+            // With t = tan²/α², the integral is ∫ D cos dω = ∫ 1/(1 + t)² dt. The midpoint rule runs over s = t/(1 +
+            // t), in which the integrand is 1.
             double sum = 0;
             constexpr int kSteps = 1000;
             for (int i = 0; i < kSteps; ++i) {

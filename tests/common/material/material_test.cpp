@@ -1,4 +1,5 @@
-// Every material by the same laws: density, weight, reciprocity, energy; both sides, grazing angles.
+// These tests check every material for the same laws: density, weight, reciprocity and energy, on both sides and at
+// grazing angles.
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
 #include "compare/stress/chi_squared.h"
@@ -59,7 +60,7 @@ TEST_SUITE("unit") {
                         REQUIRE(is_finite(f));
                         REQUIRE((f.r >= 0 && f.g >= 0 && f.b >= 0));
                         REQUIRE((std::isfinite(density) && density >= 0));
-                        // What eval lets through, sampling must be able to find.
+                        // Every direction with a nonzero BSDF must have a nonzero sampling density.
                         if (!is_black(f)) REQUIRE(density > 0);
                         if (zo * zi < 0 && !is_transmissive(m.bsdf)) REQUIRE(is_black(f));
                     }
@@ -76,7 +77,8 @@ TEST_SUITE("unit") {
                 const auto number = [&](int k) { return static_cast<float>((i * k) % 199 + 1) / 200; };
                 Vec3 a = direction(number(7), 6.28f * number(11));
                 Vec3 b = direction(number(13), 6.28f * number(29));
-                // Nearly opposite: wo and wi of lengths that differ by a rounding have very different cosines with h.
+                // The directions are nearly opposite. If the lengths of wo and wi differ by a rounding error, their
+                // cosines with h differ greatly.
                 if (i % 2) a = direction(1e-5f * number(7), 6.28f * number(11)), b = {-a.x, -a.y, 1e-5f * number(13)};
                 const Rgb ab = eval(m.bsdf, a, b), ba = eval(m.bsdf, b, a);
                 const Rgb below = eval(m.bsdf, {a.x, a.y, -a.z}, {b.x, b.y, -b.z});
@@ -92,12 +94,15 @@ TEST_SUITE("unit") {
             for (const float z : kCosines) {
                 CAPTURE(m.name);
                 CAPTURE(z);
-                const bool exact = is_specular(m.bsdf) && !std::holds_alternative<ThinDielectricBsdf>(m.bsdf); // of one colour
+                // The albedo of a single lobe with one color is exact.
+                const bool exact = is_specular(m.bsdf) && !std::holds_alternative<ThinDielectricBsdf>(m.bsdf);
                 const Rgbd a = albedo(m.bsdf, direction(z, 0.3f), TransportMode::kImportance,
-                                       exact ? 256 : is_transmissive(m.bsdf) ? 65536 : 16384); // of which the lobe is drawn by chance
-                // Specular ones are exact; 0.007 are the quadrature's, and the tables' of microfacets' energy.
-                // Where glass hardly refracts its table is coarse, at grazing angles.
-                const bool coarse = std::holds_alternative<RoughDielectricBsdf>(m.bsdf) && refraction_index(m.bsdf) < 1.01f;
+                                       // Transmissive materials need more samples because they choose a lobe at random.
+                                       exact ? 256 : is_transmissive(m.bsdf) ? 65536 : 16384);
+                // Specular materials are exact. The tolerance 0.007 covers the quadrature and the microfacet energy
+                // tables. The table is coarse at grazing angles where glass hardly refracts.
+                const bool coarse =
+                    std::holds_alternative<RoughDielectricBsdf>(m.bsdf) && refraction_index(m.bsdf) < 1.01f;
                 const double tolerance = exact ? 1e-6 : coarse ? 0.05 : 0.007;
                 CAPTURE(a.g);
                 CHECK((a.r <= 1 + tolerance && a.g <= 1 + tolerance && a.b <= 1 + tolerance));
@@ -110,7 +115,8 @@ TEST_SUITE("unit") {
                 for_numbers(64, [&](float lobe, Vec2 u) {
                     const auto s = sample(b, direction(z, 0.3f), lobe, u, TransportMode::kImportance);
                     REQUIRE(s.has_value());
-                    REQUIRE(max_component(s->weight) == doctest::Approx(1).epsilon(4e-7)); // each sample, so without variance
+                    // Each sample is checked separately, so the variance is zero.
+                    REQUIRE(max_component(s->weight) == doctest::Approx(1).epsilon(4e-7));
                 });
     }
 
@@ -136,7 +142,7 @@ TEST_SUITE("unit") {
         CHECK(is_specular(bsdf_at(Metal{}, none, point)));
         CHECK(is_specular(bsdf_at(Dielectric{}, none, point)));
         CHECK_FALSE(is_specular(bsdf_at(Dielectric{1.01f, {Rgb(1.0f)}, {0.5f}}, none, point)));
-        CHECK(is_specular(bsdf_at(Dielectric{1.000001f, {Rgb(1.0f)}, {0.5f}}, none, point))); // bends no light
+        CHECK(is_specular(bsdf_at(Dielectric{1.000001f, {Rgb(1.0f)}, {0.5f}}, none, point))); // does not refract
         CHECK_FALSE(is_specular(bsdf_at(Diffuse{}, none, point)));
         const Material lamp = Emissive{Rgb(3.0f), false, {Rgb(0.25f)}};
         CHECK(emitted(lamp, none, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));
@@ -150,7 +156,7 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
     TEST_CASE("directions are distributed as pdf says, from both sides") {
-        // Odds of a false alarm 1e-4 for all together.
+        // A false alarm has odds of 1e-4 for all comparisons together.
         const float cosines[] = {1.0f, 0.6f, 0.1f, 1e-3f, -0.6f};
         std::vector<NamedBsdf> materials = rough_materials();
         for (NamedBsdf& frosted : frosted_materials()) materials.push_back(std::move(frosted));
@@ -158,11 +164,12 @@ TEST_SUITE("statistical") {
         for (const NamedBsdf& m : materials)
             for (const float z : cosines) {
                 const Vec3 wo = direction(z, 0.9f);
-                // Cells close in on the mirror direction, where a narrow lobe is.
+                // The cells become smaller toward the mirror direction, where a narrow lobe is.
                 compare::DirectionTest setup;
-                if (!is_diffuse(m.bsdf)) setup.axis = {-wo.x, -wo.y, wo.z}, setup.axis_power = m.narrowest < 0.1f ? 4 : 2;
+                if (!is_diffuse(m.bsdf))
+                    setup.axis = {-wo.x, -wo.y, wo.z}, setup.axis_power = m.narrowest < 0.1f ? 4 : 2;
                 setup.samples = 50'000;
-                // The density jumps at the horizon, and at the critical angle, which cut through cells.
+                // The density is discontinuous at the horizon and at the critical angle, which cross cells.
                 setup.subdivisions = is_transmissive(m.bsdf) ? 24 : 16;
                 std::uint64_t count = 0;
                 const auto result = compare::test_directions(
@@ -182,8 +189,8 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("the mean weight is the integral of eval·cos: sampling leaves nothing out but what falls below") {
-        // Two independent estimates of the albedo, by the material's own samples and by uniform directions; 4.5
-        // standard errors, odds of a false alarm 7e-6 a comparison.
+        // The albedo is estimated twice, from the material's own samples and from uniform directions. The tolerance
+        // is 4.5 standard errors, so a false alarm has odds of 7e-6 per comparison.
         std::vector<NamedBsdf> materials = rough_materials();
         for (NamedBsdf& frosted : frosted_materials()) materials.push_back(std::move(frosted));
         for (const NamedBsdf& m : materials)

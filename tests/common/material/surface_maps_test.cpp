@@ -1,4 +1,4 @@
-// Normal maps, bump maps and opacity at a point.
+// These tests check normal maps, bump maps and opacity at a point.
 #include "common/material/surface_maps.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,8 @@ using namespace duet;
 
 namespace {
 
-/// A point of a flat surface whose normal is z, u along x (two metres a unit) and v along y or against it.
+/// Returns a point of a flat surface with normal z. u runs along x at two meters per unit, and v along y or opposite
+/// to it.
 SurfacePoint flat(float v_sign = 1) {
     SurfacePoint point;
     point.ng = point.ns = point.horizon = {0, 0, 1};
@@ -46,20 +47,21 @@ TEST_SUITE("unit") {
         point = flat();
         bend_normal(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, n));
-        point = flat(-1); // v runs down: green, too
+        point = flat(-1); // v runs downward, so the green channel flips, too
         bend_normal(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, {n.x, -n.y, n.z}));
         point = flat();
         bend_normal(plain(color), with_normal(0.5f), kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(n.x / 2, n.y / 2, n.z))));
         point = flat();
-        point.dpdu = point.dpdv = {}; // no directions: as it was
+        point.dpdu = point.dpdv = {}; // without tangents the normal is unchanged
         bend_normal(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, {0, 0, 1}));
     }
 
     TEST_CASE("bump maps: the normal of the heights") {
-        // A ramp in u of slope 1/2: 0 to 1 times half a metre over the 16 texels of the 2 metres between texel centres.
+        // A ramp in u has slope 1/2: it rises from 0 to 1 times half a meter over the 16 texels of 2 meters, measured
+        // between texel centers.
         ImageRgb ramp(16, 1);
         for (int x = 0; x < 16; ++x) ramp(x, 0) = Rgb(static_cast<float>(x) / 16);
         const TextureSet set{{ImageTexture{0, {1, 1}, TextureFilter::kBilinear}}, {ramp}};
@@ -75,7 +77,7 @@ TEST_SUITE("unit") {
         SurfacePoint point = flat();
         bend_normal(set, maps, kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(0.25f, 0, 1))));
-        // From below the same surface is seen.
+        // The surface must look the same from below.
         point = flat();
         bend_normal(set, maps, -kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(0.25f, 0, 1))));
@@ -98,7 +100,7 @@ TEST_SUITE("unit") {
             const Vec3 mirrored = reflect(-direction, point.ns * side);
             REQUIRE(mirrored.z * side > 0);
         }
-        CHECK(bent > 1000); // else nothing was tested
+        CHECK(bent > 1000); // otherwise the test covers nothing
     }
 
     TEST_CASE("near silhouettes, where smooth normals lean away from the viewer, an even map changes nothing, another little") {
@@ -114,7 +116,7 @@ TEST_SUITE("unit") {
             const Vec3 smooth{-std::sin(lean), 0, std::cos(lean)};
             CAPTURE(degrees);
             CHECK(near(bent(smooth, {0.5f, 0.5f, 1}), smooth, 0.01f));
-            CHECK(dot(bent(smooth, {0.5f, 0.65f, 0.95f}), smooth) > 0.9f); // 18° towards y, at most
+            CHECK(dot(bent(smooth, {0.5f, 0.65f, 0.95f}), smooth) > 0.9f); // at most 18° toward y
         }
     }
 

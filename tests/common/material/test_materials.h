@@ -1,4 +1,4 @@
-// The materials that tests go through, and how their albedo is measured.
+// This header lists the materials that tests iterate over and measures their albedo.
 #pragma once
 
 #include "common/material/material.h"
@@ -10,7 +10,7 @@
 
 namespace duet {
 
-/// A unit vector at height z and azimuth phi in radians.
+/// Returns a unit vector at height z and azimuth phi in radians.
 inline Vec3 direction(float z, float phi) {
     const float r = std::sqrt((1 - z) * (1 + z));
     return {r * std::cos(phi), r * std::sin(phi), z};
@@ -19,9 +19,9 @@ inline Vec3 direction(float z, float phi) {
 struct NamedBsdf {
     std::string name;
     Bsdf bsdf;
-    float narrowest = 1;    ///< alpha of its narrowest lobe
-    bool lossless = false;  ///< sends on all it receives
-    double found = 0.997;   ///< the density's integral is at least this: what else is drawn falls below the surface
+    float narrowest = 1;    ///< alpha of the narrowest lobe
+    bool lossless = false;  ///< true if it absorbs nothing
+    double found = 0.997;   ///< lower bound of the density's integral; the remaining samples fall below the surface
 };
 
 inline LayeredBsdf layers(Rgb color, float metallic, float roughness, float coat = 0, float coat_roughness = 0) {
@@ -30,7 +30,7 @@ inline LayeredBsdf layers(Rgb color, float metallic, float roughness, float coat
 inline Bsdf coated(Rgb albedo, float roughness) { return bsdf_at(Coated{{albedo}, roughness}, {}, SurfacePoint{}); }
 inline Bsdf gold(float alpha) { return MetalBsdf(*find_conductor("gold"), alpha); }
 
-/// Materials that reflect, and not as mirrors.
+/// Returns the non-specular reflective materials.
 inline std::vector<NamedBsdf> rough_materials() {
     const Rgb red(0.8f, 0.5f, 0.2f), white(1.0f);
     return {{"diffuse", DiffuseBsdf{red}},
@@ -51,7 +51,7 @@ inline std::vector<NamedBsdf> rough_materials() {
             {"white principled 0.4, dielectric", layers(white, 0, 0.6f), 0.36f, true, 0.8},
             {"clear coat", layers(red, 0.3f, 0.8f, 0.7f, 0.5f), 0.25f, false, 0.6}};
 }
-/// Those that light goes through, and not as through lenses.
+/// Returns the non-specular transmissive materials.
 inline std::vector<NamedBsdf> frosted_materials() {
     return {{"frosted glass 0.3", RoughDielectricBsdf{1.5f, Rgb(1.0f), 0.3f}, 0.3f, true, 0.8},
             {"frosted water 0.5", RoughDielectricBsdf{1.33f, Rgb(0.9f, 1.0f, 0.8f), 0.5f}, 0.5f, false, 0.6},
@@ -75,11 +75,11 @@ inline std::vector<NamedBsdf> all_materials() {
     return all;
 }
 
-/// Cosines of wo from straight above to 1e-7, on both sides.
+/// The cosines of wo range from straight above to 1e-7, on both sides.
 inline constexpr float kCosines[] = {1.0f,  0.999f, 0.7f,   0.3f,  0.05f, 1e-3f, 1e-5f,
                               1e-7f, -1e-7f, -1e-4f, -0.2f, -0.9f, -1.0f};
 
-/// Calls f(lobe, u) over a jittered set of `n` numbers and all corners of the cube.
+/// Calls f(lobe, u) for a jittered set of `n` random samples and for all corners of the unit cube.
 template <typename F> void for_numbers(int n, F f) {
     for (const float x : {0.0f, kOneMinusEpsilon})
         for (const float y : {0.0f, kOneMinusEpsilon})
@@ -92,7 +92,7 @@ template <typename F> void for_numbers(int n, F f) {
     }
 }
 
-/// Share of uniform incoming light of radiance 1 that is sent to wo: the mean weight.
+/// Returns the fraction of uniform incident light of radiance 1 that is scattered to wo, as the mean sample weight.
 inline Rgbd albedo(const Bsdf& bsdf, Vec3 wo, TransportMode mode, int n) {
     Rgbd sum;
     Sampler sampler(SamplerKind::kSobol, 23, n);

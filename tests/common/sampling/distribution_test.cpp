@@ -1,4 +1,4 @@
-// Piecewise constant distributions, and the warps of warp.h.
+// These tests check piecewise constant distributions and the warps of warp.h.
 #include "common/sampling/distribution.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
@@ -18,7 +18,7 @@ TEST_SUITE("unit") {
         CHECK(d.sample(0).index == 1);
         CHECK(d.sample(0).remapped == 0);
         CHECK(d.sample(kOneMinusEpsilon).index == 5);
-        CHECK(d.sample(1).index == 5); // out of range: taken as the last number
+        CHECK(d.sample(1).index == 5); // out of range: clamped to the largest valid number
         for (int i = 0; i < 10'000; ++i) {
             const auto s = d.sample(static_cast<float>(i) / 10'000);
             REQUIRE(values[s.index] > 0);
@@ -68,7 +68,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("two dimensions: rows of zeros are left out, density and integral agree") {
-        const std::vector<double> values{0, 0, 0, 1, 0, 3, 0, 0, 0, 2, 2, 2}; // 3 × 4, rows from v = 0
+        const std::vector<double> values{0, 0, 0, 1, 0, 3, 0, 0, 0, 2, 2, 2}; // 3 × 4 values, rows from v = 0 upward
         const Distribution2D d(values, 3, 4);
         CHECK(d.integral() == doctest::Approx(10.0 / 12));
         const Vec2 corners[] = {
@@ -109,7 +109,7 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    // Significance 1e-4 a case, seeds fixed.
+    // Each case has significance 1e-4 and fixed seeds.
     TEST_CASE("warps have the densities they claim") {
         const double alpha = compare::sidak_level(1e-4, 3);
         const auto sphere = compare::test_directions(
@@ -122,8 +122,8 @@ TEST_SUITE("statistical") {
         CHECK_MESSAGE(cosine.chi_squared.p_value > alpha, cosine.chi_squared.account);
         CHECK(cosine.integral == doctest::Approx(1).epsilon(1e-6));
 
-        // The triangle, in 4 × 4 cells of barycentrics: whole ones hold 1/8 of … of the area, those on the long side
-        // half of it.
+        // The triangle is split into 4 × 4 cells of its barycentric coordinates. Whole cells each hold 1/8 of the
+        // area, those on the hypotenuse half as much.
         std::vector<double> count(16), expected(16);
         constexpr int kSamples = 100'000;
         for (std::size_t j = 0; j < 4; ++j)
@@ -138,7 +138,7 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("the chi-squared test finds a density that is wrong by up to 10 %, and knows its quantiles") {
-        // Tabulated 5 % points (Abramowitz and Stegun 1964, table 26.8)
+        // The values are the tabulated 5 % points (Abramowitz and Stegun 1964, table 26.8).
         CHECK(compare::chi_squared_tail(3.84146, 1) == doctest::Approx(0.05).epsilon(1e-4));
         CHECK(compare::chi_squared_tail(18.3070, 10) == doctest::Approx(0.05).epsilon(1e-4));
         CHECK(compare::chi_squared_tail(124.342, 100) == doctest::Approx(0.05).epsilon(1e-4));

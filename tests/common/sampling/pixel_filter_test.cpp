@@ -1,4 +1,4 @@
-// Pixel filters as densities of samples.
+// These tests check pixel filters as sampling densities.
 #include "common/sampling/pixel_filter.h"
 #include "common/system/error.h"
 
@@ -11,7 +11,7 @@ using namespace duet;
 
 namespace {
 
-/// Moments of the positions of n × n even samples.
+/// Holds the moments of the positions of n × n uniformly spaced samples.
 struct Moments {
     double mean = 0, variance = 0, farthest = 0;
 };
@@ -46,7 +46,7 @@ TEST_SUITE("unit") {
         CHECK(moments(PixelFilter(FilterKind::kBox), 512).variance == doctest::Approx(1.0 / 12).epsilon(1e-4));
         const Moments m = moments(PixelFilter(FilterKind::kBlackmanHarris), 512);
         CHECK(std::abs(m.mean) < 1e-9);
-        // By quadrature, without the code under test.
+        // The expected moments come from quadrature, without the code under test.
         double mass = 0, square = 0;
         constexpr int kSteps = 20'000;
         for (int i = 0; i < kSteps; ++i) {

@@ -1,4 +1,4 @@
-// The numbers of a sample: of which they are functions, how they are drawn, and that they are independent.
+// These tests check what the random samples depend on, their distribution, and their independence.
 #include "common/sampling/hash.h"
 #include "common/sampling/sampler.h"
 #include "common/system/error.h"
@@ -44,7 +44,7 @@ TEST_SUITE("unit") {
             CHECK(a.dimension() == 10);
             CHECK(a.get_1d() == b.get_1d());
 
-            // … and of each of them
+            // The number must depend on each argument.
             const auto draw = [&](std::uint64_t seed, int x, int y, std::uint32_t index, std::uint32_t dimension) {
                 Sampler s(kind, seed, 64, 2);
                 s.start(x, y, index);
@@ -169,15 +169,16 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Each case has fixed seeds; its significance is 1e-4, so a correct change of hashes breaks one case in 10,000.
+    // Each case has fixed seeds and a significance of 1e-4, so a correct change of the hashes breaks one case in
+    // 10,000.
 
     TEST_CASE("pairs are uniform over pixels, samples and dimensions") {
         constexpr int kBins = 16, kTests = 12;
         int test = 0;
         for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kStratified, SamplerKind::kIndependent})
             for (int variant = 0; variant < 4; ++variant, ++test) {
-                // One sample of each of many pixels: within a pixel the points are more even than random, across they
-                // are independent.
+                // Take one sample from each of many pixels. Samples of one pixel are more uniform than random ones,
+                // but samples of different pixels are independent.
                 std::vector<double> count(kBins * kBins), expected(kBins * kBins, 65536.0 / (kBins * kBins));
                 for (int y = 0; y < 256; ++y)
                     for (int x = 0; x < 256; ++x) {

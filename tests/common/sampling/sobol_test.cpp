@@ -1,4 +1,4 @@
-// Sobol points and their scrambling: what the sampler draws is spread as evenly as it must be.
+// These tests check the uniformity of Sobol points and of their scrambling.
 #include "common/sampling/hash.h"
 #include "common/sampling/sampler.h"
 #include "common/sampling/sobol.h"
@@ -17,8 +17,9 @@ using namespace duet;
 
 namespace {
 
-/// The second dimension by its direction numbers: v₁ = ½, vᵢ = vᵢ₋₁ ⊕ vᵢ₋₁/2, from the primitive polynomial x + 1 with
-/// m₁ = 1 (Joe and Kuo 2008; Sobol 1967). As in the textbooks: a digit of the index chooses a direction number.
+/// Returns the second Sobol dimension from its direction numbers: v₁ = ½, vᵢ = vᵢ₋₁ ⊕ vᵢ₋₁/2, from the primitive
+/// polynomial x + 1 with m₁ = 1 (Joe and Kuo 2008; Sobol 1967). As in the textbooks, a digit of the index selects a
+/// direction number.
 std::uint32_t sobol_by_directions(std::uint32_t index) {
     std::uint32_t result = 0, direction = 0x80000000u;
     for (; index != 0; index >>= 1, direction ^= direction >> 1)
@@ -26,7 +27,7 @@ std::uint32_t sobol_by_directions(std::uint32_t index) {
     return result;
 }
 
-/// Points 0 … n−1 of one replicate.
+/// Returns points 0 to n−1 of one replicate.
 std::vector<Vec2> replicate_points(SamplerKind kind, std::uint64_t seed, int replicate, int n,
                                    std::uint32_t dimension) {
     Sampler sampler(kind, seed, 2 * n, 2);
@@ -39,8 +40,8 @@ std::vector<Vec2> replicate_points(SamplerKind kind, std::uint64_t seed, int rep
     return points;
 }
 
-/// How many elementary intervals [a/2^i, (a+1)/2^i) × [b/2^(k−i), …) of area 2^−k do not hold just one of the 2^k
-/// points.
+/// Counts the elementary intervals [a/2^i, (a+1)/2^i) × [b/2^(k−i), …) of area 2^−k that do not contain exactly one
+/// of the 2^k points.
 int faulty_elementary_intervals(const std::vector<Vec2>& points, int k) {
     int faults = 0;
     for (int i = 0; i <= k; ++i) {
@@ -66,7 +67,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("Owen scrambling is a bijection that keeps digits' common prefixes") {
-        // Numbers that agree in their first k digits (reversed: lowest bits) agree after scrambling in just as many.
+        // Two numbers that agree in exactly their first k digits (the lowest bits after reversal) must agree in
+        // exactly as many after scrambling.
         for (std::uint32_t trial = 0; trial < 2000; ++trial) {
             const std::uint32_t seed = low_bits(mix_bits(trial)), a = high_bits(mix_bits(trial + 77));
             for (std::uint32_t k = 0; k < 32; ++k) {
@@ -96,7 +98,8 @@ TEST_SUITE("unit") {
                     for (const std::uint32_t dimension : {0u, 8u, 18u}) {
                         CAPTURE(spp);
                         CAPTURE(size);
-                        // Of a count that is no power of two the first samples of each pixel are nets of their own.
+                        // If the sample count is not a power of two, the first samples of each pixel form separate
+                        // nets.
                         const int samples = spp == 6 ? 2 : spp / 2;
                         if (spp == 6 && size > 1) continue;
                         std::vector<Vec2> points;
@@ -138,7 +141,7 @@ TEST_SUITE("unit") {
                 fine_rows.insert(static_cast<int>(p.y * static_cast<float>(n)));
                 fine_columns.insert(static_cast<int>(p.x * static_cast<float>(columns * rows)));
                 const int rank =
-                    static_cast<int>(p.y * static_cast<float>(n)); // rows of cells hold `columns` points each
+                    static_cast<int>(p.y * static_cast<float>(n)); // each row of cells holds `columns` points
                 cells.insert({static_cast<int>(p.x * static_cast<float>(columns)), rank / columns});
             }
             CHECK(static_cast<int>(fine_rows.size()) == n);
@@ -163,12 +166,13 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    // Each case has fixed seeds; its significance is 1e-4, so a correct change of hashes breaks one case in 10,000.
+    // Each case has fixed seeds and a significance of 1e-4, so a correct change of the hashes breaks one case in
+    // 10,000.
 
     TEST_CASE(
         "each digit is flipped half of the time, whatever the earlier digits: the scrambling is Owen's, not an XOR") {
-        // For two prefixes that differ, the flips of the digit after them must be independent: 4 outcomes of equal odds
-        // over seeds.
+        // For two different prefixes, the flips of the next digit must be independent: the 4 outcomes are equally
+        // likely over the seeds.
         int tests = 0;
         double worst = 1;
         std::string account;
@@ -196,7 +200,7 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("scrambled Sobol points integrate a smooth function far better than independent ones, without bias") {
-        // f = Gaussian-like bump, ∫ = (√π/2·erf(1))²
+        // The integrand is a Gaussian bump with the integral (√π/2·erf(1))².
         const double side = 0.5 * std::sqrt(kPiDouble) * std::erf(1.0), truth = side * side;
         const auto f = [](Vec2 u) {
             return std::exp(-static_cast<double>(u.x * u.x) - static_cast<double>(u.y * u.y));
@@ -221,7 +225,8 @@ TEST_SUITE("statistical") {
             CAPTURE(sampler_name(kinds[k]));
             CHECK(std::abs(mean[k]) < 4.5 * std::sqrt(mean_square[k] / kPixels));
         }
-        // Independent: σ²/n. Owen-scrambled nets: O(n⁻³ log n) for smooth f (Owen 1997): thousands of times less here.
+        // Independent samples have variance σ²/n. Owen-scrambled nets have O(n⁻³ log n) for smooth f (Owen 1997),
+        // which is thousands of times less here.
         CHECK(mean_square[0] * 3000 < mean_square[2]);
         CHECK(mean_square[1] * 30 < mean_square[2]);
     }

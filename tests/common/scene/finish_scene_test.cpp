@@ -1,4 +1,5 @@
-// What finish_scene works out: baking that changes nothing to be seen, lights on the right side, bounds, needs.
+// These tests check what finish_scene computes: baked transforms that leave the visible surface unchanged, lights on
+// the correct side, bounds, and required features.
 #include "common/scene/scene.h"
 
 #include "common/geometry/quad.h"
@@ -51,7 +52,7 @@ Mesh tetrahedron() {
     return mesh;
 }
 
-/// The nearest hit of a ray with one object, by going through its primitives.
+/// Returns the nearest hit of a ray with one object by testing all of its primitives.
 Hit nearest(const Scene& scene, const Ray& world) {
     const Object& object = scene.objects[0];
     const ObjectTransform transform = object_transform(object, world.time);
@@ -83,7 +84,7 @@ Mat4d random_transform(std::mt19937& random, bool similarity, bool mirror) {
            scaling(mirror ? Vec3d(-scale.x, scale.y, scale.z) : scale);
 }
 
-/// Checks that rays see the same on the object, baked and not.
+/// Checks that rays hit the same surface whether the object's transform is baked or not.
 void check_same_surface(const Shape& shape, const Mat4d& transform, std::mt19937& random, bool with_uv) {
     Scene plain = scene_of(shape, transform);
     const Scene baked = finished(plain);
@@ -95,11 +96,11 @@ void check_same_surface(const Shape& shape, const Mat4d& transform, std::mt19937
         const Vec3 local{0.25f + 0.3f * u(random), 0.25f + 0.3f * u(random), 0.25f + 0.3f * u(random)};
         ray.direction = normalize(transform_point(Mat4(transform), local) - ray.origin);
         const Hit a = nearest(plain, ray), b = nearest(baked, ray);
-        if (a.valid() != b.valid() || a.primitive != b.primitive) continue; // at an edge, by rounding; counted below
+        if (a.valid() != b.valid() || a.primitive != b.primitive) continue; // rounding at an edge; counted below
         if (!a.valid()) continue;
         ++hits;
         const SurfacePoint p = surface_point(plain, ray, a), q = surface_point(baked, ray, b);
-        CHECK(length(p.p - q.p) < 1e-3f); // rays come from 20 away, at any slant
+        CHECK(length(p.p - q.p) < 1e-3f); // rays start 20 units away, at any slant
         CHECK(dot(p.ng, q.ng) > 0.9999f);
         CHECK(dot(p.ns, q.ns) > 0.9999f);
         if (with_uv) CHECK(std::abs(p.uv.x - q.uv.x) + std::abs(p.uv.y - q.uv.y) < 1e-3f);
@@ -198,7 +199,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("A mirrored lamp shines on the mirror image of its front side") {
-        // In the object's space the front is +z. Under (x, y, −z) it is −z; under (−x, y, z) it stays +z.
+        // In object space the front side is +z. The transform (x, y, −z) makes it −z, and (−x, y, z) leaves it at +z.
         const Emissive lamp{Rgb(2.0f)};
         Mesh triangle;
         triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -215,17 +216,19 @@ TEST_SUITE("unit") {
                     Scene scene = scene_of(shape, scaling(scale), lamp);
                     if (!baked)
                         scene.objects.push_back(
-                            placed(0, translation(Vec3d(5, 0, 0)), translation(Vec3d(5, 1, 0)))); // moves: no light
+                            // This object moves, so it is not a light.
+                            placed(0, translation(Vec3d(5, 0, 0)), translation(Vec3d(5, 1, 0))));
                     finish_scene(scene);
                     const SurfaceLight& light = only_light(scene);
                     const float x = 0.25f * static_cast<float>(scale.x);
                     CHECK(emits_towards(light, {x, 0.25f, front}));
                     CHECK_FALSE(emits_towards(light, {x, 0.25f, -front}));
-                    // And what a ray sees agrees.
+                    // The side that a ray hits must agree.
                     for (const float side : {-1.0f, 1.0f}) {
                         const Ray ray{{x, 0.25f, side}, {0, 0, -side}};
                         const SurfacePoint point = surface_point(scene, ray, nearest(scene, ray));
-                        CHECK(is_black(emitted(scene.materials[0], scene.textures, point, -ray.direction)) == (side != front));
+                        CHECK(is_black(emitted(scene.materials[0], scene.textures, point, -ray.direction)) ==
+                              (side != front));
                     }
                 }
             }
@@ -247,7 +250,7 @@ TEST_SUITE("unit") {
         scene.material_names = {"white", "lamp", "off"};
         Mesh mesh = tetrahedron();
         mesh.positions.push_back({2, 2, 2});
-        mesh.triangles.push_back({4, 4, 4}); // without area
+        mesh.triangles.push_back({4, 4, 4}); // zero area
         mesh.material_slots = {1, 0, 1, 2, 1};
         scene.shapes = {mesh, box_quads({0, 0, 0}, {1, 1, 1}), Sphere{}};
         scene.objects = {placed(0, translation(Vec3d(4, 0, 0)), translation(Vec3d(4, 0, 0))),
@@ -256,7 +259,7 @@ TEST_SUITE("unit") {
         scene.objects[1].materials = {1};
         scene.objects[2].materials = {1};
         scene.lights = {PointLight{{0, 5, 0}, Rgb(1.0f)}};
-        for (int repeat = 0; repeat < 2; ++repeat) { // finishing again changes nothing
+        for (int repeat = 0; repeat < 2; ++repeat) { // a second call changes nothing
             finish_scene(scene);
             CHECK(scene.first_surface_light == 1);
             REQUIRE(scene.lights.size() == 1 + 2 + 6);

@@ -1,4 +1,4 @@
-// OBJ and MTL files: what becomes of good ones, and what is said of hostile ones.
+// These tests check OBJ and MTL files: the results of valid files and the error messages of hostile ones.
 #include "common/scene/obj/load_obj.h"
 #include "common/scene/scene.h"
 
@@ -91,7 +91,7 @@ TEST_SUITE("unit") {
         const ObjFile file = load(kSquare + "f 1 1 2\nf 1 2 1\nf 1 2 2 3 3 4 1\nf 4 4 4 4\n");
         CHECK(file.mesh.triangles.size() == 2);
         CHECK(file.degenerate_faces == 3);
-        // More than 255 corners, where tinyobjloader's own count of corners wraps.
+        // The polygon has more than 255 vertices, at which tinyobjloader's own vertex count wraps around.
         std::string many;
         for (int i = 0; i < 1000; ++i) many += message("v ", std::cos(i * 0.00628), " ", std::sin(i * 0.00628), " 0\n");
         many += "f";
@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
              "line 4: the vertex index -9223372036854775808 is out of range"},
             {kTriangle + "f 1 2 2147483648\n", "line 4: the vertex index 2147483648 is out of range"},
             {kTriangle + "f 1 2 4294967297\n",
-             "line 4: the vertex index 4294967297 is out of range"}, // wraps to 1 in 32 bits
+             "line 4: the vertex index 4294967297 is out of range"}, // wraps around to 1 in 32 bits
             {kTriangle + "f 1 2 99999999999999999999999\n",
              "line 4: the vertex index 99999999999999999999999 is out of range"},
             {kTriangle + "f 1/1 2/1 3/1\n", "line 4: the texture coordinate index 1 is out of range: there are 0"},
@@ -208,8 +208,10 @@ TEST_SUITE("unit") {
 
     TEST_CASE("MTL pictures of all kinds arrive, each with what is taken of it") {
         const ScratchFolder folder;
-        folder.write("m.mtl", "newmtl a\nKd 1 1 1\nPm 1\nPr 0.5\nmap_Kd a.png\nmap_Pr b.png\nmap_Pm g.png\nnorm c.png\nmap_Bump -bm 3 "
-                              "d.png\nmap_d e.png\nd 0.75\nNi 1\nnewmtl b\nKd 0 0 0\nmap_Ke f.png\nmap_d e.png\n");
+        folder.write(
+            "m.mtl",
+            "newmtl a\nKd 1 1 1\nPm 1\nPr 0.5\nmap_Kd a.png\nmap_Pr b.png\nmap_Pm g.png\nnorm c.png\nmap_Bump -bm 3 "
+            "d.png\nmap_d e.png\nd 0.75\nNi 1\nnewmtl b\nKd 0 0 0\nmap_Ke f.png\nmap_d e.png\n");
         const ObjFile file = load_obj(
             folder.write("mesh.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"));
         REQUIRE(file.materials.size() == 2);
@@ -237,7 +239,7 @@ TEST_SUITE("unit") {
         const auto lamp = std::get<Emissive>(file.materials[1].material);
         CHECK(lamp.radiance == Rgb(1.0f));
         CHECK(texture(lamp.radiance_texture).file == folder / "f.png");
-        CHECK(file.materials[1].maps.opacity.constant()); // lamps are whole
+        CHECK(file.materials[1].maps.opacity.constant()); // emitters have no alpha mask
     }
 
     TEST_CASE("Material slots follow usemtl, in order of first use") {

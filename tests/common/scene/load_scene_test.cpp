@@ -1,4 +1,4 @@
-// Scene files: what is read, and what is refused with which message.
+// These tests check which scene files are read and which are rejected with which message.
 #include "common/scene/scene.h"
 
 #include "tests/support/errors.h"
@@ -15,12 +15,12 @@ using duet::test::ScratchFolder;
 
 namespace {
 
-/// A scene of one sphere, in which each part can be replaced.
+/// Describes a scene of one sphere in which each section can be replaced.
 struct Parts {
     std::string camera = R"({"eye": [0, 0, 5], "look_at": [0, 0, 0]})";
     std::string materials = R"({"m": {"type": "diffuse"}})";
     std::string objects = R"([{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"}])";
-    std::string more{}; ///< further members, each with a comma before it
+    std::string more{}; ///< further members, each preceded by a comma
     std::string text() const {
         return R"({"camera": )" + camera + R"(, "materials": )" + materials + R"(, "objects": )" + objects + more + "}";
     }
@@ -105,7 +105,7 @@ TEST_SUITE("unit") {
         REQUIRE(scene.objects.size() == 4);
         CHECK(scene.objects[0].name == "floor");
         CHECK(scene.objects[1].name == "sphere-1");
-        CHECK(scene.objects[2].identity); // baked
+        CHECK(scene.objects[2].identity); // the transform was baked
         CHECK(std::get<QuadList>(scene.shapes[2]).quads[0].corner == Vec3(-1, 0, -4));
         REQUIRE(scene.lights.size() == 4);
         CHECK(scene.first_surface_light == 3);

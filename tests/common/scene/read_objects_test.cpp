@@ -1,4 +1,4 @@
-// Groups, instances and transforms: what becomes of them when the scene is flattened.
+// These tests check how groups, instances and transforms are flattened.
 #include "common/scene/scene.h"
 
 #include "tests/support/errors.h"
@@ -31,7 +31,7 @@ std::vector<std::string> names(const Scene& scene) {
     return list;
 }
 
-/// Where an object's sphere centre stands at a time.
+/// Returns the center of an object's sphere at a time.
 Vec3 center(const Scene& scene, std::size_t object, float time = 0) {
     const Object& o = scene.objects[object];
     return transform_point(object_transform(o, time).to_world, std::get<Sphere>(scene.shapes[o.shape]).center);
@@ -117,7 +117,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    /// Groups g0 … g(levels − 1), each of two instances of the next; the last holds `leaf`.
+    /// Returns groups g0 to g(levels − 1), each with two instances of the next. The last one holds `leaf`.
     std::string doubling(int levels, const std::string& leaf) {
         std::string objects = "[";
         for (int i = 0; i < levels; ++i) {
@@ -132,7 +132,7 @@ TEST_SUITE("unit") {
     TEST_CASE("Doubling groups are expanded as far as is reasonable, and no farther") {
         CHECK(load(doubling(11, kBall)).objects.size() == 1024);
         CHECK(says(refusal(doubling(30, "")),
-                   "expand to more than 10000000 objects")); // also where nothing is shown in the end
+                   "expand to more than 10000000 objects")); // also if nothing is visible in the end
         CHECK(says(refusal(doubling(100, "")), "nested more than 64 deep"));
     }
 

@@ -1,4 +1,5 @@
-// scene.schema.json says what the reader does: the same keys, and the same verdict on good and bad files.
+// These tests check that scene.schema.json agrees with the reader: the same keys, and the same verdict on valid and
+// invalid files.
 #include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 #include "common/scene/json/scene_keys.h"
@@ -28,7 +29,7 @@ bool same(const JsonNode& a, const JsonNode& b) {
     return a.kind == b.kind && a.number == b.number && a.text == b.text && a.boolean == b.boolean;
 }
 
-/// As much of JSON Schema (draft 2020-12) as scene.schema.json uses; any other keyword fails the test.
+/// Implements the subset of JSON Schema (draft 2020-12) that scene.schema.json uses. Any other keyword fails the test.
 class Validator {
 public:
     explicit Validator(const JsonNode& schema) : root_(schema) {}
@@ -113,7 +114,7 @@ std::vector<std::string> sorted(std::vector<std::string> list) {
     return list;
 }
 
-/// Collects every definition with fixed keys, with the keys it requires and those it allows.
+/// Holds the required and the allowed keys of a definition with fixed keys.
 struct Definition {
     std::string name;
     std::vector<std::string> required, allowed;
@@ -135,7 +136,7 @@ std::vector<Definition> definitions(const JsonNode& root) {
     return list;
 }
 
-/// A small scene with one part replaced.
+/// Returns a small scene with one section replaced.
 std::string scene(const std::string& camera, const std::string& materials, const std::string& objects,
                   const std::string& more = "") {
     return R"({"camera": )" + camera + R"(, "materials": )" + materials + R"(, "objects": )" + objects + more + "}";
@@ -182,8 +183,8 @@ TEST_SUITE("unit") {
             ++scenes;
             CHECK(Validator(root).accepts(read(entry.path())));
             const std::string error = error_of([&] { load_scene(entry.path()); });
-            // Files too big to commit are made by the target `models`; where only the tests were built they may be
-            // missing.
+            // The target `models` generates files that are too big to commit. They may be missing if only the tests
+            // were built.
             if (error.find("/generated/") != std::string::npos && error.find("no such file") != std::string::npos)
                 MESSAGE(error);
             else
@@ -228,7 +229,7 @@ TEST_SUITE("unit") {
             more(R"("environment": {"type": "constant", "radiance": 0})"),
             more(R"("environment": {"type": "sky", "down": 1, "up": [0, 0, 1e12]})"),
         };
-        // What a schema cannot say (unknown names, singular transforms, missing files …) is tested with the readers.
+        // The reader tests cover what a schema cannot express (unknown names, singular transforms, missing files).
         const std::string bad[] = {
             "[]",
             "7",

@@ -6,8 +6,8 @@ using namespace duet;
 
 namespace {
 
-/// A strip of two unit squares, hinged along the y axis, bent by an angle; vertices on the hinge are shared, or doubled
-/// as at a seam.
+/// Returns two unit squares that share an edge on the y axis and meet at an angle. The vertices on that edge are
+/// shared, or duplicated as at a seam.
 Mesh bent_strip(double degrees, bool seam) {
     const float c = static_cast<float>(std::cos(radians(degrees))), s = static_cast<float>(std::sin(radians(degrees)));
     Mesh mesh;
@@ -53,12 +53,12 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("Weights are angles: a side cut in two does not pull the normal of a pyramid's tip") {
-        // Corner of a cube flattened to 54.7 degrees between its faces is above the crease angle; take a low pyramid
-        // instead.
+        // A cube's corner flattened to 54.7 degrees between its faces is above the crease angle, so this test takes a
+        // low pyramid.
         Mesh mesh;
         mesh.positions = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 0.3f}};
         mesh.triangles = {{4, 0, 1}, {4, 1, 2}, {4, 2, 3}, {4, 3, 0}};
-        mesh.positions.push_back({0, 1, 0}); // one side is cut in two
+        mesh.positions.push_back({0, 1, 0}); // one side is split in two
         mesh.triangles[0] = {4, 5, 1};
         mesh.triangles.push_back({4, 0, 5});
         add_smooth_normals(mesh);
@@ -98,7 +98,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Edges of three triangles and triangles turned over are not smoothed across") {
         Mesh mesh = bent_strip(30, false);
-        mesh.triangles[2] = {1, 5, 4}; // turned over
+        mesh.triangles[2] = {1, 5, 4}; // reversed winding
         mesh.triangles[3] = {1, 2, 5};
         add_smooth_normals(mesh);
         CHECK(normal_at(mesh, 0, 1) == Vec3(0, 0, 1));

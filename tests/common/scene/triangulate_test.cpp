@@ -1,4 +1,5 @@
-// Polygons into triangles: the triangles cover the polygon exactly, at any scale, offset and inclination.
+// These tests triangulate polygons. The triangles must cover the polygon exactly, at any scale, offset and
+// orientation.
 #include "common/scene/obj/triangulate.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +15,7 @@ namespace {
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 using Polygon = std::vector<Vec2d>;
 
-/// The polygon in a plane of space, turned, scaled and moved.
+/// Returns the polygon in a plane of 3D space, rotated, scaled and translated.
 std::vector<Vec3> placed(const Polygon& polygon, double scale, double offset, int plane) {
     const Vec3d axes[3][2] = {{{1, 0, 0}, {0, 1, 0}}, {{0, 0, -1}, {0.6, 0.8, 0}}, {{0.48, 0.6, 0.64}, {-0.8, 0.6, 0}}};
     std::vector<Vec3> points;
@@ -24,8 +25,8 @@ std::vector<Vec3> placed(const Polygon& polygon, double scale, double offset, in
     return points;
 }
 
-/// Checks count, indices, equal orientation and sum of areas, and that inner edges are shared by two triangles in
-/// opposite directions.
+/// Checks the triangle count, the indices, equal orientation and the sum of areas. Each inner edge must be shared by
+/// two triangles in opposite directions.
 void check_cover(const std::vector<Vec3>& polygon, const Triangles& triangles) {
     REQUIRE(triangles.size() == polygon.size() - 2);
     const Vec3d normal = newell_normal(polygon);
@@ -52,7 +53,7 @@ void check_cover(const std::vector<Vec3>& polygon, const Triangles& triangles) {
 
 void check_everywhere(const Polygon& polygon) {
     for (const double scale : {1e-6, 1.0, 1e6})
-        for (const double offset : {0.0, 1000.0}) // in sizes of the polygon: float keeps 4 digits of its shape
+        for (const double offset : {0.0, 1000.0}) // in units of the polygon's size: float leaves 4 digits of its shape
             for (int plane = 0; plane < 3; ++plane)
                 for (const bool reversed : {false, true}) {
                     CAPTURE(scale);
@@ -134,7 +135,7 @@ TEST_SUITE("unit") {
     TEST_CASE("Corners on a straight side, and a hole joined by a bridge") {
         check_everywhere({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 3}, {2, 3}, {0, 3}});
         Triangles triangles;
-        // Outer square, bridge to the inner one (run the other way round), and back.
+        // The polygon runs along the outer square, over a bridge to the inner square in reverse order, and back.
         const std::vector<Vec3> ring =
             placed({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}, 1, 0, 1);
         REQUIRE(triangulate(ring, triangles));
@@ -167,11 +168,11 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Polygons that cross themselves or have no area still give n - 2 triangles of their corners") {
         const std::vector<std::vector<Vec3>> polygons = {
-            placed({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 1, 0, 0),                 // bow tie
+            placed({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 1, 0, 0),                 // a bow tie
             placed({{0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}}, 1, 0, 0),         // a point
             placed({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}, 1, 0, 0), // a line
             placed({{1, 0}, {-0.8, 0.6}, {0.3, -0.95}, {0.3, 0.95}, {-0.8, -0.6}}, 1, 0,
-                   0), // a pentagram: winds twice, turns left only
+                   0), // a pentagram: it winds twice and turns only left
             {Vec3(1e18f, 0, 0), Vec3(-1e18f, 0, 0), Vec3(0, 1e18f, 1), Vec3(0, 1e-18f, 1e18f), Vec3(1, 2, 3)},
         };
         for (const std::vector<Vec3>& polygon : polygons) {

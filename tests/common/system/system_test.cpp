@@ -42,7 +42,7 @@ TEST_SUITE("unit") {
                                     }),
                         Error);
         CHECK_FALSE(std::filesystem::exists(folder / "b.txt"));
-        CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1); // nothing left beside
+        CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1); // no temporary file remains
         CHECK_THROWS_AS(write_file(folder / "no/such/folder.txt", "x"), Error);
         CHECK_THROWS_AS(read_file(folder / "missing"), Error);
         CHECK_THROWS_AS(read_file(folder), Error);

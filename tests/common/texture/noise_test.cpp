@@ -18,7 +18,7 @@ Vec3d random_point(std::mt19937& random, double size) {
 
 double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-// The gradient at p by central differences.
+// Returns the gradient at p by central differences.
 Vec3d slope(Vec3d p, std::uint32_t seed = 0) {
     constexpr double h = 1e-5;
     const auto along = [&](Vec3d axis) {
@@ -39,11 +39,11 @@ TEST_SUITE("unit") {
             const Vec3d g = slope(p) * 1.0363538112118;
             const Vec3d rounded{std::round(g.x), std::round(g.y), std::round(g.z)};
             CHECK(largest(g - rounded) < 1e-6);
-            CHECK(dot(rounded, rounded) == 2); // (±1, ±1, 0) and its turns
+            CHECK(dot(rounded, rounded) == 2); // (±1, ±1, 0) and its permutations
             ++seen[static_cast<std::size_t>((rounded.x + 1) * 9 + (rounded.y + 1) * 3 + rounded.z + 1)];
         }
-        // Each as often as the others: 2000/12 = 167 ± 12.4 (one standard deviation). 6.5 of them: odds of a false
-        // alarm 1e-9.
+        // All 12 must be equally frequent: 2000/12 = 167 with a standard deviation of 12.4. The bound is 6.5 standard
+        // deviations, so a false alarm has odds of 1e-9.
         CHECK(std::count_if(seen.begin(), seen.end(), [](int n) { return n > 0; }) == 12);
         for (const int n : seen)
             if (n > 0) CHECK(std::abs(n - 2000.0 / 12) < 6.5 * 12.4);
@@ -68,7 +68,7 @@ TEST_SUITE("unit") {
         std::mt19937 random(3);
         for (int i = 0; i < 3000; ++i) {
             Vec3d p = random_point(random, 100);
-            if (i % 2 == 0) p[static_cast<std::size_t>(i / 2 % 3)] = std::floor(p.x); // on a border
+            if (i % 2 == 0) p[static_cast<std::size_t>(i / 2 % 3)] = std::floor(p.x); // on a cell boundary
             const Vec3d step = random_point(random, 1e-7);
             CHECK(std::abs(gradient_noise(p + step) - gradient_noise(p - step)) < 1e-6);
             CHECK(largest(slope(p + step * 100.0) - slope(p - step * 100.0)) < 1e-3);
@@ -116,8 +116,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
     TEST_CASE("noise has mean 0, cell by cell independent") {
-        // One point in each of many cells: values are independent across cells that share no corner (every other one),
-        // so |mean| < 5 standard errors fails by chance once in 1.7 million.
+        // Take one point in each of many cells. Cells that share no corner (every other one) are independent, so
+        // |mean| < 5 standard errors fails by chance once in 1.7 million.
         std::mt19937 random(6);
         std::uniform_real_distribution<double> place(0, 1);
         double sum = 0, sum_of_squares = 0, fractal_sum = 0, fractal_squares = 0;
@@ -130,7 +130,7 @@ TEST_SUITE("statistical") {
                     const double n = gradient_noise({2 * i + x, 2 * j + y, 2 * k + z});
                     sum += n;
                     sum_of_squares += n * n;
-                    // Lattices of shifted octaves overlap: points 4 apart share no corner of any.
+                    // The lattices of shifted octaves overlap. Points 4 apart share no lattice corner in any octave.
                     const double f = fractal_noise({4 * i + x, 4 * j + y, 4 * k + z}, 16);
                     fractal_sum += f;
                     fractal_squares += f * f;
@@ -139,8 +139,8 @@ TEST_SUITE("statistical") {
         constexpr double kCount = double(kSide) * kSide * kSide;
         CHECK(std::abs(sum) / kCount < 5 * std::sqrt(sum_of_squares) / kCount);
         CHECK(std::abs(fractal_sum) / kCount < 5 * std::sqrt(fractal_squares) / kCount);
-        // What NoiseTexture clamps: less than one point in 1,000 (measured: 0.14 in 1,000, so 9 here; 64 are out of
-        // reach).
+        // NoiseTexture clamps values beyond the range: fewer than 1 in 1,000 (measured 0.14 in 1,000, so 9 expected
+        // here and 64 practically impossible).
         CHECK(beyond < kCount / 1000);
     }
 }

@@ -1,4 +1,4 @@
-// Filtered look-ups: the sizes of an image, and which of their texels a footprint takes in.
+// These tests check filtered texture lookups: the mip sizes of an image and which texels a footprint covers.
 #include "common/texture/probe_line.h"
 #include "common/texture/pyramid.h"
 #include "common/texture/texture.h"
@@ -20,7 +20,7 @@ ImageRgb random_image(int width, int height, unsigned seed) {
     return image;
 }
 
-/// The mean over [x0, x1) × [y0, y1), in pixels.
+/// Returns the mean over [x0, x1) × [y0, y1), in pixels.
 double area_mean(const ImageRgb& image, double x0, double x1, double y0, double y1) {
     double sum = 0;
     for (int y = 0; y < image.height(); ++y)
@@ -32,7 +32,7 @@ double area_mean(const ImageRgb& image, double x0, double x1, double y0, double 
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-/// The covariance of a probe line's filter, in texels: of the probes' places, and of each by itself.
+/// Holds the covariance of a probe line's filter in texels: that of the probe positions plus that of a single probe.
 struct Covariance {
     double xx, xy, yy;
 };
@@ -59,7 +59,8 @@ TEST_SUITE("unit") {
                 for (int y = 0; y < half.height(); ++y)
                     for (int x = 0; x < half.width(); ++x)
                         CHECK(static_cast<double>(half(x, y).g) ==
-                              doctest::Approx(area_mean(image, x * sx, (x + 1) * sx, y * sy, (y + 1) * sy)).epsilon(1e-6));
+                              doctest::Approx(area_mean(image, x * sx, (x + 1) * sx, y * sy, (y + 1) * sy))
+                                  .epsilon(1e-6));
             }
     }
 
@@ -68,7 +69,8 @@ TEST_SUITE("unit") {
         const std::vector<ImageRgb> levels = smaller_versions(image);
         REQUIRE(levels.size() == 6); // 50, 25, 12, 6, 3, 1
         REQUIRE(levels.back().size() == 1);
-        CHECK(static_cast<double>(levels.back()[0].g) == doctest::Approx(area_mean(image, 0, 100, 0, 37)).epsilon(1e-5));
+        CHECK(static_cast<double>(levels.back()[0].g) ==
+              doctest::Approx(area_mean(image, 0, 100, 0, 37)).epsilon(1e-5));
         CHECK(smaller_versions(ImageRgb(1, 1)).empty());
     }
 
@@ -80,14 +82,16 @@ TEST_SUITE("unit") {
             const Vec2d dx{scale * uniform(random), scale * uniform(random)};
             const Vec2d dy{scale * uniform(random), scale * uniform(random)};
             const double area = std::abs(dx.x * dy.y - dx.y * dy.x);
-            const double length2 = dx.x * dx.x + dx.y * dx.y + dy.x * dy.x + dy.y * dy.y; // the trace: about the longer axis
+            // The trace is approximately the squared longer axis.
+            const double length2 = dx.x * dx.x + dx.y * dx.y + dy.x * dy.x + dy.y * dy.y;
             const ProbeLine line = probe_line(Vec2(dx), Vec2(dy), kMaxProbes);
             REQUIRE(line.count >= 1);
             REQUIRE(line.count <= kMaxProbes);
-            // Where the box is wider than a probe's least width, and not longer than all of them reach.
+            // Test only footprints wider than a probe's minimum width and not longer than the maximum number of
+            // probes covers.
             if (area * area / length2 < 3.1 || length2 / area > kMaxProbes - 1) continue;
             const Covariance c = covariance(line);
-            const double tolerance = 1e-5 * length2 / 12; // of float
+            const double tolerance = 1e-5 * length2 / 12; // float rounding
             CHECK(std::abs(c.xx - (dx.x * dx.x + dy.x * dy.x) / 12) < tolerance);
             CHECK(std::abs(c.yy - (dx.y * dx.y + dy.y * dy.y) / 12) < tolerance);
             CHECK(std::abs(c.xy - (dx.x * dx.y + dy.x * dy.y) / 12) < tolerance);
@@ -107,8 +111,8 @@ TEST_SUITE("unit") {
             CHECK((std::isfinite(line.step.x) && std::isfinite(line.step.y)));
         }
         CHECK(probes({1e8f, 0}, {0, 1}).count <= kMaxProbes);
-        CHECK(probes({40, 0}, {0, 4}, 1).count == 1); // trilinear
-        CHECK(probes({40, 0}, {0, 4}, 1).level == 4); // by the length
+        CHECK(probes({40, 0}, {0, 4}, 1).count == 1); // a single trilinear lookup
+        CHECK(probes({40, 0}, {0, 4}, 1).level == 4); // the level follows the longer axis
     }
 
     TEST_CASE("filtered look-ups: constants stay, nothing shows at the seam, wide footprints give the mean") {

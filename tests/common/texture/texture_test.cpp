@@ -11,7 +11,7 @@ using namespace duet;
 
 namespace {
 
-// A different colour in each texel: (column, row from the bottom, 1).
+// Each texel has a different color: (column, row from the bottom, 1).
 ImageRgb numbered_image(int width, int height) {
     ImageRgb image(width, height);
     for (int y = 0; y < height; ++y)
@@ -26,7 +26,8 @@ Rgb look_up(const TextureSet& set, Vec2 uv) {
 }
 
 Rgb look_up(const ImageRgb& image, bool bilinear, Vec2 uv, Vec2 scale = {1, 1}) {
-    return look_up({{ImageTexture{0, scale, bilinear ? TextureFilter::kBilinear : TextureFilter::kNearest}}, {image}}, uv);
+    return look_up({{ImageTexture{0, scale, bilinear ? TextureFilter::kBilinear : TextureFilter::kNearest}}, {image}},
+                   uv);
 }
 
 Rgb at_uv(const Texture& texture, Vec2 uv) {
@@ -76,14 +77,15 @@ TEST_SUITE("unit") {
     TEST_CASE("image: bilinear interpolates between centres, and across the seam") {
         const ImageRgb image = numbered_image(8, 4);
         CHECK(look_up(image, true, {3.25f / 8, 2.0f / 4}) == Rgb(2.75f, 1.5f, 1));
-        // Between the last column and the first: halfway at the border, on both sides, and in each period.
+        // Between the last column and the first, the value is their average at the border, on both sides and in each
+        // period.
         for (const float u : {-2.0f, -1.0f, 0.0f, 1.0f, 5.0f})
             CHECK(look_up(image, true, {u, 0.625f}) == Rgb(3.5f, 2, 1));
         for (const float v : {-2.0f, -1.0f, 0.0f, 1.0f, 5.0f})
             CHECK(look_up(image, true, {0.3125f, v}) == Rgb(2, 1.5f, 1));
         CHECK(look_up(image, true, {1.0f / 32, 0.125f}) == Rgb(0.25f * 7, 0, 1));
         CHECK(look_up(image, true, {-1.0f / 32, 0.125f}) == Rgb(0.75f * 7, 0, 1));
-        // Just beside a border: next to the border's value, not a period away from it.
+        // Just beside a border, the value must be close to the border's value, not one period off.
         for (const float u : {-1e-9f, 1e-9f, -1e-30f, std::nextafter(1.0f, 0.0f), std::nextafter(1.0f, 2.0f)})
             CHECK(look_up(image, true, {u, 0.625f}).r == doctest::Approx(3.5f).epsilon(1e-5));
         CHECK(look_up(image, false, {-1e-9f, 0.1f}).r == 7.0f);
@@ -95,7 +97,7 @@ TEST_SUITE("unit") {
         const TextureSet set{{ImageTexture{0, {1, 1}, TextureFilter::kBilinear}}, {numbered_image(kWidth, kHeight)}};
         std::mt19937 random(17);
         std::uniform_real_distribution<float> uniform(-1, 1);
-        double worst = 0; // in periods, each error apart
+        double worst = 0; // in periods, over each error separately
         for (int i = 0; i < 20000; ++i) {
             const Vec2 uv{uniform(random), uniform(random)};
             const Rgb found = look_up(set, uv);
@@ -107,7 +109,7 @@ TEST_SUITE("unit") {
             worst = std::max({worst, error(uv.x, found.r, kWidth), error(uv.y, found.g, kHeight)});
         }
         CHECK(worst < 0x1p-23);
-        CHECK(worst > 0x1p-26); // it is float
+        CHECK(worst > 0x1p-26); // the arithmetic is in float
     }
 
     TEST_CASE("image: scale repeats the picture") {
@@ -182,7 +184,7 @@ TEST_SUITE("unit") {
                     least = std::min(least, colour.r);
                     most = std::max(most, colour.r);
                 }
-                CHECK(least < 0.3f); // most of the range is used
+                CHECK(least < 0.3f); // most of the range is covered
                 CHECK(most > 0.7f);
                 for (const float x : kFar)
                     for (const float y : kFar) check(at_object(noise, {x, y, x}));

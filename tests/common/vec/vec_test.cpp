@@ -62,7 +62,7 @@ TEST_SUITE("unit") {
             const Vec3d there = transform_point(m, Vec3d(1, 2, 3));
             CHECK(length(transform_point(inverse_affine(m), there) - Vec3d(1, 2, 3)) < 1e-9);
             const Vec3d p(u(engine), u(engine), u(engine)), q(u(engine), u(engine), u(engine));
-            const Vec3d n = cross(p, q); // stays perpendicular to both when it is taken along as a normal
+            const Vec3d n = cross(p, q); // remains perpendicular to both when it is transformed as a normal
             const Vec3d image = transform_normal(inverse_affine(m), n);
             CHECK(dot(image, transform_vector(m, p)) == doctest::Approx(0).epsilon(1e-9));
             CHECK(dot(image, transform_vector(m, q)) == doctest::Approx(0).epsilon(1e-9));

@@ -41,7 +41,7 @@ BenchOptions small_bench(const ScratchFolder& scratch) {
     return options;
 }
 
-/// A contender of constant error: the reference plus normal noise and a bias.
+/// Returns a contender with a constant error: the reference plus normal noise and a bias.
 Contender synthetic(const std::string& name, double bias, double seconds) {
     return {name, "", "", {1, 4}, [=](int spp, std::uint64_t seed, Control&) {
                 std::mt19937_64 random(seed * 1000 + static_cast<std::uint64_t>(spp));
@@ -95,7 +95,8 @@ TEST_SUITE("unit") {
             CHECK_THROWS_AS(parse_excluded_rectangle(bad), Error);
         }
         CHECK_THROWS_AS(counted_pixels({parse_excluded_rectangle("1,0,5,2")}, 4, 3), Error);
-        CHECK_THROWS_AS(counted_pixels({parse_excluded_rectangle("0,0,1,1")}, 4, 3), Error); // all of it
+        // The rectangle covers all pixels.
+        CHECK_THROWS_AS(counted_pixels({parse_excluded_rectangle("0,0,1,1")}, 4, 3), Error);
     }
 
     TEST_CASE("errors are error_metrics' own, and rectangles are left out") {
@@ -126,7 +127,7 @@ TEST_SUITE("unit") {
         };
         const std::vector<Measurement> rows = measured({good, synthetic("biased", 0.1, 0.02)});
         REQUIRE(rows.size() == 4);
-        REQUIRE(calls.size() == 1 + 2 * 6); // the first warms up
+        REQUIRE(calls.size() == 1 + 2 * 6); // the first call is a warm-up
         int swapped = 0;
         for (std::size_t round = 0; round < 6; ++round) {
             CHECK(calls[1 + 2 * round].second == round + 1);
@@ -135,7 +136,7 @@ TEST_SUITE("unit") {
         }
         CHECK(swapped > 0);
         CHECK(swapped < 6);
-        // 6 × 3072 numbers: the mean of squares is known to about 1 %.
+        // The mean of squares is over 6 × 3072 values, so its relative standard error is about 1 %.
         CHECK(rows[0].mse.value == doctest::Approx(0.01).epsilon(0.05));
         CHECK(rows[1].mse.value == doctest::Approx(0.0025).epsilon(0.05));
         CHECK(rows[2].mse.value == doctest::Approx(0.02).epsilon(0.05));
@@ -152,7 +153,7 @@ TEST_SUITE("unit") {
         std::vector<Measurement> rows = measured({synthetic("us", 0, 0.1)});
         const double own = rows[0].efficiency.relative_error, value = rows[0].efficiency.value;
         const double pace = std::hypot(std::log(1.15), std::log(2.0)) / 2;
-        widen_efficiency(rows, 0.15, 0.5); // half of the processors' time was someone else's
+        widen_efficiency(rows, 0.15, 0.5); // other processes used half of the CPU time
         CHECK(rows[0].efficiency.value == value);
         CHECK(rows[0].relmse_efficiency.value == doctest::Approx(1 / (rows[0].relmse.value * rows[0].seconds.value)));
         CHECK(rows[0].relmse_efficiency.relative_error ==
@@ -172,12 +173,13 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("errors at equal time: between the measurements, over the peer's, nothing extrapolated") {
-        // Independent samples: the error is inversely proportional to time, on a straight line of slope −1.
+        // The samples are independent, so the error is inversely proportional to time: a line of slope −1 in log-log
+        // scale.
         std::vector<Measurement> rows = measured({synthetic("us", 0, 0.1), synthetic("p", 0, 0.2)});
         const auto table = at_equal_times(rows, {0.2, 0.3, 9}, "p");
         REQUIRE(table.size() == 6);
         REQUIRE(table[0].mse);
-        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // 2 samples' worth
+        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // that of 2 samples
         CHECK(table[0].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->low() < 0.5);
@@ -203,7 +205,7 @@ TEST_SUITE("unit") {
         };
         const BaselineComparison equal = against({synthetic("a", 0, 0.01), synthetic("b", 0, 0.011)});
         CHECK(equal.rows.size() == 4);
-        CHECK_FALSE(equal.flagged()); // 10 % slower is within the machine's drift
+        CHECK_FALSE(equal.flagged()); // 10 % slower is within the drift of the CPU's speed
         const BaselineComparison slower = against({synthetic("a", 0, 0.013), synthetic("b", 0, 0.005)});
         CHECK(slower.flagged());
         CHECK(slower.rows[0].slower);
@@ -215,14 +217,14 @@ TEST_SUITE("unit") {
         CHECK_FALSE(worse.rows[0].slower);
         CHECK(worse.unmatched.size() == 2);
 
-        // A busy machine explains twice the time, not three times.
+        // A busy CPU explains a factor of two in time, but not of three.
         for (const auto& [seconds, expected] : {std::pair(0.02, false), std::pair(0.03, true)}) {
             SceneResult busy = result_of(measured({synthetic("a", 0, seconds)}));
             busy.processor_share = 0.5;
             CHECK(compare_with_baseline({busy}, report_of(then), 0.15).flagged() == expected);
         }
 
-        CHECK_THROWS_AS(against({synthetic("new", 0, 0.01)}), Error); // a check of nothing
+        CHECK_THROWS_AS(against({synthetic("new", 0, 0.01)}), Error); // the check would cover nothing
         CHECK_NOTHROW(check_baseline(report_of(then), {64, 2, 0}));
         CHECK_THROWS_AS(check_baseline(report_of(then), {64, 4, 0}), Error);
         CHECK_THROWS_AS(check_baseline(report_of(then), {64, 2, 512}), Error);
@@ -243,7 +245,7 @@ TEST_SUITE("unit") {
             else
                 lines.back() += c;
         }
-        REQUIRE(lines.size() == 4); // header, two rows, the end
+        REQUIRE(lines.size() == 4); // header, two rows, end of file
         CHECK(lines[1].starts_with("\"a, \"\"b\"\".json\",32,32,64,2,a,,1,6,0.01,"));
         const auto commas = [](const std::string& line) {
             std::size_t count = 0;
@@ -272,9 +274,9 @@ TEST_SUITE("unit") {
             CHECK(row["trials"].size() == 3);
             for (const char* const key : {"mse", "relmse", "seconds", "efficiency", "relmse_efficiency"})
                 CHECK(row[key]["low"] <= row[key]["high"]);
-            CHECK(row["rest"]["mse"]["value"] < row["mse"]["value"]); // the lamp's edge is left out
+            CHECK(row["rest"]["mse"]["value"] < row["mse"]["value"]); // the light's edge is excluded
         }
-        // The figures do not depend on threads: seeds and pictures are the same.
+        // The metrics do not depend on the thread count, because seeds and images are the same.
         options.choice.threads = 1;
         options.folder = scratch / "again";
         REQUIRE(bench(options) == 0);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scene of every kind of file: mesh, MTL, its picture, a texture, an environment.
+/// Writes a scene that uses every kind of file: a mesh, an MTL with its image, a texture, an environment.
 fs::path write_scene(const fs::path& folder) {
     fs::create_directories(folder);
     for (const char* const picture : {"kd.ppm", "texture.ppm", "sky.pfm"})
@@ -38,8 +38,8 @@ fs::path write_scene(const fs::path& folder) {
     return folder / "scene.json";
 }
 
-/// Independent normal noise of known variance about a mean, the variance estimated with one degree of freedom as Film
-/// does.
+/// Returns independent normal noise of known variance around a mean. The variance is estimated with one degree of
+/// freedom, as Film does.
 Reference noisy(int size, double mean, double deviation, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, deviation);
@@ -107,7 +107,7 @@ TEST_SUITE("unit") {
         others[7].program = "Blender 3.4.1";
         for (const ReferenceKey& other : others) {
             CHECK_FALSE(cache.find("s", other));
-            // Even where the file's name says otherwise.
+            // The cache rejects the file even if its name has the other key.
             fs::copy_file(cache.path("s", key), cache.path("s", other));
             CHECK_FALSE(cache.find("s", other));
         }
@@ -152,7 +152,7 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Each check calls a false alarm once in 1000 times; that more than 3 of 200 do has odds of 5e-5.
+    // Each check gives a false alarm once in 1000 times. More than 3 alarms in 200 checks have odds of 5e-5.
     TEST_CASE("equal means are consistent") {
         int alarms = 0;
         for (unsigned seed = 0; seed < 200; ++seed)
@@ -160,7 +160,7 @@ TEST_SUITE("statistical") {
         CHECK(alarms <= 3);
     }
 
-    // Of 100 biases of the size the check says it finds with 99 % power, fewer than 94 are found with odds of 1e-4.
+    // The check claims to find a bias of this size with 99 % power. Fewer than 94 of 100 found have odds of 1e-4.
     TEST_CASE("a planted bias is found: of the whole, as small as promised, and of one block") {
         int found = 0;
         for (unsigned seed = 0; seed < 100; ++seed) {
@@ -186,7 +186,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("a few fireflies are no evidence: their variance has few degrees of freedom") {
         Reference a = noisy(64, 0.5, 0.01, 7);
         const Reference b = noisy(64, 0.5, 0.01, 8);
-        a.mean(20, 20) = Rgb(50.0f); // one sample of a hundred times the mean in one of the replicates
+        a.mean(20, 20) = Rgb(50.0f); // one replicate contains a sample of a hundred times the mean
         a.variance(20, 20) = Rgb(49.5f * 49.5f);
         CHECK(check_bias(a, b).consistent());
     }

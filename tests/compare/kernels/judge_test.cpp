@@ -11,7 +11,8 @@ using namespace duet::compare;
 
 namespace {
 
-/// Two unit squares of two triangles each, at z = 0 (0, 1) and z = −1 (2, 3), and a copy (4) of triangle 0.
+/// Returns two unit squares of two triangles each, at z = 0 (triangles 0, 1) and z = −1 (2, 3), and a duplicate (4)
+/// of triangle 0.
 Scene squares() {
     Mesh mesh;
     for (const float z : {0.0f, -1.0f})
@@ -72,12 +73,12 @@ TEST_SUITE("unit") {
         const Scene scene = squares();
         const Judge judge(scene);
         const Ray ray = down(0.7f, 0.3f);
-        CHECK(judge.closest(ray, kMiss) == Finding::kWrong);         // lost
-        CHECK(judge.closest(ray, {2, 2}) == Finding::kWrong);        // what lies behind
-        CHECK(judge.closest(ray, {1, 1}) == Finding::kWrong);        // the neighbour, away from the edge
+        CHECK(judge.closest(ray, kMiss) == Finding::kWrong);         // a missed hit
+        CHECK(judge.closest(ray, {2, 2}) == Finding::kWrong);        // a hit behind the nearest one
+        CHECK(judge.closest(ray, {1, 1}) == Finding::kWrong);        // the neighboring triangle, away from the edge
         CHECK(judge.closest(ray, {1.001f, 0}) == Finding::kWrong);   // at the wrong distance
-        CHECK(judge.closest(down(2, 2), {1, 0}) == Finding::kWrong); // beside everything
-        CHECK(judge.closest(ray, {0.5f, 0}) == Finding::kWrong);     // in the air
+        CHECK(judge.closest(down(2, 2), {1, 0}) == Finding::kWrong); // outside all triangles
+        CHECK(judge.closest(ray, {0.5f, 0}) == Finding::kWrong);     // not on a surface
         CHECK(judge.occluded(ray, false) == Finding::kWrong);
         CHECK(judge.occluded(down(2, 2), true) == Finding::kWrong);
         Ray ends = ray;
@@ -120,7 +121,7 @@ TEST_SUITE("unit") {
         CHECK(judge_answers(judge, questions, faulty, 10, 1).wrong == 2);
         CHECK(judge_answers(judge, questions, faulty, 10, 1).rays == 410);
 
-        // The double-precision judge finds no fault with ours.
+        // The double-precision judge must accept all of our hits.
         for (std::size_t i = 0; i < rays.size(); ++i) REQUIRE(judge.closest(rays[i], right[i]) != Finding::kWrong);
         const ShadowRays shadow = shadow_rays(scene, accelerator, rays, 0, 1);
         const Questions in_the_way{shadow.rays, shadow.ends};
@@ -136,7 +137,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("between two triangles of one surface nothing gets through; past an outline it may") {
-        const Scene scene = squares(); // their diagonal, (0, 0) to (1, 1), is an edge within
+        const Scene scene = squares(); // their diagonal, (0, 0) to (1, 1), is an interior edge
         const Judge judge(scene);
         for (const float off : {-0x1p-21f, 0.0f, 0x1p-21f}) {
             const Ray inside = down(0.5f + off, 0.5f);
@@ -153,7 +154,8 @@ TEST_SUITE("unit") {
             CHECK(judge.closest(corner, kMiss) != Finding::kFault);
         }
         Faults faults;
-        for (const Finding finding : {Finding::kRight, Finding::kFault, Finding::kWrong, Finding::kFault, Finding::kEdge})
+        for (const Finding finding :
+             {Finding::kRight, Finding::kFault, Finding::kWrong, Finding::kFault, Finding::kEdge})
             faults.count(finding);
         CHECK(faults.rays == 5);
         CHECK(faults.edge == 2);
@@ -164,17 +166,19 @@ TEST_SUITE("unit") {
         const Scene scene = squares();
         const Judge judge(scene);
         const Ray ray = down(0.7f, 0.3f);
-        const Hit lamp{0, 2, 0, 0, 2}; // of the lower square
-        CHECK(judge.occluded(ray, lamp, true) == Finding::kRight); // by the upper one
+        const Hit lamp{0, 2, 0, 0, 2}; // on the lower square
+        CHECK(judge.occluded(ray, lamp, true) == Finding::kRight); // occluded by the upper square
         CHECK(judge.occluded(ray, lamp, false) == Finding::kWrong);
         Ray below = ray;
         below.origin.z = -0.5f;
         CHECK(judge.occluded(below, Hit{0, 2, 0, 0, 0.5f}, false) == Finding::kRight);
-        CHECK(judge.occluded(below, Hit{0, 3, 0, 0, 0.6f}, false) == Finding::kWrong); // another's, which lies behind
+        // The shadow ray ends at another triangle, which is farther away.
+        CHECK(judge.occluded(below, Hit{0, 3, 0, 0, 0.6f}, false) == Finding::kWrong);
     }
 
     TEST_CASE("instances are judged where they stand") {
-        const Scene scene = make_scene(ball(2), {translation(Vec3(-2, 0, 0)), translation(Vec3(2, 0, 0)) * scaling(Vec3(2, 2, 2))});
+        const Scene scene =
+            make_scene(ball(2), {translation(Vec3(-2, 0, 0)), translation(Vec3(2, 0, 0)) * scaling(Vec3(2, 2, 2))});
         const Judge judge(scene);
         const raytrace::Accelerator accelerator(scene, 1);
         std::vector<Ray> rays;

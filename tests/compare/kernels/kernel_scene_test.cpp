@@ -36,7 +36,8 @@ TEST_SUITE("unit") {
         CHECK(all.triangles.size() == 27 * one.triangles.size());
         CHECK(all.positions.size() == 27 * one.positions.size());
         for (const Vec3& p : all.positions) REQUIRE(max_component(abs(p)) < 2.5f);
-        // A ball of diameter 2 × 0.7, 27 times. Its box is a little narrower than 2, the ball a polyhedron.
+        // The scene has 27 spheres with diameter 2 × 0.7. The mesh's box is slightly narrower than 2, because the
+        // sphere is a polyhedron.
         const double scale = 2.0 * 0.7 / 2.0;
         CHECK(signed_volume(all) == doctest::Approx(27 * signed_volume(ball(1)) * scale * scale * scale).epsilon(0.2));
     }
@@ -50,7 +51,7 @@ TEST_SUITE("unit") {
             CHECK(scene.enclosed);
             CHECK(Box3d{Vec3d(scene.scene->bounds.low), Vec3d(scene.scene->bounds.high)}.contains(scene.camera.eye));
             const std::size_t copies = arrangement == Arrangement::kRoom ? 1 : 27;
-            CHECK(scene.triangle_count() == copies * triangles + 12 + 2); // the room's, and the lamp in it
+            CHECK(scene.triangle_count() == copies * triangles + 12 + 2); // the room and the light in it
             CHECK(scene.closed());
         }
         const auto is_quad = [](const Shape& shape) { return std::holds_alternative<QuadList>(shape); };

@@ -45,13 +45,13 @@ TEST_SUITE("unit") {
         CHECK(range_of({3}).median == 3);
         const Range range = range_of({4, 1, 3, 8});
         CHECK(range.min == 1);
-        CHECK(range.median == 3); // the lower one of the middle two
+        CHECK(range.median == 3); // the lower of the two middle values
         CHECK(range.max == 8);
     }
 
     TEST_CASE("ours runs beside every peer's measurement, and ratios are of neighbours") {
         std::string order;
-        double pace = 1; // the machine grows slower: ratios must not notice much
+        double pace = 1; // the CPU becomes slower, which must hardly affect the ratios
         const auto timed = [&](char name, double seconds) -> Timed {
             return [&order, &pace, name, seconds] {
                 order += name;
@@ -68,7 +68,8 @@ TEST_SUITE("unit") {
         CHECK(found.peers[1].ratio.median == doctest::Approx(0.5).epsilon(0.011));
         CHECK(found.peers[2].ratio.median == doctest::Approx(3).epsilon(0.011));
         for (const Versus& versus : found.peers) CHECK(versus.theirs / versus.ours == versus.ratio.median); // one pair
-        CHECK(interleave(timed('o', 1), {timed('a', 1)}, 10, 0, Control{}).repeats == kLeastForVerdict); // time was up
+        // The time limit was reached.
+        CHECK(interleave(timed('o', 1), {timed('a', 1)}, 10, 0, Control{}).repeats == kLeastForVerdict);
         CHECK(interleave(timed('o', 1), {}, 4, 1e9, Control{}).peers.empty());
     }
 
@@ -122,10 +123,10 @@ TEST_SUITE("unit") {
         REQUIRE_FALSE(leaky.closed());
         const raytrace::Accelerator other(*leaky.scene, 1);
         const auto found = test_watertight(scene, judge, {ours_for(other)}, 100'000, 0, 2, Control{}).kernels.front();
-        CHECK(found.misses > 10); // one of 1280 triangles
+        CHECK(found.misses > 10); // one of 1280 triangles is missing
         CHECK(found.misses < 1000);
         CHECK(found.faults.edge + found.faults.wrong == found.misses);
-        CHECK(found.faults.edge > 0); // at the hole's rim, where the surface goes on
+        CHECK(found.faults.edge > 0); // at the rim of the missing triangle, where the surface continues
     }
 
     TEST_CASE("rooms and instances are watertight, too; a kernel that slips through edges is caught though none escape") {
@@ -137,7 +138,7 @@ TEST_SUITE("unit") {
             REQUIRE(scene.closed());
             const Judge judge(*scene.scene);
             const raytrace::Accelerator accelerator(*scene.scene, 1);
-            // Passes whatever it hits too near to an edge: to what lies behind.
+            // This tracer ignores hits too close to an edge and returns the surface behind them.
             const TracerFor slipping = [&](std::span<const Ray> rays) {
                 return Tracer{"", [&accelerator, rays](std::size_t block, Answer* answers) {
                                   for (Ray ray : block_of(rays, block)) {
@@ -240,14 +241,15 @@ TEST_SUITE("unit") {
             rows[i].work = works[i];
             rows[i].peer_name = "peer";
             rows[i].ratio.median = 2.0 - static_cast<double>(i % 2);
-            rows[i].peer = 1.0 - static_cast<double>(i % 2); // a rate at a better moment of the machine is no better ratio
+            // A higher rate in a faster phase of the CPU does not mean a better ratio.
+            rows[i].peer = 1.0 - static_cast<double>(i % 2);
         }
         mark_best(rows);
         CHECK_FALSE(rows[0].best);
         CHECK(rows[1].best);
         CHECK_FALSE(rows[2].best);
         CHECK(rows[3].best);
-        rows[2].ratio.median = rows[3].ratio.median; // of equals the first
+        rows[2].ratio.median = rows[3].ratio.median; // the first of equal ratios is marked
         mark_best(rows);
         CHECK(rows[2].best);
         CHECK_FALSE(rows[3].best);
@@ -268,7 +270,7 @@ TEST_SUITE("unit") {
             row.ratio = {1, 1, 1};
             row.repeats = 3;
             table.rows.push_back(row);
-            row.peer_name = "another setting"; // differs on fewer rays
+            row.peer_name = "another setting"; // differs for fewer rays
             row.mismatches->tie = 1;
             table.rows.push_back(row);
         }
@@ -285,7 +287,8 @@ TEST_SUITE("unit") {
         const std::string checks = text.substr(text.find("where both differ"));
         CHECK(checks.find("shadow !") < checks.find("camera"));
         CHECK(checks.find("shadow !") < checks.find("bounce"));
-        CHECK(checks.find("another setting") != std::string::npos); // fewer differences, but one unexplained
+        // The other setting has fewer differences, but one is unexplained.
+        CHECK(checks.find("another setting") != std::string::npos);
     }
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -298,7 +301,7 @@ TEST_SUITE("unit") {
         const double before = allocated();
         const raytrace::Accelerator accelerator(*scene.scene, 1);
         const double grown = allocated() - before;
-        // Two arrays may each be rounded up to, and aligned within, large pages.
+        // Each of two arrays may be rounded up to large pages and aligned to them.
         CHECK(grown < 1.02 * static_cast<double>(accelerator.memory_bytes()) + 4 * (2 << 20));
         CHECK(grown > 0.98 * static_cast<double>(accelerator.memory_bytes()));
     }

@@ -14,7 +14,7 @@ using namespace duet::compare;
 
 namespace {
 
-/// A square floor of half-side 100 in the plane y = 0.
+/// Returns a square floor of half side length 100 in the plane y = 0.
 Mesh floor_mesh() {
     Mesh mesh;
     mesh.positions = {{-100, 0, 100}, {100, 0, 100}, {100, 0, -100}, {-100, 0, -100}};
@@ -79,7 +79,8 @@ TEST_SUITE("unit") {
         CHECK(bounce.size() == camera.size()); // a closed room: every camera ray hits
         CHECK(same(bounce, bounce_rays(scene, accelerator, camera, 1, 3)));
         CHECK_FALSE(same(bounce, bounce_rays(scene, accelerator, camera, 2, 1)));
-        const ShadowRays one = shadow_rays(scene, accelerator, camera, 1, 1), three = shadow_rays(scene, accelerator, camera, 1, 3);
+        const ShadowRays one = shadow_rays(scene, accelerator, camera, 1, 1),
+                         three = shadow_rays(scene, accelerator, camera, 1, 3);
         CHECK(same(one.rays, three.rays));
         CHECK(one.ends == three.ends);
     }
@@ -114,11 +115,13 @@ TEST_SUITE("unit") {
             const auto rays = camera_rays(scene.camera, 64, 64, PixelOrder::kRows, 1);
             const auto shadow = shadow_rays(scene, accelerator, rays, 0, 1);
             REQUIRE(shadow.rays.size() > rays.size() / 2);
-            const auto answers = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
+            const auto answers =
+                all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
             std::size_t blocked = 0;
             for (const Answer& a : answers) blocked += a.hit();
             CHECK(blocked == (lid ? answers.size() : 0));
-            for (std::size_t i = 0; i < shadow.rays.size(); ++i) { // each ends on one of the lamp's two triangles, the last
+            // Each shadow ray ends on one of the light's two triangles, which are the last.
+            for (std::size_t i = 0; i < shadow.rays.size(); ++i) {
                 const Ray& ray = shadow.rays[i];
                 const Hit& end = shadow.ends[i];
                 REQUIRE(ray.at(ray.t_max).y == doctest::Approx(3 - 0.02 * 6).epsilon(1e-3));
@@ -133,7 +136,7 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    // Odds of a false alarm: 1e-6 each, two tests, seeds fixed.
+    // A false alarm has odds of 1e-6 in each of the two tests; the seeds are fixed.
     TEST_CASE("bounce rays have density cos θ / π, on the side that the ray came from") {
         for (const double side : {1.0, -1.0}) {
             const KernelScene scene = make_kernel_scene("floor", Arrangement::kAlone, floor_mesh(),
@@ -149,7 +152,7 @@ TEST_SUITE("statistical") {
             for (const Ray& ray : rays) {
                 const Vec3d d(ray.direction);
                 REQUIRE(d.y * side > 0);
-                // sin² θ is uniform where the density is cos θ / π, and φ is.
+                // If the density is cos θ / π, sin² θ and φ are uniformly distributed.
                 const double ring = (d.x * d.x + d.z * d.z) * kRings;
                 const double sector = (0.5 + std::atan2(d.z, d.x) / (2 * kPiDouble)) * kSectors;
                 const int i = std::clamp(static_cast<int>(ring), 0, kRings - 1);

@@ -1,4 +1,4 @@
-// Our pictures against Cycles' of the same scenes. Cases are skipped where Blender is not installed.
+// These tests compare our images with those of Cycles. They are skipped if Blender is not installed.
 #include "compare/peers/cycles.h"
 
 #include "common/system/file.h"
@@ -26,7 +26,7 @@ bool blender_is_installed() {
     return found;
 }
 
-/// The z-test of block means of both renderers' pictures.
+/// Returns the z-test of the block means of both renderers' images.
 BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
     const ScratchFolder scratch;
     const Scene scene = load_scene(path);
@@ -46,7 +46,7 @@ BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
     return check;
 }
 
-/// everything.json without what Cycles has not: noise and motion.
+/// Removes from everything.json what Cycles does not support: noise and motion.
 void make_exportable(json& value, const fs::path& folder) {
     if (value.is_object()) {
         value.erase("transform_end");
@@ -61,7 +61,7 @@ void make_exportable(json& value, const fs::path& folder) {
 
 TEST_SUITE("image") {
 
-    // A false alarm: once in 1000 (BiasCheck::kSignificance), with fixed seeds.
+    // A false alarm has odds of 1 in 1000 (BiasCheck::kSignificance); the seeds are fixed.
     TEST_CASE("the Cornell box: both pictures agree within their noise") {
         if (!blender_is_installed()) return;
         const BiasCheck check = against_cycles(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json", 48, 48, 512);
@@ -69,7 +69,8 @@ TEST_SUITE("image") {
         CHECK(check.detectable < 0.01);
     }
 
-    // All materials, lights, textures but noise, an environment picture, a thin lens, mirrored and instanced meshes.
+    // The scene has all materials and lights, all textures except noise, an environment image, a thin lens, and
+    // mirrored and instanced meshes.
     TEST_CASE("everything that can be exported: both pictures agree within their noise") {
         if (!blender_is_installed()) return;
         const ScratchFolder scratch;
@@ -91,7 +92,7 @@ TEST_SUITE("image") {
         const double few = peer.render({16, 1, false}, control).seconds;
         const double many = peer.render({256, 1, false}, control).seconds;
         CHECK(few > 0);
-        CHECK(many > 4 * few); // 16 times the samples: no fixed cost worth the name is in it
+        CHECK(many > 4 * few); // 16 times the samples: fixed costs are negligible
         const std::atomic<bool> stop{true};
         Control stopped{&stop, {}};
         CHECK(peer.render({1 << 20, 1, false}, stopped).picture.empty());

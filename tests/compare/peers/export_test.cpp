@@ -38,7 +38,7 @@ template <typename T> std::vector<T> numbers(const ScratchFolder& scratch, const
     return values;
 }
 
-/// Each triangle's geometric normal agrees with its corners' normals.
+/// Returns whether each triangle's geometric normal agrees with its vertex normals.
 bool faces_outwards(const TriangleSoup& soup) {
     for (std::size_t t = 0; t < soup.slots.size(); ++t) {
         const auto p = [&](std::size_t k) {
@@ -130,17 +130,19 @@ TEST_SUITE("unit") {
         const std::uint32_t grey = builder.material(Diffuse{});
         builder.add(Sphere{{1, 2, 3}, 0.5f}, grey);
         builder.add(Sphere{{0, 0, 0}, 2}, grey);
-        builder.scene.environment = make_image_environment(ImageRgb(4, 2, Rgb(1.0f)), 2, static_cast<float>(radians(90.0)));
+        builder.scene.environment =
+            make_image_environment(ImageRgb(4, 2, Rgb(1.0f)), 2, static_cast<float>(radians(90.0)));
         ExportNotes notes;
         const json file = exported(scratch, builder.finish(), &notes);
         CHECK(file["meshes"].size() == 1);
         const json& row = file["objects"][0]["matrix"][0];
-        CHECK(row[0].get<double>() > 0.5); // so much larger that its area is the sphere's
+        CHECK(row[0].get<double>() > 0.5); // enlarged, so that its area equals the sphere's
         CHECK(row[0].get<double>() == doctest::Approx(0.5).epsilon(2e-4));
         CHECK(row[3] == 1.0);
         CHECK(file["objects"][1]["mesh"] == 0);
         CHECK(notes.size() == 1);
-        // For the direction w Cycles looks up u = ½ − atan2(y, x)/2π of its turned version; ours adds a quarter.
+        // For direction w, Cycles looks up u = ½ − atan2(y, x)/2π in its rotated coordinates. Our convention adds a
+        // quarter.
         const json& rows = file["environment"]["rows"];
         const Vec3d w = normalize(Vec3d(0.3, 0.2, -0.9));
         const auto turned = [&](std::size_t r) {
@@ -194,7 +196,7 @@ TEST_SUITE("unit") {
                             Mat4(translation(Vec3(1, 0, 0))));
         Scene moving = motion.finish();
         refused(moving, "moves");
-        moving.camera.shutter_close = moving.camera.shutter_open = 0.5; // stands still while the shutter is open
+        moving.camera.shutter_close = moving.camera.shutter_open = 0.5; // static while the shutter is open
         CHECK(exported(scratch, moving)["objects"][0]["matrix"][0][3] == 0.5);
         spot.scene.lights.push_back(SpotLight{{0, 1, 0}, {0, -1, 0}, Rgb(1.0f), 0.5f, -0.5f});
         refused(spot.finish(), "spot");

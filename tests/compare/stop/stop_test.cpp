@@ -1,4 +1,4 @@
-// compare stop: what is made of its trials, and a scene that is measured.
+// These tests check the statistics of compare stop and measure a scene.
 #include "compare/stop/stop.h"
 
 #include "raytrace/render.h"
@@ -47,7 +47,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(result.at_once());
         result.trials.push_back(trial(16, 0.003, 2, 0.002, 8));
         CHECK(result.median_error() == doctest::Approx(0.0025));
-        CHECK(result.at_once()); // half of them ended with the least samples there may be
+        CHECK(result.at_once()); // half of the trials ended with the minimum number of samples
     }
 
     TEST_CASE("mirrors and lamps together make caustics") {

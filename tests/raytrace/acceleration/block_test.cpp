@@ -1,4 +1,5 @@
-// A block's primitives, tested at once, are hit as they are one by one, to the bit; and no hit is overlooked.
+// These tests check that intersecting all primitives of a block at once gives the same hits as intersecting them one
+// by one, bit for bit, and misses none.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_block.h"
 #include "raytrace/acceleration/bvh_spheres.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kScales[] = {1e-6f, 1.0f, 1e6f};
-constexpr float kShifts[] = {0.0f, 1.0f, 1000.0f}; // of the block from the origin, by its scale
+constexpr float kShifts[] = {0.0f, 1.0f, 1000.0f}; // distance of the block from the origin, relative to its scale
 
 bool same(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
 
@@ -33,7 +34,8 @@ Vec3 along_axis(Random& random) {
     return d;
 }
 
-// Corners of a triangle, or of a quad: mostly ordinary, some in a plane of the axes, needles, and without area.
+// Returns the vertices of a triangle or a quad. Most are ordinary; some are in an axis-aligned plane, needles, or
+// without area.
 template <std::size_t kCorners> std::array<Vec3, kCorners> polygon(Random& random, float scale, Vec3 offset) {
     const Vec3 a = offset + random.vector() * scale;
     Vec3 u = random.vector() * scale, v = random.vector() * scale;
@@ -60,8 +62,8 @@ template <std::size_t kCorners> std::array<Vec3, kCorners> polygon(Random& rando
         return {p[0], p[1], p[3]};
 }
 
-// A ray that is hard on the polygon: at its inside, its edges and vertices, a quad's diagonal; along its plane; leaving
-// it; along the axes.
+// Returns a difficult ray: at the polygon's interior, edges and vertices, at a quad's diagonal, in its plane, away
+// from it, or along the axes.
 template <std::size_t kCorners> Ray polygon_ray(Random& random, const std::array<Vec3, kCorners>& p, float scale) {
     const std::size_t i = static_cast<std::size_t>(random.below(kCorners));
     const Vec3 a = p[i], b = p[(i + 1) % kCorners], c = p[(i + 2) % kCorners];
@@ -76,10 +78,10 @@ template <std::size_t kCorners> Ray polygon_ray(Random& random, const std::array
     case 1:
         ray.direction = (random.below(2) != 0 ? a : lerp(a, b, s)) - ray.origin;
         break;
-    case 2: // a quad's diagonal, of every other i
+    case 2: // a quad's diagonal: the one that splits it, or the other one
         ray.direction = lerp(a, c, s) - ray.origin;
         break;
-    case 3: // away from the polygon, or through it and out again
+    case 3: // away from the polygon, or through it and beyond
         ray.origin = inside;
         ray.direction = random.direction();
         break;
@@ -103,7 +105,7 @@ struct Counts {
     int certain = 0, touched = 0, rest = 0, hits = 0, wrong = 0;
 };
 
-// What the block's test says of a lane, with the help of the exact ones where it asks for that.
+// Returns the block test's result for a lane. Where the block test is uncertain, the exact test decides.
 template <std::size_t kCorners>
 std::optional<TriangleHit> said(BlockTest<kCorners> test, const PolygonBlock<kCorners>& block,
                                 const ShearedRay& ray, std::size_t lane, Counts& counts) {
@@ -138,7 +140,7 @@ template <std::size_t kCorners> Counts polygons(float scale, float shift, int tr
             block.set(lane, lane < present ? polygon<kCorners>(random, scale, offset) : absent, 0, 0);
         const auto aimed_at = static_cast<std::size_t>(random.below(static_cast<int>(present)));
         Ray ray = polygon_ray(random, block.corners(aimed_at), scale);
-        if (trial % 3 == 0) // just as far as the hit, which counts
+        if (trial % 3 == 0) // t_max equals the hit's distance, which still counts as a hit
             if (const auto hit = one_by_one(ShearedRay(ray), block.corners(aimed_at))) ray.t_max = hit->t;
         if (trial % 3 == 1) ray.t_max = random.uniform(0, 2) * scale / length(ray.direction);
         const ShearedRay sheared(ray);
@@ -152,7 +154,8 @@ template <std::size_t kCorners> Counts polygons(float scale, float shift, int tr
     return counts;
 }
 
-// Rays at and beside the sphere, from afar, from its surface, its inside and its very centre; tangents.
+// Returns rays at and beside the sphere: from far away, from its surface, from its interior and its exact center, and
+// tangents.
 Ray sphere_ray(Random& random, const Sphere& s) {
     const Vec3 n = random.direction();
     const Vec3 tangent = normalize(cross(n, random.direction()));
@@ -162,7 +165,7 @@ Ray sphere_ray(Random& random, const Sphere& s) {
         ray.origin = s.center + n * (s.radius * std::pow(10.0f, random.uniform(0, 6)));
         ray.direction = normalize_scaled(s.center + random.vector() * (s.radius * 1.5f) - ray.origin);
         break;
-    case 1: // tangent but for roundings
+    case 1: // tangent up to rounding
         ray.direction = tangent;
         ray.origin = s.center + n * s.radius - tangent * (s.radius * random.uniform(0, 100));
         break;
@@ -184,7 +187,7 @@ Ray sphere_ray(Random& random, const Sphere& s) {
         break;
     default:
         ray.origin = s.center + random.vector() * (s.radius * 3);
-        ray.direction = random.vector() * random.uniform(0.01f, 10); // of any length
+        ray.direction = random.vector() * random.uniform(0.01f, 10); // any length
         if (!(max_component(abs(ray.direction)) > 0)) ray.direction = n;
     }
     return ray;
@@ -201,7 +204,7 @@ TEST_SUITE("unit") {
                 CAPTURE(shift);
                 const Counts counts = polygons<Corners::value>(scale, shift, 160000 / static_cast<int>(kBlockSize));
                 CHECK(counts.wrong == 0);
-                // The test is of all that it can say.
+                // The random rays must cover every result of the block test.
                 CHECK(counts.hits > 5000);
                 CHECK(counts.certain > 2000);
                 CHECK(counts.touched > 500);
@@ -210,7 +213,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("few rays are left to the exact tests") {
-        // Random rays and quads, none near the origin.
+        // The rays and quads are random, none near the origin.
         Random random(29);
         int candidates = 0, certain = 0;
         for (int trial = 0; trial < 160000 / static_cast<int>(kBlockSize); ++trial) {
@@ -224,7 +227,7 @@ TEST_SUITE("unit") {
             certain += std::popcount(test.certain());
         }
         CHECK(candidates > 5000);
-        CHECK(candidates - certain < candidates / 10); // needles, as seen from there, for the most part
+        CHECK(candidates - certain < candidates / 10); // mostly needles, as viewed from the origin
     }
 
     TEST_CASE("spheres of a block are hit as one by one, to the bit") {
@@ -274,7 +277,8 @@ TEST_SUITE("unit") {
                 const Vec3 offset = Vec3(1, -0.5f, 0.25f) * (shift * scale);
                 int hits = 0, wrong = 0, misses = 0, left_out = 0;
                 for (int trial = 0; trial < 60000 / static_cast<int>(kRays); ++trial) {
-                    const Sphere sphere{offset + random.vector() * scale, scale * std::pow(10.0f, random.uniform(-4, 2))};
+                    const Sphere sphere{offset + random.vector() * scale,
+                                        scale * std::pow(10.0f, random.uniform(-4, 2))};
                     const Sphere beside{sphere.center + random.vector() * (4 * sphere.radius), sphere.radius};
                     std::array<Ray, kRays> rays;
                     alignas(64) LineLanes<kRays> lines;
@@ -303,7 +307,7 @@ TEST_SUITE("unit") {
                 }
                 CHECK(wrong == 0);
                 CHECK(hits > 5000);
-                CHECK(left_out > misses / 4); // of those whose line misses it
+                CHECK(left_out > misses / 4); // of the rays that miss the sphere
             }
     }
 

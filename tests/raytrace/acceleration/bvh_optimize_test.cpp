@@ -1,4 +1,4 @@
-// Reinsertion and the collapse: never a worse tree.
+// These tests check that reinsertion and collapse never make the tree worse.
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_optimize.h"
 #include "tests/raytrace/acceleration/outlines.h"
@@ -14,7 +14,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-// Long thin triangles in all directions: what spatial splits are for.
+// Returns long thin triangles in all directions, the case that spatial splits are made for.
 Mesh needles(Random& random, int count, float length, float width) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
@@ -25,7 +25,7 @@ Mesh needles(Random& random, int count, float length, float width) {
     return mesh;
 }
 
-// Of an inner node and those below it.
+// Returns the sum of the areas of all inner nodes.
 double inner_areas(const BinaryTree& tree) {
     double sum = 0;
     for (const BinaryNode& node : tree.nodes) sum += node.leaf() ? 0.0 : static_cast<double>(node.box.half_area());
@@ -41,7 +41,7 @@ TEST_SUITE("unit") {
         for (const float scale : {1e-20f, 1.0f, 1e18f}) {
             CAPTURE(scale);
             Outlines outlines;
-            for (int i = 0; i < 20000; ++i) { // small ones among large ones
+            for (int i = 0; i < 20000; ++i) { // small triangles among large ones
                 const float size = scale * (i % 100 == 0 ? 1.0f : 0.02f);
                 const Vec3 p = random.vector() * scale;
                 outlines.add({{p, p + random.vector() * size, p + random.vector() * size}, 3});
@@ -58,8 +58,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("reinsertion leaves a tree as it was where it would become too deep") {
-        // A chain of nested boxes, as deep as may be; and beside it a small box that belongs into the innermost, paired
-        // with one far away.
+        // The tree is a chain of nested boxes with the maximum depth. Beside it is a small box that belongs in the
+        // innermost node but is paired with a distant one.
         BuildItems items;
         BinaryTree tree;
         const auto cube = [](float size) { return Box3{Vec3(-size, -size, -size), Vec3(size, size, size)}; };
@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
             const BinaryTree before = tree;
             reinsert(tree, tree.nodes.size(), 1, 1);
             check_tree(tree);
-            // With a level to spare it is moved.
+            // Reinsertion moves the box only if a level is left.
             CHECK(inner_areas(tree) <= inner_areas(before));
             CHECK((inner_areas(before) - inner_areas(tree) > 1) == (depth < Bvh::kMaxDepth));
         }
@@ -112,7 +112,7 @@ TEST_SUITE("unit") {
             const BinaryTree tree = build_binary_tree(outlines.items, 1);
             const Collapsed collapsed = collapse(tree, 3);
             const double root = static_cast<double>(tree.nodes[0].box.half_area());
-            // A node costs its area, and a tenth of the areas of all leaves below it.
+            // The cost of a node is its area plus a tenth of the areas of all leaves below it.
             struct Cost {
                 double nodes = 0, leaves = 0;
             };
@@ -136,7 +136,9 @@ TEST_SUITE("unit") {
                 const double area = static_cast<double>(tree.nodes[index].box.half_area()) / root;
                 if (tree.nodes[index].leaf()) return {0, area};
                 std::vector<std::uint32_t> children{tree.nodes[index].left, tree.nodes[index].right};
-                const auto size = [&](std::uint32_t i) { return tree.nodes[i].leaf() ? -1.0f : tree.nodes[i].box.half_area(); };
+                const auto size = [&](std::uint32_t i) {
+                    return tree.nodes[i].leaf() ? -1.0f : tree.nodes[i].box.half_area();
+                };
                 while (children.size() < BvhNode::kWidth) {
                     const auto smaller = [&](auto a, auto b) { return size(a) < size(b); };
                     const auto largest = std::max_element(children.begin(), children.end(), smaller);

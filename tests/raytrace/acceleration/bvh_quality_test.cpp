@@ -1,4 +1,4 @@
-// Spatial splits: boxes that hold all they must, the same hits.
+// These tests check spatial splits: boxes contain their primitives, and the hits are unchanged.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "raytrace/acceleration/bvh_optimize.h"
@@ -15,7 +15,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-// Small triangles among long thin ones that pass between them, none along an axis: here spatial splits pay.
+// Returns small triangles with long thin ones between them, none axis-aligned. Spatial splits pay off here.
 Mesh thicket(Random& random, int count) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
@@ -27,7 +27,7 @@ Mesh thicket(Random& random, int count) {
     return mesh;
 }
 
-// A point of the outline's hull, with weights that are sometimes 0: on edges and corners, too.
+// Returns a point of the polygon's convex hull. Some weights are 0, so edges and vertices are included.
 Vec3d point_of(const Outline& outline, Random& random) {
     Vec3d sum;
     double weights = 0;
@@ -41,11 +41,14 @@ Vec3d point_of(const Outline& outline, Random& random) {
 
 bool contains(const Box3& box, Vec3d p, double room) {
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!(static_cast<double>(box.low[axis]) - room <= p[axis] && p[axis] <= static_cast<double>(box.high[axis]) + room)) return false;
+        if (!(static_cast<double>(box.low[axis]) - room <= p[axis] &&
+              p[axis] <= static_cast<double>(box.high[axis]) + room))
+            return false;
     return true;
 }
 
-// Rays at the scene's vertices and points of its triangles, along the axes with zeros of both signs, and at random.
+// Returns rays at the scene's vertices and at points of its triangles, along the axes with zeros of both signs, and
+// random ones.
 Ray hard_ray(Random& random, const Mesh& mesh, float scale, Vec3 offset, int trial) {
     const auto& t = mesh.triangles[static_cast<std::size_t>(random.below(static_cast<int>(mesh.triangles.size())))];
     const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
@@ -80,33 +83,35 @@ TEST_SUITE("unit") {
             Outline outline;
             outline.count = trial % 3 == 0 ? 4 : 3;
             for (Vec3& corner : outline.corners) corner = offset + random.vector() * scale;
-            if (trial % 5 == 0) outline.corners[1] = outline.corners[0] + random.vector() * (1e-6f * scale); // sliver
+            if (trial % 5 == 0) outline.corners[1] = outline.corners[0] + random.vector() * (1e-6f * scale); // a sliver
             if (outline.count == 4) outline.corners[3] = outline.corners[0] + (outline.corners[2] - outline.corners[1]);
-            if (trial % 7 == 0) outline.corners[2][0] = outline.corners[1][0] = outline.corners[0][0]; // flat
+            // Every seventh polygon is flat along one axis.
+            if (trial % 7 == 0) outline.corners[2][0] = outline.corners[1][0] = outline.corners[0][0];
             Box3 box;
             for (std::size_t i = 0; i < outline.count; ++i) box.extend(outline.corners[i]);
             const auto axis = static_cast<std::size_t>(random.below(3));
             float low = lerp(box.low[axis], box.high[axis], random.uniform(-0.2f, 1)),
                   high = lerp(box.low[axis], box.high[axis], random.uniform(0, 1.2f));
             if (low > high) std::swap(low, high);
-            if (trial % 11 == 0) low = outline.corners[0][axis]; // through a corner
+            if (trial % 11 == 0) low = outline.corners[0][axis]; // through a vertex
             const Box3 part = clip(outline, box, axis, low, max(low, high));
             for (int k = 0; k < 20; ++k) {
                 const Vec3d p = point_of(outline, random);
                 if (!(static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high)))) continue;
                 ++inside;
-                // The point itself is rounded, in double.
+                // The point itself has a rounding error in double precision.
                 const double room = 1e-14 * (length(Vec3d(offset)) + static_cast<double>(scale));
                 REQUIRE(contains(part, p, room));
             }
             if (part.empty()) continue;
             REQUIRE(box.contains(part.low));
             REQUIRE(box.contains(part.high));
-            // No larger than points of it say, if there are many.
+            // The box must not exceed the bounds of many sampled points of the part.
             Box3 seen;
             for (int k = 0; k < 300; ++k) {
                 const Vec3d p = point_of(outline, random);
-                if (static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high))) seen.extend(Vec3(p));
+                if (static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high)))
+                    seen.extend(Vec3(p));
             }
             if (!seen.empty()) tight += seen.half_area() > 0.5f * part.half_area();
         }
@@ -117,7 +122,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a spatial tree: every point of every item in a leaf of it, within the budget, for any number of threads") {
         Random random(22);
         Outlines outlines(thicket(random, 6000));
-        for (int i = 0; i < 200; ++i) { // what cannot be cut, and quads
+        for (int i = 0; i < 200; ++i) { // quads and primitives that cannot be split
             const Vec3 p = random.vector();
             outlines.add({{p, p + random.vector(), {}, {}}, 0}, PrimitiveKind::kSphere);
             outlines.items.back().box = {p, p + Vec3(0.1f, 0.1f, 0.1f)};
@@ -132,7 +137,7 @@ TEST_SUITE("unit") {
             const auto first = static_cast<double>(outlines.items.size());
             CHECK(static_cast<double>(tree.items.size()) <= first * (1 + static_cast<double>(budget)));
             if (budget > 0) CHECK(static_cast<double>(tree.items.size()) > first * 1.05);
-            std::vector<std::vector<Box3>> boxes(outlines.outlines.size()); // of an item's leaves
+            std::vector<std::vector<Box3>> boxes(outlines.outlines.size()); // the leaf boxes of each item
             int twice = 0;
             for (const BinaryNode& node : tree.nodes)
                 for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -145,7 +150,8 @@ TEST_SUITE("unit") {
                 REQUIRE(!boxes[i].empty());
                 for (int k = 0; k < 50 && outlines.outlines[i].count > 0; ++k) {
                     const Vec3d p = point_of(outlines.outlines[i], random);
-                    REQUIRE(std::any_of(boxes[i].begin(), boxes[i].end(), [&](const Box3& b) { return contains(b, p, 1e-14); }));
+                    REQUIRE(std::any_of(boxes[i].begin(), boxes[i].end(),
+                                        [&](const Box3& b) { return contains(b, p, 1e-14); }));
                 }
             }
         }
@@ -186,12 +192,13 @@ TEST_SUITE("unit") {
                 Mesh mesh = thicket(random, 3000);
                 const Vec3 offset = Vec3(1, -0.5f, 0.25f) * (shift * scale);
                 for (Vec3& p : mesh.positions) p = offset + p * scale;
-                for (std::size_t i = 0; i < 100; ++i) mesh.triangles.push_back(mesh.triangles[i]); // twins, for ties
+                // The duplicates cause ties.
+                for (std::size_t i = 0; i < 100; ++i) mesh.triangles.push_back(mesh.triangles[i]);
                 SceneBuilder builder;
                 builder.add(mesh, builder.material(Diffuse{}));
                 const Scene scene = builder.finish();
                 const Accelerator accelerator(scene, 2, BvhQuality::kHigh);
-                // It is of cut triangles that the hits are right.
+                // The scene must contain split triangles, so that their hits are tested.
                 CHECK(accelerator.statistics().references > accelerator.primitives() * 5 / 4);
                 CHECK(accelerator.statistics().references <= accelerator.primitives() * 2);
                 int hits = 0, different = 0, wrong_shadows = 0;
@@ -202,8 +209,8 @@ TEST_SUITE("unit") {
                     hits += expected.valid();
                     if (!(expected == found) && different++ == 0)
                         first = described(found) + ", expected " + described(expected);
-                    // (Of a triangle seen edge-on the distance that is computed may lie before the triangle: of a ray that
-                    // ends there the hit may be missed.)
+                    // Skip rays in a triangle's plane: the computed distance of an edge-on triangle may be in front
+                    // of the triangle, so a ray that ends there may miss it.
                     if (trial % 5 == 1) continue;
                     Hit end;
                     end.t = expected.valid() ? expected.t : std::numeric_limits<float>::max();

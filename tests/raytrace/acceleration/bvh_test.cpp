@@ -1,4 +1,5 @@
-// The hierarchy gives what testing every primitive gives, to the bit; it survives degenerate input; it never leaks.
+// These tests check that the BVH gives the same hits as testing every primitive, bit for bit, handles degenerate
+// input, and never leaks rays.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_build.h"
 #include "raytrace/acceleration/bvh_traverse.h"
@@ -25,7 +26,7 @@ TEST_SUITE("unit") {
             const Vec3 place = random.vector() * 1e5f;
             const Mat4 begin = translation(place) * rotation(random.direction(), random.uniform(0, 6));
             builder.place_moving(shape, grey, begin, i % 4 < 2 ? begin : translation(random.vector() * 0.3f) * begin);
-            builder.place(shape, grey, translation(Vec3(-1e5f, 0, 0))); // used twice, it is not baked
+            builder.place(shape, grey, translation(Vec3(-1e5f, 0, 0))); // instanced twice, so not baked
             const Scene scene = builder.finish();
             Ray ray;
             ray.time = 0.5f;
@@ -36,9 +37,9 @@ TEST_SUITE("unit") {
             const Mat4d to_object = inverse_affine(to_world);
             const Vec3d o = transform_point(to_object, Vec3d(ray.origin)),
                         d = transform_vector(to_object, Vec3d(ray.direction));
-            const double b = -dot(o, d) / dot(d, d); // nearest to the centre
+            const double b = -dot(o, d) / dot(d, d); // the parameter closest to the center
             const double expected = i % 2 ? -o.z / d.z : b - std::sqrt((1 - length_squared(o + d * b)) / dot(d, d));
-            if (!(expected > 0 && expected < 7)) continue; // along the quad
+            if (!(expected > 0 && expected < 7)) continue; // the ray is parallel to the quad
             REQUIRE(hit.object == 0);
             REQUIRE(static_cast<double>(hit.t) == doctest::Approx(expected).epsilon(2e-5));
         }
@@ -62,8 +63,8 @@ TEST_SUITE("unit") {
                         hits += expected.valid();
                         if (!(expected == found) && different++ == 0)
                             first = described(found) + ", expected " + described(expected);
-                        // Shadow rays: occluded at any distance from the hit's on, by the hit's primitive unless it is
-                        // the light.
+                        // A shadow ray that ends at or behind the hit is occluded by the hit's primitive, unless that
+                        // is the light.
                         Hit end;
                         end.t = expected.valid() ? expected.t : std::numeric_limits<float>::max();
                         wrong_shadows += accelerator.occluded(ray, end) != expected.valid();
@@ -100,7 +101,7 @@ TEST_SUITE("unit") {
         for (int trial = 0; trial < 50; ++trial) {
             SceneBuilder builder;
             const std::uint32_t grey = builder.material(Diffuse{});
-            // Quads of many sizes in one plane: their boxes are all entered at one distance.
+            // The scene has quads of many sizes in one plane, so rays enter all their boxes at the same distance.
             for (int i = 0; i < 60; ++i) {
                 const float size = random.uniform(0.1f, 3);
                 builder.add(quad({-size, -size, 0}, {2 * size, 0, 0}, {0, 2 * size, 0}), grey);
@@ -136,7 +137,7 @@ TEST_SUITE("unit") {
                     const Vec3 target = trial % 2 ? a : lerp(a, b, random.uniform(0, 1));
                     const Vec3 origin = trial % 3 ? center + random.direction() * (radius * 0.5f)
                                                   : center + random.direction() * (radius * 3);
-                    // From outside, aimed at the far side through the centre: it must hit the near side.
+                    // The ray starts outside and aims at the far side through the center. It must hit the near side.
                     leaks += !accelerator.closest({origin, normalize((trial % 3 ? target : center) - origin)}).valid();
                 }
                 CHECK(leaks == 0);
@@ -177,7 +178,7 @@ TEST_SUITE("unit") {
                 CHECK(!accelerator.closest(ray).valid());
             }
         CHECK(!accelerator.closest({{0, 0, 5}, {0, -0.0f, 0}}).valid());
-        for (const float huge : {1.2e38f, 2e38f}) // finite, but not what comes of them
+        for (const float huge : {1.2e38f, 2e38f}) // finite, but products of it overflow
             CHECK(!accelerator.closest({{huge, huge, huge}, {0, 0, -1}}).valid());
         CHECK(!accelerator.closest({{0, 0, 0}, {1e-39f, 1e-39f, 1e-39f}}).valid());
         CHECK(!accelerator.occluded({{0, 0, 0}, {1e-39f, 1e-39f, 1e-39f}}, Hit{}));
@@ -220,12 +221,12 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < 100000; ++i) {
             const Vec3 p = random.vector();
             const auto kind = static_cast<PrimitiveKind>(i % 3);
-            sets[0].push_back(item_at({}, {}, i));                     // all in one point
-            sets[1].push_back(item_at({1, 2, 3}, {4, 5, 6}, i, kind)); // identical, kinds mixed
+            sets[0].push_back(item_at({}, {}, i));                     // all at one point
+            sets[1].push_back(item_at({1, 2, 3}, {4, 5, 6}, i, kind)); // identical boxes, mixed kinds
             sets[2].push_back(item_at({p.x, 0, 0}, {p.x, 0, 0}, i));   // on a line, without area
             const float far = std::exp2(random.uniform(-126, 100));
             sets[3].push_back(item_at(Vec3(far, far, far), Vec3(far, far, far), i));    // over all magnitudes
-            sets[4].push_back(item_at(Vec3(-1, -1, -1) * far, Vec3(1, 1, 1) * far, i)); // nested, one centre
+            sets[4].push_back(item_at(Vec3(-1, -1, -1) * far, Vec3(1, 1, 1) * far, i)); // nested, with one center
             sets[5].push_back(item_at({1e30f * p.x, 0, 0}, {1e30f, 1e30f, 1e30f}, i));  // areas overflow float
             sets[6].push_back(
                 item_at({}, i == 0 ? Vec3(1e20f, 0, 0) : Vec3(1e-20f, 0, 0), i)); // one far from all others
@@ -249,7 +250,7 @@ TEST_SUITE("unit") {
         mesh.triangles.assign(1000000, {0, 1, 2});
         mesh.triangles[1] = {2, 0, 1};
         mesh.triangles[2] = {0, 2, 1};
-        mesh.triangles[3] = {3, 1, 2}; // its half, of another centre
+        mesh.triangles[3] = {3, 1, 2}; // half of the quad, with a different centroid
         builder.add(mesh, grey);
         builder.add(mesh, grey); // all again, as a second object
         const Scene scene = builder.finish();
@@ -266,7 +267,7 @@ TEST_SUITE("unit") {
             CHECK(hit.object == 0);
             CHECK(hit.primitive <= 3);
             CHECK(hit.t == doctest::Approx(3));
-            // A twin that was dropped, as the end of a shadow ray, still lies behind the first.
+            // A shadow ray that ends at a dropped duplicate is still occluded by the first primitive.
             CHECK(accelerator.occluded(ray, Hit{1, 77, 0, 0, hit.t}));
             CHECK_FALSE(accelerator.occluded(ray, hit));
         }
@@ -277,7 +278,7 @@ TEST_SUITE("unit") {
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{});
         for (int i = 0; i < 2000; ++i) builder.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), grey);
-        builder.add(quad({1, 1, 0}, {-2, 0, 0}, {0, -2, 0}), grey); // the same square from another corner
+        builder.add(quad({1, 1, 0}, {-2, 0, 0}, {0, -2, 0}), grey); // the same square with a different first vertex
         for (int i = 0; i < 2000; ++i) builder.add(Sphere{{0, 0, 0}, 0.5f}, grey);
         for (int i = 0; i < 20; ++i) builder.add(Sphere{{0, 0, 0}, std::nextafter(0.5f, 1.0f)}, grey);
         const Scene scene = builder.finish();
@@ -305,7 +306,7 @@ TEST_SUITE("unit") {
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{});
         for (int i = 0; i < 30; ++i)
-            builder.add(quad({static_cast<float>(i), 0, 0}, {0.5f, 0, 0}, {0, 0, 1}), grey); // in y = 0
+            builder.add(quad({static_cast<float>(i), 0, 0}, {0.5f, 0, 0}, {0, 0, 1}), grey); // in the plane y = 0
         builder.add(quad({40, -1, -1}, {0, 2, 0}, {0, 0, 3}), grey);
         const Scene scene = builder.finish();
         const Accelerator accelerator(scene, 1);

@@ -1,4 +1,4 @@
-// The hierarchy's answers against a tracer that shares nothing with it: every primitive, in extended precision.
+// These tests compare the BVH's results with an independent tracer that tests every primitive in extended precision.
 #include "raytrace/acceleration/accelerator.h"
 #include "tests/raytrace/acceleration/soup.h"
 
@@ -24,7 +24,7 @@ struct Line {
     explicit Line(const Ray& ray) : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {}
     Vec at(Real t) const { return origin + direction * t; }
     Real speed() const { return size_of(direction); }
-    // What some thirty roundings of single precision amount to, in the world, at the distance t.
+    // Returns the world-space effect of about thirty single-precision rounding errors at distance t.
     Real room(Real t) const { return Real(32) * Real(0x1p-24) * (largest(origin) + std::abs(t) * speed()); }
 };
 
@@ -35,19 +35,19 @@ Real distance_to_segment(const Vec& p, const Vec& a, const Vec& b) {
     return size_of(a + along * s - p);
 }
 
-// What a line does with a primitive.
+// Describes the intersection of a line with a primitive.
 struct Meeting {
-    Real clearance; // how deep within the outline the line passes, across it; negative: how far outside
-    Real t = 0;     // where; means something where the clearance is positive
+    Real clearance; // distance of the line inside the silhouette, perpendicular to the line; negative: distance outside
+    Real t = 0;     // of the intersection; meaningful if the clearance is positive
     Real cosine = 0;
-    Real nearest = 0; // no point of the primitive comes before this t
+    Real nearest = 0; // no point of the primitive has a smaller t
 };
 
-// A convex polygon in a plane, or a sphere: in the world.
+// Represents a convex planar polygon or a sphere, in world space.
 class Primitive {
 public:
     std::uint32_t object, number;
-    Real looseness = 1; // of instances: the hit is found by a transformed ray
+    Real looseness = 1; // factor on the tolerance: larger for instances, whose hits come from a transformed ray
     std::vector<Vec> corners;
     Vec center;
     Real radius = 0;
@@ -79,7 +79,7 @@ private:
         meeting.nearest = rim;
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Vec from = corners[i] - line.origin, to = corners[(i + 1) % corners.size()] - line.origin;
-            const Vec a = from - d * dot(from, d), b = to - d * dot(to, d); // across the line
+            const Vec a = from - d * dot(from, d), b = to - d * dot(to, d); // perpendicular to the line
             rim = std::min(rim, distance_to_segment(Vec(), a, b));
             const Real side = dot(cross(a, b), d);
             left = left && side >= 0;
@@ -93,7 +93,7 @@ private:
         return meeting;
     }
 
-    // Where it is met first after `after`.
+    // Returns the first intersection beyond `after`.
     Meeting sphere(const Line& line, Real after) const {
         const Real a = dot(line.direction, line.direction), b = dot(center - line.origin, line.direction) / a;
         const Real aside = size_of(line.at(b) - center);
@@ -114,7 +114,7 @@ std::vector<Primitive> primitives_of(const Scene& scene, float time) {
         for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
             Primitive primitive{o, p, placed ? Real(8) : Real(1), {}, {}, 0};
             if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-                if (placed) continue; // an ellipsoid in the world: instances of spheres have tests of their own
+                if (placed) continue; // a transformed sphere is an ellipsoid; instanced spheres have separate tests
                 primitive.center = Vec(sphere->center);
                 primitive.radius = sphere->radius;
             } else if (const auto* list = std::get_if<QuadList>(&shape)) {
@@ -135,10 +135,11 @@ struct Verdicts {
     std::string first;
 };
 
-// Whether what the accelerator says of a ray is what the primitives say, one by one.
+// Checks the accelerator's result for a ray against the results of all primitives, one by one.
 class Examiner {
 public:
-    Examiner(const std::vector<Primitive>& primitives, const Ray& ray) : primitives_(primitives), ray_(ray), line_(ray) {
+    Examiner(const std::vector<Primitive>& primitives, const Ray& ray)
+        : primitives_(primitives), ray_(ray), line_(ray) {
         for (const Primitive& p : primitives) meetings_.push_back(p.meet(line_, line_.t_min));
     }
 
@@ -146,7 +147,8 @@ public:
         ++verdicts.rays;
         verdicts.hits += hit.valid();
         const std::size_t answer = index_of(hit), none = primitives_.size();
-        if (hit.valid() && (answer == none || !lies_at(answer, hit.t))) return mismatch(hit, "it is not there", verdicts);
+        if (hit.valid() && (answer == none || !lies_at(answer, hit.t)))
+            return mismatch(hit, "it is not there", verdicts);
         const Real t = hit.valid() ? Real(hit.t) : line_.t_max;
         bool edge = answer != none && !surely_hit(answer), tie = false;
         for (std::size_t i = 0; i < primitives_.size(); ++i) {
@@ -155,8 +157,9 @@ public:
             if (meetings_[i].t < t - slack) return mismatch(hit, described(i), verdicts);
             if (answer == none || meetings_[i].t > t + slack) continue;
             tie = true;
-            // Of two that are exactly the same the lower one is named.
-            const bool same = meetings_[i].t == meetings_[answer].t && primitives_[i].corners == primitives_[answer].corners &&
+            // If two primitives are identical, the one with the lower index must be reported.
+            const bool same = meetings_[i].t == meetings_[answer].t &&
+                              primitives_[i].corners == primitives_[answer].corners &&
                               primitives_[i].center == primitives_[answer].center && surely_hit(answer);
             verdicts.twins += same;
             const auto name = [&](std::size_t k) { return std::pair(primitives_[k].object, primitives_[k].number); };
@@ -183,15 +186,16 @@ private:
             if (primitives_[i].object == hit.object && primitives_[i].number == hit.primitive) return i;
         return primitives_.size();
     }
-    // The stretch of t within which rounding may move a hit.
+    // Returns the range of t by which rounding may move a hit.
     Real along(std::size_t i, Real t) const {
         return primitives_[i].looseness * line_.room(t) / (std::max(meetings_[i].cosine, Real(1e-6)) * line_.speed());
     }
     bool surely_hit(std::size_t i) const {
         const Meeting& m = meetings_[i];
         const Real room = primitives_[i].looseness * line_.room(m.t), slack = along(i, m.t);
-        // A sphere's first place must not be the one that lies at the ray's start.
-        const bool at_start = primitives_[i].corners.empty() && std::abs(primitives_[i].distance(line_.at(line_.t_min))) < room;
+        // A sphere's first intersection must not be at the ray's start.
+        const bool at_start =
+            primitives_[i].corners.empty() && std::abs(primitives_[i].distance(line_.at(line_.t_min))) < room;
         return m.clearance > room && m.t > line_.t_min + slack && m.t < line_.t_max - slack && !at_start;
     }
     bool lies_at(std::size_t i, float t) const {
@@ -226,8 +230,8 @@ Scene instanced_triangles(Soup& soup) {
     return builder.finish();
 }
 
-// From within and from afar to anywhere; or along axes and planes, with zeros of both signs; or the same from where a
-// vertex is met exactly.
+// Rays start inside or far from the scene with any direction, or are parallel to axes and planes with zeros of both
+// signs. The third kind is parallel, too, but starts where it hits a vertex exactly.
 enum class Kind { kAnywhere, kParallel, kParallelToVertices };
 
 Ray ray_of(Kind kind, Soup& soup, const Scene& scene, int trial) {
@@ -238,7 +242,7 @@ Ray ray_of(Kind kind, Soup& soup, const Scene& scene, int trial) {
         ray.direction = normalize_scaled(soup.point() - ray.origin);
     }
     ray.time = 0;
-    // Of other lengths than 1, and of limited range.
+    // Some directions are not of length 1, and some rays have a limited range.
     if (trial % 5 == 1) ray.direction = ray.direction * std::pow(10.0f, soup.random.uniform(-6, 6));
     if (trial % 7 == 1) ray.t_max = soup.random.uniform(0.1f, 4) * soup.scale / length(ray.direction);
     if (trial % 7 == 2) ray.t_min = soup.random.uniform(0.1f, 2) * soup.scale / length(ray.direction);
@@ -284,11 +288,11 @@ TEST_SUITE("unit") {
                         CHECK(found.wrong_shadows == 0);
                         CHECK(found.hits > 150);
                         CHECK(found.twins > 0);
-                        // Where vertices are not aimed at few rays come so near to an outline, within the rounding of
-                        // coordinates, that they prove nothing.
+                        // Rays so close to a silhouette that rounding decides prove nothing. They are few unless the
+                        // rays aim at vertices.
                         const double share = shift < 100 ? 0.02 : instances ? 0.4 : 0.25;
                         if (kind != Kind::kParallelToVertices) CHECK(found.edges < share * found.hits);
-                        // A tie is rare but among twins.
+                        // Ties are rare except among duplicates.
                         if (shift < 100) CHECK(found.ties - found.twins <= 0.03 * found.hits);
                     }
     }
@@ -301,7 +305,7 @@ TEST_SUITE("unit") {
         Verdicts moved, lost, renamed, shadows;
         int hits = 0;
         for (int trial = 0; trial < 500; ++trial) {
-            const Ray ray = ray_of(Kind::kAnywhere, soup, scene, 35 * trial); // whole, of length 1
+            const Ray ray = ray_of(Kind::kAnywhere, soup, scene, 35 * trial); // with unlimited range and length 1
             const Hit hit = accelerator.closest(ray);
             if (!hit.valid()) continue;
             ++hits;

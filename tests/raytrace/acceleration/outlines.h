@@ -1,4 +1,4 @@
-// Primitives by their outlines, as the builders of hierarchies take them.
+// This header represents primitives by their vertices, as the BVH builders take them.
 #pragma once
 
 #include "raytrace/acceleration/bvh_build.h"

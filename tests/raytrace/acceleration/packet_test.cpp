@@ -1,4 +1,4 @@
-// Rays traced together hit what each of them hits alone, to the bit.
+// These tests check that a ray packet gives the same hits as its rays traced separately, bit for bit.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "tests/raytrace/acceleration/soup.h"
@@ -12,7 +12,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-// A camera's rays through a square of pixels, as wide as `spread`; through one point, or through a lens.
+// Returns camera rays through a square of pixels of width `spread`, from one point or from a lens.
 std::vector<Ray> bundle(Random& random, const Soup& soup, Vec3 axis, float spread, float lens, std::size_t count) {
     std::vector<Ray> rays(count);
     const Vec3 eye = soup.offset - axis * (soup.scale * random.uniform(0, 3));
@@ -57,7 +57,7 @@ TEST_SUITE("unit") {
                     for (const Ray& ray : rays) hits += accelerator.closest(ray).valid();
                 }
             }
-        CHECK(packets > 60); // the test is of what it says
+        CHECK(packets > 60); // the test covers real packets
         CHECK(hits > 5000);
     }
 
@@ -72,7 +72,7 @@ TEST_SUITE("unit") {
                 if (!hit.valid()) continue;
                 switch (soup.random.below(5)) {
                 case 0:
-                    ray.t_max = hit.t; // still hit
+                    ray.t_max = hit.t; // still a hit
                     break;
                 case 1:
                     ray.t_max = std::nextafter(hit.t, 0.0f);
@@ -81,7 +81,7 @@ TEST_SUITE("unit") {
                     ray.t_min = hit.t;
                     break;
                 case 3:
-                    ray.t_min = ray.t_max = hit.t; // nothing is left
+                    ray.t_min = ray.t_max = hit.t; // the interval is empty
                     break;
                 default:
                     break;
@@ -102,7 +102,8 @@ TEST_SUITE("unit") {
             const auto axis = static_cast<std::size_t>(trial % 3);
             std::vector<Ray> rays(RayPacket::kSize);
             for (Ray& ray : rays) {
-                const Vec3 vertex = positions[static_cast<std::size_t>(soup.random.below(static_cast<int>(positions.size())))];
+                const Vec3 vertex =
+                    positions[static_cast<std::size_t>(soup.random.below(static_cast<int>(positions.size())))];
                 if (trial % 2) {
                     ray.origin = eye;
                     ray.direction = normalize(vertex - eye);
@@ -116,7 +117,7 @@ TEST_SUITE("unit") {
             packets += coherent(rays, accelerator);
             check_same(accelerator, rays);
         }
-        CHECK(packets >= 100); // zeros of both signs run together
+        CHECK(packets >= 100); // zeros of both signs occur in one packet
     }
 
     TEST_CASE("packets of rays that cannot be traced, or that part, are traced one by one") {

@@ -11,7 +11,7 @@ using namespace duet::raytrace;
 TEST_SUITE("unit") {
 
 TEST_CASE("sorted by class, indices of any number are as a stable sort leaves them") {
-    const auto class_of = [](std::uint32_t i) { return i * i % 11 % 5; }; // 2 is of none
+    const auto class_of = [](std::uint32_t i) { return i * i % 11 % 5; }; // no item has class 2
     for (std::uint32_t size = 0; size < 40; ++size) {
         std::vector<std::uint32_t> indices(size);
         for (std::uint32_t k = 0; k < size; ++k) indices[k] = 7 * k % 41;

@@ -1,4 +1,4 @@
-// Random scenes of all kinds of primitives, rays that are hard on them, and the hit that testing every primitive gives.
+// This header provides random scenes of all primitive types, difficult rays, and the hit that brute force finds.
 #pragma once
 
 #include "common/geometry/quad.h"
@@ -29,7 +29,7 @@ struct Random {
     }
 };
 
-// Every primitive of every object, in the order of `precedes`.
+// Tests every primitive of every object, in the order of `precedes`.
 inline Hit brute_force(const Scene& scene, const Ray& ray) {
     Hit best;
     const auto consider = [&](const Hit& hit) {
@@ -74,7 +74,7 @@ struct Soup {
             for (int k = 0; k < 3; ++k) mesh.positions.push_back(p + random.vector() * (scale * size));
             mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
         }
-        // Twins, for ties; and axis-aligned ones, whose boxes are flat.
+        // The mesh includes duplicates, for ties, and axis-aligned triangles, whose boxes are flat.
         for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count) / 8; ++i)
             mesh.triangles.push_back(mesh.triangles[i]);
         for (int i = 0; i < count / 8; ++i) {
@@ -101,7 +101,7 @@ struct Soup {
         builder.add(quads, grey);
         builder.add(box_quads(offset - Vec3(0.5f, 0.5f, 0.5f) * scale, offset + Vec3(0.5f, 0.25f, 0.5f) * scale), grey);
         for (int i = 0; i < 40; ++i) builder.add(Sphere{point(), scale * random.uniform(0.01f, 0.3f)}, grey);
-        builder.add(builder.scene.shapes[4], grey); // a sphere's twin
+        builder.add(builder.scene.shapes[4], grey); // a duplicate of a sphere
         if (with_instances) {
             const Soup own{random, 1, {}};
             const std::uint32_t mesh = builder.shape(Soup(own).triangles(30, 0.5f));
@@ -119,8 +119,8 @@ struct Soup {
         return builder.finish();
     }
 
-    // Random, aimed at vertices, and along the axes with zeros of both signs, from points that share coordinates with
-    // the scene's.
+    // Returns random rays, rays at vertices, and rays along the axes with zeros of both signs, from points that share
+    // coordinates with the scene.
     Ray ray(const Scene& scene, int trial) {
         const auto& positions = std::get<Mesh>(scene.shapes[0]).positions;
         const Vec3 vertex = positions[static_cast<std::size_t>(random.below(static_cast<int>(positions.size())))];

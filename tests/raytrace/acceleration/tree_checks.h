@@ -1,4 +1,4 @@
-// What must hold of every binary tree of boxes.
+// This header checks the invariants of a binary BVH.
 #pragma once
 
 #include "raytrace/acceleration/bvh_build.h"
@@ -15,7 +15,7 @@ inline int depth_below(const BinaryTree& tree, std::uint32_t index) {
     return node.leaf() ? 0 : 1 + std::max(depth_below(tree, node.left), depth_below(tree, node.right));
 }
 
-// Counts each item's leaf, and checks boxes and kinds.
+// Counts the leaves of each item, and checks boxes and kinds.
 inline void check_tree(const BinaryTree& tree) {
     std::vector<int> seen(tree.items.size());
     for (const BinaryNode& node : tree.nodes) {
