@@ -217,7 +217,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(worse.rows[0].slower);
         CHECK(worse.unmatched.size() == 2);
 
-        // A busy CPU explains a factor of two in time, but not of three.
+        // On a busy CPU a factor of two in time is accepted, but not a factor of three.
         for (const auto& [seconds, expected] : {std::pair(0.02, false), std::pair(0.03, true)}) {
             SceneResult busy = result_of(measured({synthetic("a", 0, seconds)}));
             busy.processor_share = 0.5;
