@@ -179,7 +179,7 @@ TEST_SUITE("unit") {
         const auto table = at_equal_times(rows, {0.2, 0.3, 9}, "p");
         REQUIRE(table.size() == 6);
         REQUIRE(table[0].mse);
-        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // that of 2 samples
+        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // the error of 2 samples
         CHECK(table[0].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->low() < 0.5);
