@@ -90,7 +90,6 @@ inline raster::Settings hits_only() {
 }
 
 // Holds a hit that the oracle finds, in double precision.
-
 struct ExactHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double u = 0, v = 0, t = std::numeric_limits<double>::infinity();
