@@ -26,8 +26,9 @@ ImageFloat normal_turns(const Screen& screen, int threads);
 /// does not contain their reflections.
 RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors, int threads);
 
-/// Whether what a pixel shows goes on as its plane does: its radius of curvature is more than its depth, however fine
-/// the picture; or, seen from infinitely far, than what the picture shows is high.
+/// Returns whether the surface at a pixel is flat enough to continue as its plane. In a perspective view its radius of
+/// curvature must exceed its depth, independent of the resolution. In an orthographic view it must exceed the height of
+/// the view.
 bool is_flat(const Screen& screen, int x, int y);
 
 } // namespace duet::raster

@@ -113,7 +113,8 @@ std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
 /// Follows the ray from its entry to its exit, or to the last known point.
 SeenThrough::Segment SeenThrough::follow(Vec3 way, float eta) const {
     Segment at{.p = p_, .way = way, .n = way};
-    const bool ball = std::holds_alternative<Sphere>(data_.scene.shapes[data_.scene.objects[point_.surface.object].shape]);
+    const bool ball =
+        std::holds_alternative<Sphere>(data_.scene.shapes[data_.scene.objects[point_.surface.object].shape]);
     for (int i = 0; i < kSegments; ++i) {
         const std::optional<Segment> next = ball ? across_ball(at) : across_picture(at);
         if (!next) break;

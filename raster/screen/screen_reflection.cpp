@@ -78,8 +78,9 @@ private:
         const auto x = static_cast<int>(from.x), y = static_cast<int>(from.y);
         const float beyond = scenery_.at(x, y).depth(x, y) - from.z,
                     deeper = scenery_.all.homogeneous_change(ray_.way)[2];
-        return deeper > 0 && beyond > 0 && beyond < kInfinity ? std::optional(ScreenHit{from.x, from.y, beyond / deeper})
-                                                           : std::nullopt;
+        return deeper > 0 && beyond > 0 && beyond < kInfinity
+                   ? std::optional(ScreenHit{from.x, from.y, beyond / deeper})
+                   : std::nullopt;
     }
 
     /// Returns the number of steps from step i to the last one in a block of pixels that are all behind the ray,

@@ -110,8 +110,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, bool past_lamps, floa
     return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
 }
 
-/// What a sheet of metal mirrors that is met from behind: the lamps and the sky that its front shows the viewer are
-/// none of that. Of what is mirrored again the picture stands for itself. Empty where something else is met.
+/// Returns the reflection of a metal sheet that is hit from behind. The visible front shows lights and sky that its back
+/// does not reflect. For a second reflection the image's color is used. The result is empty for other surfaces.
 std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit& hit) const {
     if (look.mirrored_again || hit.hidden) return std::nullopt;
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
@@ -142,7 +142,8 @@ Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distanc
     // surface, which really includes adjacent objects, except for the mirror itself.
     const float blur = hit.distance * look.spread / pixel;
     const float wide = hit.hidden ? size
-                                  : max(scenery_.width_within(hit.x, hit.y, size), scenery_.width_beside_own(hit.x, hit.y, blur));
+                                  : max(scenery_.width_within(hit.x, hit.y, size),
+                                        scenery_.width_beside_own(hit.x, hit.y, blur));
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
     // Next to a light, the light is composited with its exact edge (seen). Blurring it in the image would add a halo,
