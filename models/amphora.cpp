@@ -1,4 +1,4 @@
-// amphora.obj and amphora.png: a Greek vase with two handles, some 5,000 triangles.
+// This file generates amphora.obj and amphora.png: a Greek vase with two handles, about 5,000 triangles.
 #include "models/amphora.h"
 
 #include "models/generate.h"
@@ -10,8 +10,8 @@
 namespace duet::models {
 namespace {
 
-/// (radius, height) along the wall, metres: from the middle of the foot's underside, up the outside, over the lip and
-/// down the inside to the middle of the floor. The splines' ends are the first and last points, on the axis.
+/// These are (radius, height) points along the wall, in meters: from the center of the foot's underside, up the
+/// outside, over the lip, and down the inside to the center of the bottom. The first and last points are on the axis.
 constexpr std::array kOutside = {Vec2d(0, 0.012),     Vec2d(0.07, 0.01),   Vec2d(0.105, 0.0),   Vec2d(0.118, 0.012),
                                  Vec2d(0.108, 0.036), Vec2d(0.082, 0.055), Vec2d(0.088, 0.085), Vec2d(0.145, 0.19),
                                  Vec2d(0.205, 0.32),  Vec2d(0.228, 0.44),  Vec2d(0.205, 0.55),  Vec2d(0.15, 0.63),
@@ -35,7 +35,7 @@ void add_wall(MeshBuilder& mesh) {
     });
 }
 
-/// From the shoulder up and over to the neck below the lip, at x > 0 or x < 0.
+/// Adds the handle at x > 0 or x < 0, from the shoulder up and over to the neck below the lip.
 void add_handle(MeshBuilder& mesh, double side) {
     constexpr std::array kWay = {Vec2d(0.152, 0.59), Vec2d(0.235, 0.70), Vec2d(0.235, 0.89), Vec2d(0.082, 0.806)};
     Tube tube;

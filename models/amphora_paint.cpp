@@ -1,4 +1,4 @@
-// What is painted on the amphora: bands of ornament in black-figure style.
+// This file paints the amphora: bands of ornament in black-figure style.
 #include "models/amphora.h"
 
 #include "models/field.h"
@@ -9,7 +9,7 @@
 namespace duet::models {
 namespace {
 
-/// How much black there is at a point of a band; (x, y) run from 0 to 1 over one repeat of its pattern.
+/// Returns the fraction of black at a point of a band; x and y are in [0, 1] over one repeat of its pattern.
 using Pattern = double (*)(double x, double y);
 
 double black(double, double) { return 1; }
@@ -17,7 +17,7 @@ double bare(double, double) { return 0; }
 double rays(double x, double y) { return std::abs(x - 0.5) < 0.40 * (1 - y); }
 double two_lines(double, double y) { return (y > 0.1 && y < 0.4) || (y > 0.6 && y < 0.9); }
 
-/// Tongues that hang, every outline with a paler core.
+/// Paints hanging tongues, each outlined with a paler core.
 double tongues(double x, double y) {
     constexpr double kBottom = 0.34;
     const double dx = std::abs(x - 0.5);
@@ -25,7 +25,7 @@ double tongues(double x, double y) {
     return from_axis > 0.40 ? 0 : from_axis > 0.25 ? 1 : 0.45;
 }
 
-/// A Greek key, drawn on squares; the last row is a bare one.
+/// Paints a Greek key on a grid of squares; the last row is empty.
 double meander(double x, double y) {
     static constexpr const char* kKey[] = {"########", "#.......", "#.#####.", "#.#...#.",
                                            "#.#.#.#.", "#...#.#.", "#####.##"};
@@ -34,28 +34,28 @@ double meander(double x, double y) {
     return kKey[row][column] == '#';
 }
 
-/// Running dog: waves that curl over.
+/// Paints a running dog pattern: waves that curl over.
 double wave(double x, double y) {
     const auto crest = [&](double center) {
         const double dx = x - center, dy = y - 0.52;
         const double r = std::sqrt(dx * dx + dy * dy), angle = std::atan2(dy, -dx); // 0 to the left
         const double turn =
-            (angle < -0.6 ? angle + 2 * kPiDouble : angle) + 0.6; // clockwise from below the crest's back
+            (angle < -0.6 ? angle + 2 * kPiDouble : angle) + 0.6; // clockwise from below the back of the crest
         const double arm = 0.36 - 0.045 * turn;
         return std::abs(r - arm) < 0.085 - 0.006 * turn;
     };
     return crest(0.45) || crest(1.45) || crest(-0.55) || y < 0.14;
 }
 
-/// Rosettes of eight petals.
+/// Paints rosettes of eight petals.
 double rosettes(double x, double y) {
     const double dx = x - 0.5, dy = y - 0.5, r = std::sqrt(dx * dx + dy * dy);
     const double petal = 0.31 + 0.12 * std::cos(8 * std::atan2(dy, dx));
     return (r < petal && r > 0.15) || r < 0.09;
 }
 
-/// A dolphin that leaps to the right. It lies along an arc: t runs along it, 0 at the tail, 1 at the brow; h is the
-/// height over it.
+/// Paints a dolphin leaping to the right. It follows an arc: t is 0 at the tail and 1 at the brow; h is the height
+/// above the arc.
 double dolphin(double x, double y) {
     constexpr double kAspect = 1.5, kRadius = 0.74;
     const double dx = (x - 0.5) * kAspect, dy = y + 0.22;
@@ -66,7 +66,7 @@ double dolphin(double x, double y) {
     const bool fin = t > 0.42 && t < 0.62 && h > 0 && h < girth + 0.16 * (0.62 - t) / 0.2 * smooth_step(0.42, 0.47, t);
     const bool flipper =
         t > 0.56 && t < 0.74 && h < 0 && h > -girth - 0.12 * (0.74 - t) / 0.18 * smooth_step(0.56, 0.6, t);
-    const double back = 0.07 - t; // the fluke spreads backwards, with a notch
+    const double back = 0.07 - t; // the fluke extends backward, with a notch
     const bool fluke = back > 0 && back < 0.14 && std::abs(h) < 0.03 + 1.3 * back && std::abs(h) > 3 * (back - 0.09);
     const bool eye = sqr((t - 0.9) * 1.48) + sqr(h - 0.015) < sqr(0.022);
     const bool stripe = t > 0.12 && t < 0.84 && std::abs(h + 0.35 * girth) < 0.008;
@@ -74,12 +74,12 @@ double dolphin(double x, double y) {
 }
 
 struct Band {
-    double top; ///< v at its upper edge, as a fraction of the painted part
+    double top; ///< v at the upper edge, as a fraction of the painted part
     int repeats;
     Pattern pattern;
 };
 
-// From the foot upwards.
+// The bands are listed from the foot upward.
 constexpr Band kBands[] = {
     {0.205, 1, black},     {0.22, 1, bare},       {0.32, 28, rays},      {0.332, 1, black},   {0.36, 1, two_lines},
     {0.41, 36, wave},      {0.43, 1, two_lines},  {0.44, 1, bare},       {0.582, 6, dolphin}, {0.592, 1, bare},
@@ -87,7 +87,7 @@ constexpr Band kBands[] = {
     {0.845, 14, rosettes}, {0.865, 1, two_lines}, {1.0, 1, black},
 };
 
-/// How black (u, v) is, v over the painted part.
+/// Returns the fraction of black at (u, v); v is relative to the painted part.
 double paint(double u, double v) {
     double bottom = 0;
     for (const Band& band : kBands) {
@@ -116,7 +116,7 @@ Image<Rgb8> paint_amphora() {
                 coverage += v > kAmphoraPaintedV ? 1 : paint(u, v / kAmphoraPaintedV);
             }
             coverage /= kSubsamples * kSubsamples;
-            // The clay is a little uneven, as fire leaves it; it closes around the vase.
+            // The clay color varies slightly and is periodic around the vase.
             const double angle = 2 * kPiDouble * x / kSize;
             const double fired =
                 std::round(4 * gradient_noise({2 * std::cos(angle), 6.0 * y / kSize, 2 * std::sin(angle)})) * 3;

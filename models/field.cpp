@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kStretchLinks = 8;
 
-/// Component of a gradient: the lattice point's hash, as a number in [−1, 1].
+/// Returns a component of a gradient: the lattice point's hash as a value in [−1, 1].
 double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t salt) {
     std::uint64_t h = salt;
     for (const std::int64_t part : {x, y, z}) {

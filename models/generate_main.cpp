@@ -1,4 +1,4 @@
-// generate: makes the models that are made by code.
+// This program generates the procedural models.
 #include "common/system/error.h"
 #include "models/generate.h"
 

@@ -1,5 +1,6 @@
-// hall.obj: a vaulted hall of three aisles, seen from within: long thin walls and finely cut columns, with openings to
-// the outside at one end, in the walls and above. In metres; the nave runs along z.
+// This file generates hall.obj: a vaulted hall of three aisles, seen from inside. It has long thin walls and finely
+// tessellated columns, with openings to the outside at one end, in the walls and above. Units are meters; the nave
+// runs along z.
 #include "models/field.h"
 #include "models/generate.h"
 #include "models/mesh_builder.h"
@@ -11,14 +12,15 @@ namespace duet::models {
 namespace {
 
 constexpr double kPi = kPiDouble;
-constexpr double kHalfNave = 5, kHalfWidth = 9;          // in x: the columns' axes, the outer walls
-constexpr double kEnd = 18, kBay = 6;                    // in z: the end walls; from column to column
-constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6; // heights: of arches' feet, of the nave's walls, of the aisles' roofs
-constexpr double kThick = 0.5;                           // of walls
+constexpr double kHalfNave = 5, kHalfWidth = 9; // in x: the columns' axes, the outer walls
+constexpr double kEnd = 18, kBay = 6; // in z: the end walls; from column to column
+// Heights of the arches' springing, of the nave's walls, and of the aisles' roofs.
+constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6;
+constexpr double kThick = 0.5; // wall thickness
 constexpr int kBays = 6;
-constexpr int kVaultColumns = 40; // of cells, from its foot to the crown
+constexpr int kVaultColumns = 40; // cells from the vault's base to its crown
 
-/// A flat patch corner + s u + t v, cut into cells.
+/// Adds a flat patch corner + s u + t v, divided into cells.
 void add_patch(MeshBuilder& mesh, Vec3d corner, Vec3d u, Vec3d v, int columns, int rows) {
     Sheet sheet{.columns = columns, .rows = rows, .point = {}};
     sheet.point = [=](double s, double t) { return corner + u * s + v * t; };
@@ -35,27 +37,28 @@ void add_box(MeshBuilder& mesh, Vec3d low, Vec3d high, int cells) {
     add_patch(mesh, low + y, z, x, cells / 2, cells);
 }
 
-/// An arched opening's outline over s in [0, 1]: up one jamb (if there is any), around, down the other. In (along,
-/// height), about along = 0.
+/// Returns a point on the border of an arched opening for s in [0, 1]: up one jamb (if there is one), around the
+/// arch, and down the other jamb. The coordinates are (along, height), centered at along = 0.
 Vec2d arch(double s, double half, double foot, double spring) {
-    const double jamb = foot < spring ? 0.25 : 0; // the part of s that each takes
+    const double jamb = foot < spring ? 0.25 : 0; // fraction of s for each jamb
     if (s < jamb) return {-half, lerp(foot, spring, s / jamb)};
     if (s > 1 - jamb) return {half, lerp(spring, foot, (s - (1 - jamb)) / jamb)};
     const double angle = kPi * (1 - (s - jamb) / (1 - 2 * jamb));
     return Vec2d(half * std::cos(angle), spring + half * std::sin(angle));
 }
 
-/// A wall in the plane x = `x` with an arched opening, a bay long about z = `middle`: both faces, and the opening's own.
+/// This is a wall in the plane x = `x` with an arched opening, one bay long, centered at z = `middle`. It has both
+/// faces and the sides of the opening.
 struct ArchedWall {
     double x, middle;
     double half, foot, spring; ///< of the opening
-    double low, high;          ///< of the wall
+    double low, high; ///< of the wall
 
     void add(MeshBuilder& mesh) const {
         for (const double side : {-0.5, 0.5}) {
             Sheet face{.columns = 48, .rows = kRows, .point = {}};
             face.point = [*this, side](double s, double t) {
-                s = side > 0 ? 1 - s : s; // outwards
+                s = side > 0 ? 1 - s : s; // so that normals point outward
                 return lerp(at(arch(s, half, foot, spring), side), at(border(s), side), t);
             };
             add_sheet(mesh, face);
@@ -67,21 +70,24 @@ struct ArchedWall {
     }
 
 private:
-    static constexpr int kRows = 10, kSillColumns = 4; ///< of cells beside the opening, and in it
+    static constexpr int kRows = 10, kSillColumns = 4; ///< number of cells beside the opening, and in it
 
-    /// The sill and the wall below it, whose vertices are those of the wall beside the opening: no cracks.
+    /// Adds the sill and the wall below it. Its vertices match those of the wall beside the opening, so there are no
+    /// cracks.
     void add_sill(MeshBuilder& mesh) const {
         add_patch(mesh, at({-half, foot}, -0.5), Vec3d(0, 0, 2 * half), Vec3d(kThick, 0, 0), kSillColumns, 4);
         constexpr int kColumns = 2 * kRows + kSillColumns;
         const auto along = [&](int column) {
             if (column < kRows) return lerp(-half, -kBay / 2, (kRows - column) / double{kRows});
-            if (column > kRows + kSillColumns) return lerp(half, kBay / 2, (column - kRows - kSillColumns) / double{kRows});
+            if (column > kRows + kSillColumns)
+                return lerp(half, kBay / 2, (column - kRows - kSillColumns) / double{kRows});
             return lerp(-half, half, (column - kRows) / double{kSillColumns});
         };
         for (const double side : {-0.5, 0.5}) {
             Sheet below{.columns = kColumns, .rows = 4, .point = {}};
             below.point = [&](double s, double t) {
-                return at({along(static_cast<int>(std::lround((side > 0 ? 1 - s : s) * kColumns))), lerp(low, foot, t)}, side);
+                return at({along(static_cast<int>(std::lround((side > 0 ? 1 - s : s) * kColumns))),
+                           lerp(low, foot, t)}, side);
             };
             add_sheet(mesh, below);
         }
@@ -89,7 +95,7 @@ private:
     Vec3d at(Vec2d along_and_height, double side) const {
         return {x + side * kThick, along_and_height.y, middle + along_and_height.x};
     }
-    /// Where the wall ends, seen from the outline's point s: at its sides and its top.
+    /// Returns the point of the wall's border that corresponds to the opening's point s: on its sides or its top.
     Vec2d border(double s) const {
         constexpr double kSide = 0.25;
         if (s < kSide) return {-kBay / 2, lerp(foot, high, s / kSide)};
@@ -98,11 +104,14 @@ private:
     }
 };
 
-/// A fluted column with base and capital.
+/// Adds a fluted column with base and capital.
 void add_column(MeshBuilder& mesh, double x, double z) {
-    constexpr std::array kProfile = {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
-                                     Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
-                                     Vec2d(0.66, 4.0), Vec2d(0.66, kSpring)}; // under all of the arches' feet, whose corners are 0.65 off
+    constexpr std::array kProfile =
+        {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
+                                     Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55),
+                                         Vec2d(0.5, 3.9),
+                                     // Below all of the arches' springing points, whose corners are at 0.65.
+                                     Vec2d(0.66, 4.0), Vec2d(0.66, kSpring)};
     constexpr int kRows = 32, kFlutes = 16;
     const std::vector<Vec2d> profile = sample_profile(kProfile, kRows);
     const std::size_t first = mesh.positions.size();
@@ -115,13 +124,14 @@ void add_column(MeshBuilder& mesh, double x, double z) {
     }
 }
 
-/// The nave's vault, a half cylinder with coffers, open along the crown between the middle bays.
+/// Adds the nave's vault: a half cylinder with coffers, open along the crown between the middle bays.
 void add_vault(MeshBuilder& mesh) {
     for (const double side : {-1.0, 1.0}) {
         Sheet sheet{.columns = kVaultColumns, .rows = 240, .point = {}};
         sheet.point = [side](double s, double t) {
             const double z = lerp(-kEnd, kEnd, t);
-            const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z)); // of the angle, on each side of the crown
+            // Fraction of the angle, on each side of the crown.
+            const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z));
             const double angle = kPi / 2 * (side > 0 ? s * (1 - gap) : 1 - (1 - s) * (1 - gap));
             const double coffer = std::max(std::sin(12 * angle) * std::sin(2 * kPi * z / kBay * 3), 0.0);
             const double radius = kHalfNave + 0.18 * std::sqrt(coffer);
@@ -132,26 +142,28 @@ void add_vault(MeshBuilder& mesh) {
     }
 }
 
-/// The far end, with a round window.
+/// Adds the far end wall with a round window.
 void add_end_wall(MeshBuilder& mesh) {
-    // As finely cut as the vault, four of whose sheets go round: corner to corner there is no gap between them.
+    // The tessellation matches that of the vault's four sheets, so there are no gaps between vertices.
     Sheet sheet{.columns = 4 * kVaultColumns, .rows = 24, .closed_s = true, .point = {}};
     sheet.point = [](double s, double t) {
         const double angle = 2 * kPi * s;
         const Vec2d direction(std::cos(angle), std::sin(angle));
-        const double up = direction.y >= 0 ? kHalfNave // the vault's edge above, a rectangle's below
-                                           : std::min(kArcadeTop / -direction.y, kHalfNave / std::max(std::abs(direction.x), 1e-9));
+        const double up = direction.y >= 0 ? kHalfNave // the border is the vault above and a rectangle below
+                                           : std::min(kArcadeTop / -direction.y,
+                                                      kHalfNave / std::max(std::abs(direction.x), 1e-9));
         const double r = lerp(1.6, up, t);
         return Vec3d(r * direction.x, kArcadeTop + r * direction.y, -kEnd);
     };
     add_sheet(mesh, sheet);
     for (const double side : {-1.0, 1.0})
-        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, 0, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, kRoof, 0}, 16, 16);
+        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, 0, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, kRoof, 0},
+                  16, 16);
 }
 
 void add_floor(MeshBuilder& mesh) {
     Sheet sheet{.columns = 60, .rows = 120, .point = {}};
-    sheet.point = [](double s, double t) { // trodden slabs
+    sheet.point = [](double s, double t) { // worn slabs
         const double x = lerp(-kHalfWidth, kHalfWidth, s), z = lerp(kEnd, -kEnd, t);
         return Vec3d(x, 0.012 * gradient_noise(Vec3d(x, 0, z) * 1.3), z);
     };
@@ -180,10 +192,11 @@ void write_hall(const std::filesystem::path& folder) {
             ArchedWall{side * kHalfWidth, middle, 1.1, 1.6, 3.4, 0, kRoof}.add(mesh);
         }
         for (int i = 0; i <= kBays; ++i) add_column(mesh, side * kHalfNave, -kEnd + kBay * i);
-        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, kRoof, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, 0, 2 * kEnd}, 20, 90);
+        add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, kRoof, -kEnd}, {kHalfWidth - kHalfNave, 0, 0},
+                  {0, 0, 2 * kEnd}, 20, 90);
         for (int row = 0; row < 12; ++row) add_bench(mesh, side * 2.4, -kEnd + 4 + 2.1 * row);
     }
-    mesh.uvs.clear(); // stone needs none
+    mesh.uvs.clear(); // the stone material uses no uvs
     compute_normals(mesh, 40);
     write_obj(folder / kHallFile, mesh, "A vaulted hall, made by models/hall.cpp.");
 }

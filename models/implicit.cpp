@@ -8,7 +8,7 @@
 namespace duet::models {
 namespace {
 
-/// A lattice point in units of half a cell: a cube's corner has even coordinates, its centre odd ones.
+/// This is a lattice point in units of half a cell. A cube's corner has even coordinates, its center odd ones.
 struct Lattice {
     std::int32_t x = 0, y = 0, z = 0;
 
@@ -23,14 +23,14 @@ struct Lattice {
 
 Vec3d to_vec(Lattice a) { return Vec3d(a.x, a.y, a.z); }
 
-/// The value and the gradient at p, from four values around it.
+/// Stores the value and the gradient at p, estimated from four samples around it.
 struct Differential {
     double value;
     Vec3d gradient;
 };
 
 Differential differential(const Implicit& surface, Vec3d p, double step) {
-    // A regular tetrahedron's corners: four evaluations in place of seven.
+    // The samples are at the corners of a regular tetrahedron, which takes four evaluations instead of seven.
     constexpr Vec3d kCorners[4] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
     Differential result{0, {}};
     for (const Vec3d& corner : kCorners) {
@@ -45,7 +45,7 @@ class Polygonizer {
 public:
     Polygonizer(const Implicit& surface, double cell) : surface_(surface), half_(cell / 2) {
         const double extent = max_component(surface.high - surface.low) / cell;
-        DUET_CHECK_LT(extent, 1 << 19); // so that keys have room
+        DUET_CHECK_LT(extent, 1 << 19); // leaves enough bits for the keys
         root_ = static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(extent) + 1));
     }
 
@@ -57,11 +57,12 @@ public:
 private:
     Vec3d position(Lattice a) const { return surface_.low + to_vec(a) * half_; }
 
-    /// Descends into the cube of `size` cells at `low`, unless the surface is farther from it than a cell.
+    /// Descends into the cube of `size` cells at `low`, unless the surface is farther from the cube than one cell.
     void visit(Lattice low, std::int32_t size) {
         const Lattice center{low.x + size, low.y + size, low.z + size};
         const double h = size / 2.0;
-        // A tetrahedron of a cube's face reaches into the neighbour: the reach is to the neighbour's far corners.
+        // A tetrahedron on a cube's face extends into the neighboring cube, so the reach includes the neighbor's far
+        // corners.
         const double reach = std::sqrt(sqr(h + 1) + 2 * sqr(h)) * 2 * half_;
         if (std::abs(surface_.value(position(center))) > surface_.steepness * reach) return;
         if (size == 1) return march_cube(low);
@@ -71,7 +72,8 @@ private:
         }
     }
 
-    /// The tetrahedra of a cube's three upper faces: two cubes' centres and one edge of the face between them.
+    /// Marches the tetrahedra on a cube's three upper faces. Each consists of two cubes' centers and one edge of the
+    /// face between them.
     void march_cube(Lattice low) {
         const Lattice center = low + Lattice{1, 1, 1};
         constexpr Lattice kAxes[3] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
@@ -101,8 +103,8 @@ private:
         Lattice inside, outside;
     };
 
-    /// A triangle or a quad between the crossings of lattice edges, turned so that it faces outwards: judged at the
-    /// edges' middles, which is exact.
+    /// Adds a triangle or a quad between the crossings of lattice edges, oriented outward. The orientation is
+    /// determined at the edges' midpoints, where it is exact.
     void add_polygon(std::vector<Edge> edges) {
         std::array<Vec3d, 3> middle;
         for (std::size_t i = 0; i < 3; ++i) middle[i] = to_vec(edges[i].inside + edges[i].outside);
@@ -122,7 +124,8 @@ private:
         return found->second;
     }
 
-    /// The vertex where the surface crosses a lattice edge; kept off the edge's ends, so that none coincide.
+    /// Returns the vertex where the surface crosses a lattice edge. It stays away from the edge's ends, so that no
+    /// vertices coincide.
     std::uint32_t crossing(const Edge& edge) {
         const double in = value(edge.inside), out = value(edge.outside);
         const auto [found, is_new] = crossings_.try_emplace({edge.inside.key(), edge.outside.key()}, 0u);
@@ -149,7 +152,7 @@ private:
     std::unordered_map<EdgeKey, std::uint32_t, EdgeHash> crossings_;
 };
 
-/// The sum of the normals of the triangles around each vertex, weighted by area.
+/// Returns the area-weighted sum of the normals of the triangles around each vertex.
 std::vector<Vec3d> area_normals(const MeshBuilder& mesh) {
     std::vector<Vec3d> sum(mesh.positions.size());
     for (const auto& t : mesh.triangles) {
@@ -160,14 +163,14 @@ std::vector<Vec3d> area_normals(const MeshBuilder& mesh) {
     return sum;
 }
 
-/// Moves each vertex along the surface half-way to the middle of its neighbours, then back onto the surface.
+/// Moves each vertex along the surface halfway to the mean of its neighbors, and then back onto the surface.
 void relax(MeshBuilder& mesh, const Implicit& surface, double cell) {
     std::vector<Vec3d> sum(mesh.positions.size());
     std::vector<double> count(mesh.positions.size());
     for (const auto& triangle : mesh.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             sum[triangle[k].position] += mesh.positions[triangle[(k + 1) % 3].position];
-            count[triangle[k].position] += 1; // each neighbour comes next in exactly one triangle
+            count[triangle[k].position] += 1; // each neighbor follows in exactly one triangle
         }
     }
     const std::vector<Vec3d> normals = area_normals(mesh);
@@ -176,13 +179,14 @@ void relax(MeshBuilder& mesh, const Implicit& surface, double cell) {
         const Vec3d move = (sum[i] / count[i] - p) * 0.5, normal = normals[i];
         p += move - normal * (dot(move, normal) / max(length_squared(normal), 1e-300));
         const Differential d = differential(surface, p, 0.1 * cell);
-        const Vec3d step = d.gradient * (d.value / max(length_squared(d.gradient), 0.25)); // Newton's
+        const Vec3d step = d.gradient * (d.value / max(length_squared(d.gradient), 0.25)); // Newton's method
         const double limit = 0.25 * cell, size = length(step);
         mesh.positions[i] = p - (size > limit ? step * (limit / size) : step);
     }
 }
 
-/// Gradients as normals; where one contradicts a triangle (a crease finer than the lattice), the triangles' own.
+/// Sets gradients as normals. Where a gradient contradicts a triangle (at a crease finer than the lattice), the
+/// triangles' normals are used.
 void set_normals(MeshBuilder& mesh, const Implicit& surface, double cell) {
     const std::vector<Vec3d> faces = area_normals(mesh);
     mesh.normals.clear();

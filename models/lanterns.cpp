@@ -1,4 +1,5 @@
-// lanterns.json: a night market of 1,000 paper lanterns over stalls, for the choice among many lights.
+// This file generates lanterns.json: a night market of 1,000 paper lanterns above stalls, to test the selection among
+// many lights.
 #include "common/system/file.h"
 #include "common/vec/vec.h"
 #include "models/generate.h"
@@ -13,13 +14,13 @@ namespace {
 
 constexpr int kDecimals = 3;
 constexpr int kLanterns = 1000;
-constexpr double kReach = 12; ///< the market is a square of twice this side, metres
+constexpr double kReach = 12; ///< the market is a square of twice this side, in meters
 
 std::string triple(double x, double y, double z) {
     return "[" + number(x, kDecimals) + ", " + number(y, kDecimals) + ", " + number(z, kDecimals) + "]";
 }
 
-/// The list of objects of the scene file.
+/// This is the list of objects of the scene file.
 class Objects {
 public:
     void sphere(Vec3d center, double radius, const std::string& material) {
@@ -41,7 +42,7 @@ private:
     std::string text_;
 };
 
-/// Lamps of five colours, each in three strengths: from a candle behind paper to a bulb.
+/// The lights have five colors in three intensities each, from a candle behind paper to a bulb.
 constexpr std::array<std::array<double, 3>, 5> kColors{
     {{1, 0.55, 0.2}, {1, 0.3, 0.12}, {1, 0.75, 0.4}, {0.9, 0.2, 0.25}, {0.4, 0.6, 1}}};
 constexpr std::array<double, 3> kStrengths{4, 12, 60};
@@ -65,7 +66,7 @@ std::string materials() {
     return text;
 }
 
-/// A counter on which pots and fruit lie, three metres from its neighbours.
+/// Adds a counter with pots and fruit on it, three meters from its neighbors.
 void add_stall(Objects& objects, Random& random, double x, double z) {
     const double wide = random.uniform(0.5, 1), deep = random.uniform(0.3, 0.6), high = random.uniform(0.6, 0.9);
     objects.box({x - wide, 0, z - deep}, {x + wide, high, z + deep}, "stall");

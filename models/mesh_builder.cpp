@@ -17,7 +17,7 @@ Vec3d face_normal(const MeshBuilder& mesh, const MeshBuilder::Triangle& t) {
     return normalize(cross(b - a, c - a));
 }
 
-/// The angle of a triangle at its corner k.
+/// Returns the angle of a triangle at its corner k.
 double angle_at(const MeshBuilder& mesh, const MeshBuilder::Triangle& t, std::size_t k) {
     const Vec3d p = mesh.positions[t[k].position];
     const Vec3d a = mesh.positions[t[(k + 1) % 3].position] - p, b = mesh.positions[t[(k + 2) % 3].position] - p;
@@ -81,7 +81,7 @@ void add_sheet(MeshBuilder& mesh, const Sheet& sheet) {
     const auto corner = [&](int i, int j) {
         return Corner{id(i, j), index(first_uv) + static_cast<std::uint32_t>(j * (columns + 1) + i), 0};
     };
-    // At a pole each triangle has a uv of its own, half-way along its edge.
+    // At a pole each triangle has its own uv, halfway along its edge.
     const auto pole_corner = [&](int i, int j) {
         mesh.uvs.push_back(sheet.uv(s_of(i + 0.5), t_of(j)));
         return Corner{id(i, j), index(mesh.uvs.size() - 1), 0};
@@ -120,7 +120,7 @@ void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int colum
 }
 
 void add_tube(MeshBuilder& mesh, const Tube& tube) {
-    // The first and last `kDome` of t round off the ends: there the radius falls to zero along a quarter of an ellipse.
+    // The first and last `kDome` of t round the ends: there the radius decreases to zero along a quarter ellipse.
     constexpr double kDome = 0.06;
     Sheet sheet;
     sheet.columns = tube.columns;
@@ -151,7 +151,7 @@ void compute_normals(MeshBuilder& mesh, double crease_degrees) {
             around[mesh.triangles[t][k].position].emplace_back(t, angle_at(mesh, mesh.triangles[t], k));
     }
     mesh.normals.clear();
-    // The corners of a position share a normal where they agree.
+    // The corners of a position share a normal where their normals are equal.
     std::vector<std::vector<std::uint32_t>> known(mesh.positions.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (Corner& corner : mesh.triangles[t]) {

@@ -1,5 +1,6 @@
-// octopus.obj: an octopus on the ground, one arm wound around a ball: an implicit surface, made a mesh of some 200,000
-// triangles (or a hundred thousand, or a million). The scene's eyes and ball stand where the constants of octopus.h say.
+// This file generates octopus.obj: an octopus on the ground, with one arm wound around a ball. It is an implicit
+// surface, polygonized to about 200,000 triangles (or a hundred thousand, or a million). The scene places the eyes
+// and the ball by the constants of octopus.h.
 #include "models/octopus.h"
 
 #include "models/field.h"
@@ -10,20 +11,20 @@
 namespace duet::models {
 namespace {
 
-constexpr int kSteps = 160; ///< beads of an arm
+constexpr int kSteps = 160; ///< beads per arm
 
 struct Sucker {
     Vec3d center, outwards;
     double radius;
 };
 
-/// How an arm runs: from the head it comes down to the ground, winds along it, and its tip curls.
+/// Describes the course of an arm: it descends from the head to the ground, winds along it, and curls its tip.
 struct ArmPlan {
     double azimuth_degrees; ///< direction in which it leaves the head; 0 = +x, 90 = +z, the front
     double length;
     double sway, phase; ///< amplitude (radians) and phase of its bends along the ground
     double curl;        ///< turns of the tip, signed: counter-clockwise seen from above
-    double lift;        ///< how much of the curl goes upwards: 0 lies flat, 1 stands
+    double lift; ///< upward fraction of the curl: 0 is flat, 1 is upright
 };
 
 constexpr ArmPlan kArms[] = {
@@ -34,14 +35,14 @@ constexpr ArmPlan kArms[] = {
 
 double arm_radius(double s) { return 0.014 + 0.131 * std::pow(1 - s, 1.05); }
 
-/// An arm with its suckers: two rows along the underside.
+/// This is an arm with two rows of suckers along the underside.
 struct Arm {
     std::vector<Bead> beads;
     std::vector<Sucker> suckers;
 };
 
-/// Rolls a frame along the beads without twist and sets suckers in two rows about `underside(i)`, a direction wished
-/// for.
+/// Transports a frame along the beads without twist and places suckers in two rows about the preferred direction
+/// `underside(i)`.
 template <typename Underside> void add_suckers(Arm& arm, const Underside& underside) {
     double travelled = 0, next = 0.3;
     for (std::size_t i = 1; i + 1 < arm.beads.size(); ++i) {
@@ -79,7 +80,8 @@ Arm ground_arm(const ArmPlan& plan) {
         elevation = lerp(elevation, clamp(landing, -1.0, 0.6), 0.12);
         const double rise = elevation * (1 - plan.lift * tip) + std::abs(curled) * plan.lift;
         const Vec3d ahead(std::cos(azimuth) * std::cos(rise), std::sin(rise), std::sin(azimuth) * std::cos(rise));
-        // Suckers face the ground, and along the tip the inside of its curl or, where it stands, upwards and back.
+        // Suckers face the ground. Along the tip they face the inside of its curl or, where it is upright, upward and
+        // back.
         const double turn = plan.curl > 0 ? 1 : -1;
         const Vec3d inwards = Vec3d(-std::sin(azimuth), 0, std::cos(azimuth)) * turn;
         const Vec3d standing(-std::cos(azimuth) * std::sin(rise), std::cos(rise), -std::sin(azimuth) * std::sin(rise));
@@ -93,14 +95,15 @@ Arm ground_arm(const ArmPlan& plan) {
     return arm;
 }
 
-/// A point on the uniform Catmull-Rom spline through the points, t in [0, 1] from the second to the last but one.
+/// Returns a point on the uniform Catmull-Rom spline through the points; t in [0, 1] runs from the second to the last
+/// but one.
 Vec3d spline(std::span<const Vec3d> points, double t) {
     const double x = t * static_cast<double>(points.size() - 3);
     const auto i = std::min(static_cast<std::size_t>(x), points.size() - 4);
     return catmull_rom(points[i], points[i + 1], points[i + 2], points[i + 3], x - static_cast<double>(i));
 }
 
-/// The arm that reaches out to the ball and winds around it, from below upwards.
+/// Returns the arm that extends to the ball and winds around it, from below upward.
 Arm holding_arm() {
     std::vector<Vec3d> way{{0.05, 0.55, -0.02}, {0.15, 0.42, 0.07}, {0.36, 0.25, 0.21}, {0.66, 0.17, 0.35}};
     constexpr int kTurnSteps = 14;
@@ -134,7 +137,7 @@ public:
     }
 
     double value(Vec3d p) const {
-        // Limbs grow together near the head and stay apart farther out.
+        // Limbs blend together near the head and stay separate farther out.
         const double from_head = length(Vec3d(p.x, 0.6 * (p.y - 0.45), p.z));
         const double k = lerp(0.16, 0.02, smooth_step(0.25, 0.75, from_head));
         double d = body(p);
@@ -158,17 +161,17 @@ private:
     };
     void add(Arm arm) { arms_.push_back({Limb(std::move(arm.beads)), std::move(arm.suckers)}); }
 
-    /// Mantle, head and brows.
+    /// Returns the distance to mantle, head and brows.
     static double body(Vec3d p) {
         static const Limb mantle(mantle_beads());
         double d = mantle.distance(p, 10);
         d = smooth_min(d, link_distance(p, {{0, 0.36, 0.0}, 0.27}, {{0, 0.62, 0.04}, 0.25}), 0.15);
-        const Vec3d q(std::abs(p.x), p.y, p.z); // both sides at once
+        const Vec3d q(std::abs(p.x), p.y, p.z); // mirror symmetry
         return smooth_min(d, length(q - Vec3d(kEyeX - 0.10, kEyeY - 0.01, kEyeZ - 0.07)) - kEyeRadius * 1.5, 0.08);
     }
 
     static std::vector<Bead> mantle_beads() {
-        // The sack leans back over the arms. Radii ride along as a spline of their own.
+        // The mantle leans back over the arms. The radii follow a spline of their own.
         const Vec3d way[] = {{0, 0.4, 0.1},    {0, 0.62, 0.03},  {0, 0.85, -0.08}, {0, 1.10, -0.30},
                              {0, 1.22, -0.62}, {0, 1.14, -0.95}, {0, 1.02, -1.16}, {0, 0.95, -1.3}};
         const Vec3d radii[] = {{0.2, 0, 0},  {0.24, 0, 0}, {0.27, 0, 0}, {0.39, 0, 0},
@@ -184,7 +187,7 @@ private:
         for (const Sucker& sucker : grown.suckers) {
             const Vec3d away = p - sucker.center;
             if (length_squared(away) > sqr(sucker.radius + 0.1)) continue;
-            // A flattened ball with a hollow in its face.
+            // A sucker is a flattened sphere with a hollow in its face.
             const double height = dot(away, sucker.outwards);
             const double flat = length(away + sucker.outwards * (height * 0.5)) - sucker.radius;
             const double cup = length(away - sucker.outwards * (sucker.radius * 1.0)) - sucker.radius * 0.72;
@@ -194,7 +197,7 @@ private:
         return d;
     }
 
-    /// Height of the skin's wrinkles and warts.
+    /// Returns the height of the skin's wrinkles and warts.
     static double skin(Vec3d p) {
         const double upper = smooth_step(0.5, 0.8, p.y);
         const double folds = gradient_noise(p * 5.0) * 0.012;

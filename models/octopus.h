@@ -1,4 +1,4 @@
-// Where the octopus's eyes are and where it holds its ball: the scene puts spheres there.
+// This header declares the positions of the octopus's eyes and of its ball, where the scene places spheres.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -9,9 +9,9 @@ inline constexpr const char* kOctopusFile = "generated/octopus.obj";
 inline constexpr const char* kOctopusSmallFile = "generated/octopus-hundred-thousand.obj";
 inline constexpr const char* kOctopusMillionFile = "generated/octopus-million.obj";
 
-/// The eyes: spheres at (±x, y, z).
+/// The eyes are spheres at (±x, y, z).
 inline constexpr double kEyeX = 0.245, kEyeY = 0.82, kEyeZ = 0.17, kEyeRadius = 0.1;
-/// The ball that one arm winds around.
+/// One arm winds around this ball.
 inline constexpr Vec3d kBallCenter{0.72, 0.40, 0.78};
 inline constexpr double kBallRadius = 0.28;
 

@@ -11,7 +11,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Bits in DEFLATE's order: the least significant first, but Huffman codes from their most significant.
+/// Writes bits in DEFLATE's order: the least significant first, but Huffman codes from the most significant.
 class BitWriter {
 public:
     explicit BitWriter(Bytes& out) : out_(out) {}
@@ -39,7 +39,7 @@ private:
     int used_ = 0;
 };
 
-/// Literal, end of block (256) or length code, by the fixed code of RFC 1951, §3.2.6.
+/// Writes a literal, an end of block (256) or a length code by the fixed code of RFC 1951, §3.2.6.
 void write_symbol(BitWriter& out, std::uint32_t symbol) {
     if (symbol < 144)
         out.code(0x30 + symbol, 8);
@@ -53,8 +53,8 @@ void write_symbol(BitWriter& out, std::uint32_t symbol) {
 
 constexpr std::size_t kShortest = 4, kLongest = 258, kWindow = 32768;
 
-/// Lengths 3 … 258 as codes 257 … 285, distances 1 … 32768 as codes 0 … 29; each step of codes has one more extra bit
-/// (RFC 1951, §3.2.5).
+/// Writes lengths 3 … 258 as codes 257 … 285 and distances 1 … 32768 as codes 0 … 29. Each group of codes has
+/// one more extra bit (RFC 1951, §3.2.5).
 void write_match(BitWriter& out, std::size_t length, std::size_t distance) {
     if (length == kLongest)
         write_symbol(out, 285);
@@ -72,11 +72,11 @@ void write_match(BitWriter& out, std::size_t length, std::size_t distance) {
     out.bits(rest & ((1u << extra) - 1), extra);
 }
 
-/// One DEFLATE block of fixed codes; each match is the last place with the same four bytes.
+/// Writes one DEFLATE block of fixed codes. A match is the most recent position with the same four bytes.
 void deflate(const Bytes& data, Bytes& result) {
     BitWriter out(result);
-    out.bits(1, 1); // the last block
-    out.bits(1, 2); // of fixed codes
+    out.bits(1, 1); // last block
+    out.bits(1, 2); // fixed codes
     std::vector<std::size_t> seen(std::size_t{1} << 15, data.size());
     const auto hash = [&](std::size_t i) {
         const std::uint32_t four = static_cast<std::uint32_t>(data[i] | data[i + 1] << 8 | data[i + 2] << 16) |
@@ -107,7 +107,7 @@ void append_big_endian(Bytes& out, std::uint32_t x) {
     for (const int shift : {24, 16, 8, 0}) out.push_back(static_cast<std::uint8_t>(x >> shift & 0xff));
 }
 
-/// CRC-32 of ISO 3309, as PNG's annex D defines it.
+/// Returns the CRC-32 of ISO 3309, as defined by annex D of PNG.
 std::uint32_t crc32(const Bytes& bytes) {
     std::uint32_t crc = ~0u;
     for (const std::uint8_t byte : bytes) {
@@ -117,7 +117,7 @@ std::uint32_t crc32(const Bytes& bytes) {
     return ~crc;
 }
 
-/// RFC 1950, §8.2.
+/// Returns the Adler-32 checksum of RFC 1950, §8.2.
 std::uint32_t adler32(const Bytes& bytes) {
     std::uint32_t a = 1, b = 0;
     for (const std::uint8_t byte : bytes) {
@@ -139,7 +139,7 @@ void write_bytes(const std::filesystem::path& path, const Bytes& bytes) {
     write_file(path, std::string(bytes.begin(), bytes.end()));
 }
 
-/// Three mantissas and a common exponent.
+/// Returns three mantissas and a common exponent.
 std::array<std::uint8_t, 4> rgbe(Rgb c) {
     const float largest = max_component(c);
     if (!(largest > 1e-32f)) return {0, 0, 0, 0};
@@ -155,7 +155,7 @@ std::array<std::uint8_t, 4> rgbe(Rgb c) {
 void write_png(const std::filesystem::path& path, const Image<Rgb8>& image) {
     Bytes rows;
     for (int y = 0; y < image.height(); ++y) {
-        rows.push_back(2); // each byte less the one above it
+        rows.push_back(2); // filter type "Up": each byte minus the one above it
         for (int x = 0; x < image.width(); ++x) {
             const Rgb8 here = image(x, y), above = y > 0 ? image(x, y - 1) : Rgb8{};
             for (const auto channel : {&Rgb8::r, &Rgb8::g, &Rgb8::b})
@@ -166,7 +166,7 @@ void write_png(const std::filesystem::path& path, const Image<Rgb8>& image) {
     append_big_endian(header, static_cast<std::uint32_t>(image.width()));
     append_big_endian(header, static_cast<std::uint32_t>(image.height()));
     header.insert(header.end(), {8, 2, 0, 0, 0}); // 8 bits, RGB, no interlace
-    Bytes stream{0x78, 0x01};                     // zlib's header (RFC 1950)
+    Bytes stream{0x78, 0x01}; // zlib's header (RFC 1950)
     deflate(rows, stream);
     append_big_endian(stream, adler32(rows));
 
@@ -185,7 +185,8 @@ void write_hdr(const std::filesystem::path& path, const ImageRgb& image) {
     for (int y = 0; y < image.height(); ++y) {
         for (const int byte : {2, 2, image.width() >> 8, image.width() & 0xff})
             file.push_back(static_cast<std::uint8_t>(byte));
-        // A row is its four components one after the other, in runs; all of ours are literal, at most 128 long.
+        // A row stores its four components one after the other, in runs. All runs here are literal, of at most 128
+        // bytes.
         for (std::size_t component = 0; component < 4; ++component) {
             for (int x = 0; x < image.width(); ++x) {
                 if (x % 128 == 0) file.push_back(static_cast<std::uint8_t>(std::min(128, image.width() - x)));

@@ -1,19 +1,19 @@
-// A small random number generator whose numbers are the same everywhere.
+// This header declares a small random number generator with the same output on every platform.
 #pragma once
 
 #include <cstdint>
 
 namespace duet::models {
 
-/// PCG32, XSH-RR (O'Neill 2014, «PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms», §6.3):
-/// what a seed gives is fixed by integer arithmetic alone, unlike the distributions of <random>.
+/// This is PCG32, XSH-RR (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms",
+/// §6.3). Unlike the distributions of <random>, its output for a seed is determined by integer arithmetic alone.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed * kMultiplier + kIncrement) { next(); }
 
-    /// Uniform in [0, 1).
+    /// Returns a uniform value in [0, 1).
     double uniform() { return next() * 0x1p-32; }
-    /// Uniform in [low, high).
+    /// Returns a uniform value in [low, high).
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
 private:

@@ -1,4 +1,5 @@
-// sky.hdr: an evening sky as an environment: blue above, warm at the horizon, clouds, and a low sun behind haze.
+// This file generates sky.hdr, an environment map of an evening sky: blue above, warm at the horizon, with clouds and
+// a low sun behind haze.
 #include "models/field.h"
 #include "models/generate.h"
 #include "models/picture.h"
@@ -12,7 +13,7 @@ Rgbd sky(Vec3d w) {
     const double height = max(w.y, 0.0), sun = max(dot(w, kSun), 0.0);
     const Rgbd zenith(0.13, 0.30, 0.78), horizon(0.84, 0.76, 0.70);
     Rgbd color = lerp(horizon, zenith, std::pow(smooth_step(0.0, 0.65, height), 0.5));
-    // Clouds lie in a plane overhead and thin out towards the horizon.
+    // Clouds are in a plane overhead and thin out toward the horizon.
     const Vec3d plane = w * (1.6 / max(w.y, 0.05));
     double cloud = 0, weight = 0.6;
     for (double frequency = 1; frequency < 12; frequency *= 2.1, weight *= 0.5)
@@ -35,7 +36,7 @@ void write_sky(const std::filesystem::path& folder) {
     ImageRgb image(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            // u = 1/2 + atan2(x, -z) / 2 pi; the top row is +y.
+            // This inverts u = 1/2 + atan2(x, -z) / 2 pi; the top row is +y.
             const double phi = ((x + 0.5) / kWidth - 0.5) * 2 * kPiDouble, theta = (y + 0.5) / kHeight * kPiDouble;
             const Vec3d w(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
             image(x, y) = Rgb(lerp(ground(w), sky(w), smooth_step(-0.02, 0.02, w.y)));

@@ -1,5 +1,5 @@
-// spheres.json: the cover scene of Ray Tracing in One Weekend (Shirley, Black and Hollasch, §14.1), with random numbers
-// of our own.
+// This file generates spheres.json: the cover scene of Ray Tracing in One Weekend (Shirley, Black and Hollasch,
+// §14.1), with our own random numbers.
 #include "common/system/file.h"
 #include "common/vec/vec.h"
 #include "models/generate.h"
@@ -15,12 +15,12 @@ std::string triple(Vec3d v) {
     return "[" + number(v.x, kDecimals) + ", " + number(v.y, kDecimals) + ", " + number(v.z, kDecimals) + "]";
 }
 
-/// The book moves a mirrored direction by up to `fuzz` in a ball: ±fuzz/√3 along an axis. A microfacet tilted by δ
-/// moves it by 2δ, so the slopes spread by fuzz/(2√3) along an axis, which is a microfacet width of √2 times that: α =
-/// 0.41·fuzz. Scene files give roughness = √α.
+/// Converts the book's fuzz to roughness. The book moves a mirrored direction by up to `fuzz` within a sphere:
+/// ±fuzz/√3 along an axis. A microfacet tilted by δ moves it by 2δ, so the slopes spread by fuzz/(2√3) along an
+/// axis. The microfacet width is √2 times that: α = 0.41·fuzz. Scene files give roughness = √α.
 double roughness_of_fuzz(double fuzz) { return std::sqrt(0.41 * fuzz); }
 
-/// The two lists of the scene file, and how many spheres they hold.
+/// Stores the two lists of the scene file and the number of spheres in them.
 struct Lists {
     std::string materials, objects;
     int count = 0;
@@ -46,7 +46,7 @@ Vec3d random_color(Random& random, double low, double high) {
     return {r, g, b};
 }
 
-/// 80 % diffuse, 15 % metal, 5 % glass.
+/// Returns a random material: 80 % diffuse, 15 % metal, 5 % glass.
 std::string random_material(Random& random) {
     const double choice = random.uniform();
     if (choice < 0.8) {
@@ -71,14 +71,15 @@ void write_spheres(const std::filesystem::path& folder) {
             const double x = a + 0.9 * random.uniform(), z = b + 0.9 * random.uniform();
             const std::string material = random_material(random);
             const Vec3d center(x, 0.2, z);
-            if (length(center - Vec3d(4, 0.2, 0)) > 0.9) lists.add(center, 0.2, material); // clear of the metal sphere
+            // Does not intersect the metal sphere.
+            if (length(center - Vec3d(4, 0.2, 0)) > 0.9) lists.add(center, 0.2, material);
         }
     }
     lists.add({0, 1, 0}, 1, glass());
     lists.add({-4, 1, 0}, 1, diffuse({0.4, 0.2, 0.1}));
     lists.add({4, 1, 0}, 1, metal({0.7, 0.6, 0.5}, 0));
 
-    // A defocus angle of 0.6° at focus distance 10 is a lens of radius 10·tan 0.3°.
+    // A defocus angle of 0.6° at focus distance 10 corresponds to a lens of radius 10·tan 0.3°.
     const double aperture = 10 * std::tan(radians(0.3));
     write_file(
         folder / "spheres.json",

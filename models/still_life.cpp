@@ -1,4 +1,4 @@
-// The small things of a still life: pear.obj (three materials: pear.mtl), bowl.obj, plinth.obj.
+// This file generates the objects of a still life: pear.obj (three materials: pear.mtl), bowl.obj and plinth.obj.
 #include "common/system/file.h"
 #include "models/field.h"
 #include "models/generate.h"
@@ -20,7 +20,7 @@ void add_pear_body(MeshBuilder& mesh) {
     const std::size_t first = mesh.positions.size();
     mesh.use_material("skin");
     add_revolution(mesh, profile, 32, [](std::size_t row) { return static_cast<double>(row) / 24; });
-    for (std::size_t i = first; i < mesh.positions.size(); ++i) { // no pear is round, or straight
+    for (std::size_t i = first; i < mesh.positions.size(); ++i) { // makes the pear slightly irregular
         Vec3d& p = mesh.positions[i];
         const double swell = 1 + 0.05 * gradient_noise(p * 22.0);
         p = {p.x * swell + 0.9 * sqr(p.y), p.y, p.z * swell};
@@ -52,7 +52,7 @@ void add_pear_leaf(MeshBuilder& mesh) {
     add_tube(mesh, leaf);
 }
 
-/// Green-gold skin with a red cheek and freckles.
+/// Paints green-gold skin with a red cheek and freckles.
 Image<Rgb8> paint_pear() {
     constexpr int kSize = 256;
     Image<Rgb8> image(kSize, kSize);
@@ -104,7 +104,7 @@ void write_bowl(const std::filesystem::path& folder) {
 }
 
 void write_plinth(const std::filesystem::path& folder) {
-    // A cylinder of radius 1 and height 1, its upper edge rounded off.
+    // The plinth is a cylinder of radius 1 and height 1 with a rounded upper edge.
     std::vector<Vec2d> profile{{0, 0}, {1, 0}, {1, 0.92}};
     for (int i = 1; i <= 6; ++i) {
         const double angle = i * kPiDouble / 12;

@@ -1,5 +1,5 @@
-// One ball for all materials: meshes/test-ball.obj, with a groove, a knob and a foot, and a scene for each material in
-// balls/, the same but for that.
+// This file generates the material test ball meshes/test-ball.obj, with a groove, a knob and a foot, and one scene in
+// balls/ for each material. The scenes differ only in the material.
 #include "common/system/file.h"
 #include "models/generate.h"
 #include "models/mesh_builder.h"
@@ -11,9 +11,9 @@
 namespace duet::models {
 namespace {
 
-constexpr double kRadius = 0.8, kHeight = 0.92; ///< of the ball; of its centre above the ground
+constexpr double kRadius = 0.8, kHeight = 0.92; ///< radius of the ball; height of its center above the ground
 
-/// Points of (radius, height) of the ball between two angles above the horizon.
+/// Appends points of (radius, height) on the ball between two angles above the horizon.
 void add_arc(std::vector<Vec2d>& profile, double from_degrees, double to_degrees, int steps) {
     for (int i = 0; i <= steps; ++i) {
         const double angle = radians(from_degrees + (to_degrees - from_degrees) * i / steps);
@@ -21,7 +21,7 @@ void add_arc(std::vector<Vec2d>& profile, double from_degrees, double to_degrees
     }
 }
 
-/// A bulge (or a hollow) about a point of the profile, from its right to its left.
+/// Appends a convex (or concave) bend about a point of the profile, from its right to its left.
 void add_bend(std::vector<Vec2d>& profile, double degrees, double radius, bool hollow) {
     const double middle = radians(degrees);
     const Vec2d center(kRadius * std::cos(middle), kHeight + kRadius * std::sin(middle));
@@ -65,7 +65,8 @@ std::span<const BallScene> ball_scenes() {
 }
 
 void write_test_ball(const std::filesystem::path& folder) {
-    std::vector<Vec2d> profile{{0, 0}, {0.2, 0}, {0.4, 0}, {0.42, 0.006}, {0.426, 0.02}, {0.42, 0.034}, {0.39, 0.06}, {0.35, 0.1}};
+    std::vector<Vec2d> profile{{0, 0}, {0.2, 0}, {0.4, 0}, {0.42, 0.006}, {0.426, 0.02}, {0.42, 0.034}, {0.39, 0.06},
+                               {0.35, 0.1}};
     add_arc(profile, -58, 22, 20);
     add_bend(profile, 28, 0.06, true);
     add_arc(profile, 34, 80, 12);
@@ -77,7 +78,8 @@ void write_test_ball(const std::filesystem::path& folder) {
     compute_normals(mesh, 50);
     write_obj(folder / "meshes/test-ball.obj", mesh, "A ball to see materials on, made by models/test_ball.cpp.");
 
-    // The floor is a millimetre below: where glass touched it, which of the two were hit would be chance.
+    // The floor is one millimeter below the ball. If glass touched the floor, rounding would decide which of the two
+    // is hit.
     for (const BallScene& ball : ball_scenes())
         write_file(folder / "balls" / (ball.name + ".json"), R"({
   "description": ")" + ball.description + R"(",

@@ -1,4 +1,4 @@
-// The scenes of the test ball: one a material.
+// This header declares the scenes of the test ball, one for each material.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@ namespace duet::models {
 
 struct BallScene {
     std::string name, description;
-    std::string material; ///< its keys, as JSON
-    std::string objects;  ///< more lines of objects, or empty
+    std::string material; ///< the material's keys, as JSON
+    std::string objects; ///< additional lines of objects, or empty
 };
-/// In the order of the gallery's page.
+/// Returns the scenes in the order of the gallery's page.
 std::span<const BallScene> ball_scenes();
 
 } // namespace duet::models

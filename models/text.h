@@ -1,15 +1,15 @@
-// Text whose bytes are the same on every machine.
+// This header declares number formatting that is bitwise equal on every platform.
 #pragma once
 
 #include <string>
 
 namespace duet::models {
 
-/// Appends x in plain decimal notation, rounded to `decimals` places, without trailing zeros: "0.25", "-3", "0".
-/// Independent of the locale; x is finite and below 1e12 in size.
+/// Appends x in plain decimal notation, rounded to `decimals` places, without trailing zeros: "0.25", "-3", "0". It
+/// is independent of the locale; x must be finite and |x| below 1e12.
 void append_number(std::string& text, double x, int decimals);
 
-/// Fixed-point text of x: see append_number.
+/// Returns x as text; see append_number.
 std::string number(double x, int decimals);
 
 } // namespace duet::models

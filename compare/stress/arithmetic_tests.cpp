@@ -1,4 +1,4 @@
-// Robust arithmetic, frames, warps and film sums against exact integers, long double and double.
+// These tests compare robust arithmetic, frames, warps and film sums with exact integers, long double and double.
 #include "common/film/film.h"
 #include "common/sampling/warp.h"
 #include "common/vec/frame.h"
@@ -17,7 +17,7 @@ __extension__ typedef __int128 Int128; // ISO C++ has no name for it
 
 // Differences of products --------------------------------------------------------------------------------------------
 
-/// Four factors whose products are far apart, nearly equal, or nearly opposite.
+/// Returns four factors whose products are far apart, nearly equal, or nearly opposite.
 std::array<float, 4> factors(Trial& trial) {
     TrialRandom& random = trial.random;
     const float a = random.sign() * random.magnitude(1e-12f, 1e12f);
@@ -40,7 +40,7 @@ StressResult difference_float(const StressTest& test, const StressSetting& setti
     });
 }
 
-/// Error of a double in ulp of an exact integer of up to 107 bits.
+/// Returns the error of a double, in ulp of an exact integer of up to 107 bits.
 double ulps_of_integer(double value, Int128 whole) {
     const Int128 off = static_cast<Int128>(value) - whole; // both are integers: exact
     Int128 size = whole < 0 ? -whole : whole;
@@ -79,7 +79,7 @@ StressResult normalize_any_length(const StressTest& test, const StressSetting& s
     return run_trials(test, setting, [](Trial& trial) {
         const Vec3 direction = trial.random.direction();
         const Vec3 v = direction * trial.random.magnitude(1e-30f, 1e38f);
-        const auto off = [&](Vec3 unit) { // from the exact direction of the very same v
+        const auto off = [&](Vec3 unit) { // error relative to the exact direction of the float vector v
             const Vec3d wide(v);
             return in_roundoffs(length(Vec3d(unit) - wide / length(wide)));
         };
@@ -89,7 +89,8 @@ StressResult normalize_any_length(const StressTest& test, const StressSetting& s
     });
 }
 
-/// A unit vector: anywhere, close to −z by any order of magnitude, or on an axis with zeros of both signs.
+/// Returns a unit vector in a random direction, close to −z by a random order of magnitude, or on an axis with zeros
+/// of both signs.
 Vec3 normal_near_pole(Trial& trial) {
     TrialRandom& random = trial.random;
     const float zero = random.coin() ? 0.0f : -0.0f;
@@ -107,7 +108,8 @@ Vec3 normal_near_pole(Trial& trial) {
     }
 }
 
-/// How far s, t and n are from right angles, unit length and right-handedness; s and t are judged, n is as given.
+/// Returns the deviation of s, t and n from right angles, unit length and right-handedness. It measures s and t; n is
+/// taken as given.
 double frame_error(const Frame& frame) {
     const Vec3d s(frame.s), t(frame.t), n(frame.n);
     double worst = length(cross(s, t) - n);
@@ -116,7 +118,8 @@ double frame_error(const Frame& frame) {
     return in_roundoffs(worst);
 }
 
-/// As published first: exact pole aside, 1/(1 + n.z) cancels near −z (Frisvad 2012; Duff et al. 2017, listing 1).
+/// This is the frame as first published: except at the exact pole, 1/(1 + n.z) cancels near −z (Frisvad 2012; Duff et
+/// al. 2017, listing 1).
 Frame frisvad_frame(Vec3 n) {
     if (n.z < -0.9999999f) return {{0, -1, 0}, {-1, 0, 0}, n};
     const float a = 1 / (1 + n.z), b = -n.x * n.y * a;
@@ -146,7 +149,7 @@ StressResult frame_round_trip(const StressTest& test, const StressSetting& setti
 
 // Random numbers and warps -------------------------------------------------------------------------------------------
 
-/// 32 bits, every other time among the largest.
+/// Returns 32 random bits; every second trial has a value among the largest.
 std::uint32_t extreme_bits(Trial& trial) {
     const std::uint32_t bits = high_bits(trial.random.bits());
     return trial.number() % 2 ? 0xffffffffu - (bits >> 22) : bits;
@@ -165,9 +168,9 @@ StressResult unit_numbers(const StressTest& test, const StressSetting& setting) 
 StressResult hemisphere_rim(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         Vec2 u{unit_float(extreme_bits(trial)), trial.random.uniform()};
-        if (trial.random.coin()) u.x = kOneMinusEpsilon - u.x; // the other end
+        if (trial.random.coin()) u.x = kOneMinusEpsilon - u.x; // the other end of the interval
         if (trial.random.coin()) std::swap(u.x, u.y);
-        const auto error = [](Vec3 w) { // a direction on or below the horizon has density 0 or lies on the wrong side
+        const auto error = [](Vec3 w) { // a direction at or below the horizon has density 0 or is on the wrong side
             return w.z > 0 ? in_roundoffs(length(Vec3d(w)) - 1) : std::numeric_limits<double>::infinity();
         };
         const Vec2 disk = concentric_disk(u);

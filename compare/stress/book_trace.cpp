@@ -8,7 +8,7 @@ namespace duet::compare {
 namespace {
 
 constexpr float kNearest = 0.001f; // "shadow acne", Ray Tracing in One Weekend §9.2
-constexpr float kParallel = 1e-8f; // scratchapixel's; the paper has 1e-6
+constexpr float kParallel = 1e-8f; // the value of scratchapixel; the paper has 1e-6
 
 std::optional<float> book_intersect(const Ray& ray, Vec3 a, Vec3 edge1, Vec3 edge2) {
     const Vec3 p = cross(ray.direction, edge2);

@@ -1,5 +1,5 @@
-// The ray tracer of the books, for the naive columns: Möller and Trumbore's triangle (1997) with its customary epsilon,
-// Ray Tracing in One Weekend's sphere and t > 0.001, in float.
+// This header declares the textbook ray tracer of the naive columns, in float. It uses the triangle test of Möller
+// and Trumbore (1997) with its customary epsilon, and the sphere test and t > 0.001 of Ray Tracing in One Weekend.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -8,12 +8,12 @@
 
 namespace duet::compare {
 
-/// Tries every primitive, in world space. Refers to the scene.
+/// Tests every primitive in world space. It keeps no reference to the scene.
 class BookTracer {
 public:
     explicit BookTracer(const Scene& scene);
 
-    /// object and primitive of the nearest hit, and its t; not u and v.
+    /// Returns the object, the primitive and t of the nearest hit; u and v are not set.
     Hit nearest(const Ray& ray) const;
 
 private:

@@ -13,8 +13,8 @@ namespace duet::compare {
 
 namespace {
 
-/// Upper tail of the gamma distribution: a series for x < a + 1, a continued fraction beyond (Abramowitz and Stegun
-/// 1964, 6.5.29 and 6.5.31, the latter evaluated by Lentz's method).
+/// Returns the upper tail of the gamma distribution. It uses a series for x < a + 1 and a continued fraction
+/// otherwise (Abramowitz and Stegun 1964, 6.5.29 and 6.5.31, the latter evaluated by Lentz's method).
 double upper_gamma(double a, double x) {
     if (!(x > 0)) return 1;
     const double factor = std::exp(a * std::log(x) - x - std::lgamma(a));
@@ -35,11 +35,11 @@ double upper_gamma(double a, double x) {
     return factor * h;
 }
 
-// Gauss and Legendre's rule of three points on [−1, 1]: exact for polynomials of degree 5.
+// The three-point Gauss-Legendre rule on [−1, 1] is exact for polynomials of degree 5.
 constexpr std::array<double, 3> kNodes{-0.774596669241483377, 0, 0.774596669241483377};
 constexpr std::array<double, 3> kWeights{5.0 / 9, 8.0 / 9, 5.0 / 9};
 
-/// ∫ f over [x0, x1] × [y0, y1], divided into n × n parts.
+/// Returns ∫ f over [x0, x1] × [y0, y1], divided into n × n cells.
 template <typename F> double quadrature(F f, double x0, double x1, double y0, double y1, int n) {
     const double dx = (x1 - x0) / n, dy = (y1 - y0) / n;
     double sum = 0;
@@ -105,7 +105,7 @@ DirectionResult test_directions(const DirectionTest& test, const DirectionSample
             continue;
         }
         const Vec3d local(frame.to_local(*w));
-        // 1 − cos θ without the difference where it is small
+        // This computes 1 − cos θ without cancellation for small θ.
         const double sin2 = local.x * local.x + local.y * local.y;
         const double gap = local.z > 0 ? sin2 / (1 + std::sqrt(std::max(0.0, 1 - sin2))) : 1 - local.z;
         const double phi = std::atan2(local.y, local.x);
@@ -128,8 +128,8 @@ DirectionResult test_directions(const DirectionTest& test, const DirectionSample
             expected[static_cast<std::size_t>(ring * test.sectors + sector)] = mass * test.samples;
             integral += mass;
         }
-    // What a density that integrates to less than 1 leaves is the share of draws that give nothing. Where there was no
-    // such draw the rest of the integral is the quadrature's error, and the caller's business.
+    // The expected fraction of draws without a sample is 1 minus the integral of the density. If no draw failed, the
+    // deviation of the integral from 1 is attributed to the quadrature, and the caller must check the integral.
     if (observed[cells] > 0)
         expected[cells] = std::max(0.0, (1 - integral) * test.samples);
     else

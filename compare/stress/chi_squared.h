@@ -1,4 +1,4 @@
-// Pearson's chi-squared test: do counts follow the expected frequencies?
+// This header declares Pearson's chi-squared test, which compares counts with expected frequencies.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -12,28 +12,29 @@
 
 namespace duet::compare {
 
-/// P(X > statistic) for X chi-squared distributed: the regularized upper incomplete gamma function Q(dof/2,
+/// Returns P(X > statistic) for a chi-squared distributed X: the regularized upper incomplete gamma function Q(dof/2,
 /// statistic/2).
 double chi_squared_tail(double statistic, int degrees_of_freedom);
 
 struct ChiSquared {
-    double p_value = 0;  ///< the odds of counts at least this unlikely
-    std::string account; ///< statistic, degrees of freedom, worst bin: for the message of a failure
+    double p_value = 0; ///< probability of counts at least this unlikely
+    std::string account; ///< statistic, degrees of freedom and worst bin, for the failure message
 };
-/// Bins of expectation below 5 are pooled, with those where nothing is expected.
+/// Compares two histograms of equal size. Bins with an expectation below 5 are pooled, including those with
+/// expectation 0.
 ChiSquared chi_squared(const std::vector<double>& observed, const std::vector<double>& expected);
 
-/// Draws directions and compares them with a density by solid angle over cells of equal solid angle in a frame about
-/// `axis`, where the density's features lie. Draws that give nothing are counted in a bin of their own; if none did,
-/// the density is taken as it is up to a factor: check the integral, too.
+/// Draws directions and compares them with a density by solid angle, over cells in a frame about `axis`, where the
+/// density's features lie. For axis_power = 1 the cells have equal solid angles. Draws without a sample are counted
+/// in a separate bin. If there are none, the density is normalized by its integral, so the caller should check the
+/// integral, too.
 struct DirectionTest {
     Vec3 axis{0, 0, 1};
     int samples = 100'000;
     std::uint64_t seed = 1;
     int rings = 16, sectors = 32;
-    int subdivisions = 8; ///< of a cell along each axis for the quadrature of the density
-    double axis_power =
-        1; ///< cells are narrower about the axis the larger it is: ring borders at 1 − cos θ = 2·(i/rings)^power
+    int subdivisions = 8; ///< per cell and axis, for the quadrature of the density
+    double axis_power = 1; ///< ring borders are at 1 − cos θ = 2·(i/rings)^power; larger values narrow the rings
 };
 struct DirectionResult {
     ChiSquared chi_squared;

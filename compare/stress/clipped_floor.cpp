@@ -1,5 +1,5 @@
-// A floor of many triangles that runs under the eye and behind it: cut at the near plane and the guard band, it must
-// still have no hole and no overlap.
+// This test renders a floor of many triangles that extends below and behind the eye. After clipping at the near plane
+// and the guard band it must have no gap and no overlap.
 #include "compare/stress/book_raster.h"
 #include "compare/stress/projection_runs.h"
 #include "compare/stress/projection_scenes.h"
@@ -8,16 +8,16 @@ namespace duet::compare {
 
 namespace {
 
-constexpr int kSide = 12; // pixels a side of a trial's window
+constexpr int kSide = 12; // pixels per side of a trial's window
 constexpr std::uint32_t kCells = 5;
 
-/// A square in the plane y = −height about the y axis, its border straight, its inner vertices anywhere within: folded
-/// over in most trials.
+/// Returns a square mesh in the plane y = −height about the y axis. Its border is straight and its inner vertices are
+/// random, so most meshes fold over themselves.
 Mesh random_floor(TrialRandom& random, float height, float extent) {
     Mesh floor;
     for (std::uint32_t row = 0; row <= kCells; ++row)
         for (std::uint32_t column = 0; column <= kCells; ++column) {
-            const auto along = [&](std::uint32_t i) { // the ends exactly at ±extent
+            const auto along = [&](std::uint32_t i) { // the ends are exactly ±extent
                 return i == 0 ? -extent : i == kCells ? extent : extent * (2.0f * static_cast<float>(i) / kCells - 1);
             };
             const bool inner = row % kCells != 0 && column % kCells != 0;
@@ -34,8 +34,8 @@ Mesh random_floor(TrialRandom& random, float height, float extent) {
     return floor;
 }
 
-/// What the window's samples see of the whole square. Neither where the outline, or the diagonal, is so close that
-/// snapping has a say.
+/// Computes whether the whole square covers a sample. The result is empty where the sample is so close to the border
+/// or the diagonal that vertex snapping can decide.
 class Square {
 public:
     Square(const Pinhole& pinhole, float height, float extent)
@@ -54,7 +54,7 @@ private:
     std::array<ProjectedTriangle, 2> halves_;
 };
 
-/// How many of the triangles cover each sample.
+/// Counts how many of the triangles cover each sample.
 Image<int> count_careful(const Mesh& floor, const TrialView& v) {
     Image<int> count(kSide, kSide, 0);
     CoverageProbe probe(v.window);
@@ -98,7 +98,7 @@ StressResult clipped_floor(const StressTest& test, const StressSetting& setting)
             const std::optional<bool> seen = square.sees(v.window.offset.position(x, y));
             const int column = x - v.window.rect.x0, row = y - v.window.rect.y0;
             if (!seen) return;
-            // Once, or two times more for each fold: an odd number where the square is seen.
+            // Each fold adds two covering triangles, so the count is odd where the square is visible.
             wrong += (count(column, row) % 2 != 0) != *seen;
             naive_wrong += (naive(column, row) % 2 != 0) != *seen;
         });

@@ -9,8 +9,8 @@ using raster::FixedPoint, raster::kSubPixels;
 
 namespace {
 
-constexpr int kPictureSide = 16384; // the largest that the rasterizer accepts
-/// As far as the guard band lets a vertex be, beyond the largest picture.
+constexpr int kPictureSide = 16384; // the largest side that the rasterizer accepts
+/// This is the greatest coordinate that the guard band allows for the largest image.
 constexpr std::int64_t kFarthest = (static_cast<std::int64_t>(raster::kGuardBand) + kPictureSide) * kSubPixels;
 
 std::int32_t within_guard(std::int64_t x) {
@@ -19,7 +19,7 @@ std::int32_t within_guard(std::int64_t x) {
 }
 FixedPoint guarded(std::int64_t x, std::int64_t y) { return {within_guard(x), within_guard(y)}; }
 
-/// Uniform in [−reach, reach].
+/// Returns a uniform value in [−reach, reach].
 std::int64_t about(TrialRandom& random, std::int64_t reach) {
     return static_cast<std::int64_t>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
 }
@@ -27,24 +27,24 @@ FixedPoint near(TrialRandom& random, FixedPoint p, std::int64_t reach) {
     const std::int64_t dx = about(random, reach);
     return guarded(p.x + dx, p.y + about(random, reach));
 }
-/// Of any order of magnitude, in grid points: 1 to the whole guard band.
+/// Returns a distance in grid points, of a random order of magnitude from 1 to the whole guard band.
 std::int64_t any_reach(TrialRandom& random) { return std::lround(random.magnitude(1, static_cast<float>(kFarthest))); }
 
-/// Anywhere within the guard band.
+/// Returns a uniform point within the guard band.
 FixedPoint anywhere(TrialRandom& random) { return near(random, {kFarthest / 2, kFarthest / 2}, kFarthest); }
 
-/// Beyond `through`, seen from `from`: the line of the two passes close by `through`, or right through it.
+/// Returns a point beyond `through`, seen from `from`. The line between the two passes through or close to `through`.
 FixedPoint beyond(TrialRandom& random, FixedPoint from, FixedPoint through) {
     const auto times = static_cast<std::int64_t>(1 + random.below(8));
     return guarded(through.x + (std::int64_t{through.x} - from.x) * times,
                    through.y + (std::int64_t{through.y} - from.y) * times);
 }
 
-/// The border that surrounds all samples of the window, at some distance from it.
+/// This rectangle surrounds all samples of the window at a random distance.
 struct Border {
     std::int32_t left, top, right, bottom;
 
-    FixedPoint at(double turn) const { // clockwise from the upper left corner, in quarters
+    FixedPoint at(double turn) const { // `turn` runs clockwise from the upper left corner, one unit per side
         const double side = std::floor(turn), along = turn - side;
         const auto between = [&](std::int32_t from, std::int32_t to) {
             return static_cast<std::int32_t>(std::lround(lerp(double{1} * from, double{1} * to, along)));
@@ -98,32 +98,32 @@ GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uin
     const FixedPoint p = point_in(random, window);
     const auto corner = [&](std::int64_t reach) { return near(random, p, reach); };
     switch (kind) {
-    case 0: // below a pixel
+    case 0: // smaller than a pixel
         return {corner(200), corner(200), corner(200)};
-    case 1: // of the window's size
+    case 1: // about the window's size
         return {corner(3000), corner(3000), corner(3000)};
-    case 2: { // any size, one corner at the point
+    case 2: { // any size, with one corner at the point
         const std::int64_t reach = any_reach(random);
         return {p, corner(reach), corner(reach)};
     }
-    case 3: // as large as there are
+    case 3: // the largest possible
         return {anywhere(random), anywhere(random), anywhere(random)};
-    case 4: { // an edge through the window
+    case 4: { // with an edge through the window
         const FixedPoint a = corner(any_reach(random));
         return {a, beyond(random, a, p), anywhere(random)};
     }
-    case 5: { // a sliver through it
+    case 5: { // a sliver through the window
         const FixedPoint a = corner(any_reach(random)), b = beyond(random, a, p);
         return {a, b, near(random, random.coin() ? b : p, 3)};
     }
-    case 6: { // corners on samples
+    case 6: { // with corners on samples
         const auto on_sample = [&] {
             const FixedPoint q = point_in(random, window);
             return FixedPoint{(q.x & -kSubPixels) + window.offset.x, (q.y & -kSubPixels) + window.offset.y};
         };
         return {on_sample(), on_sample(), on_sample()};
     }
-    default: { // a row and a column of samples for edges
+    default: { // with edges along a row and a column of samples
         const FixedPoint a = corner(any_reach(random));
         return {p, {a.x, p.y}, {p.x, a.y}};
     }
@@ -133,7 +133,7 @@ GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uin
 std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window) {
     const Border border = around(random, window);
     const std::size_t count = 4 + random.below(61);
-    std::vector<double> turns{0, 1, 2, 3}; // the border's corners, or it would not surround the window
+    std::vector<double> turns{0, 1, 2, 3}; // the border's corners are needed to surround the window
     for (std::size_t i = 4; i < count; ++i) turns.push_back(4 * static_cast<double>(random.uniform()));
     std::sort(turns.begin(), turns.end());
     const FixedPoint hub = point_in(random, window);
@@ -146,7 +146,8 @@ std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window) 
 std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window) {
     const Border border = around(random, window);
     const std::size_t columns = 2 + random.below(40);
-    const auto edge = [&] { // places along the upper or lower border, most of them over the window, many close together
+    // X coordinates along the upper or lower border: most above or below the window, many close together.
+    const auto edge = [&] {
         std::vector<std::int32_t> xs{border.left, border.right};
         while (xs.size() < columns)
             xs.push_back(random.coin() ? point_in(random, window).x : within_guard(xs.back() + about(random, 3)));
@@ -168,7 +169,7 @@ std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window
 std::vector<GridTriangle> random_grid(TrialRandom& random, const Window& window) {
     const Border border = around(random, window);
     constexpr int kCells = 4;
-    const std::int64_t reach = random.coin() ? 0 : any_reach(random); // 0: half of the vertices lie on samples
+    const std::int64_t reach = random.coin() ? 0 : any_reach(random); // 0: half of the vertices are on samples
     std::array<std::array<FixedPoint, kCells + 1>, kCells + 1> p;
     for (int row = 0; row <= kCells; ++row)
         for (int column = 0; column <= kCells; ++column) {

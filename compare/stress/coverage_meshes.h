@@ -1,4 +1,4 @@
-// Triangles and meshes of the sub-pixel grid that try the rules of coverage.
+// This header declares random triangles and meshes on the subpixel grid that exercise the coverage rules.
 #pragma once
 
 #include "compare/stress/drawing.h"
@@ -8,21 +8,23 @@
 
 namespace duet::compare {
 
-/// Pixels anywhere in a picture of up to kMaxPictureSide a side, their sample at any place of the pixel, one in four
-/// at its centre.
+/// Returns a window of pixels at a random position in an image of up to kMaxPictureSide per side. The sample is at a
+/// random offset in the pixel, and in one of four windows at its center.
 Window random_window(TrialRandom& random, int side);
 
-/// A point of the grid in the window; every other one lies on a sample.
+/// Returns a grid point in the window; every second one is on a sample.
 raster::FixedPoint point_in(TrialRandom& random, const Window& window);
 
-/// A triangle whose corners or edges pass near or through samples of the window: `kind` in [0, kTriangleKinds).
+/// Selects the kind of a random triangle in [0, kTriangleKinds). Its corners or edges pass near or through samples of
+/// the window.
 inline constexpr std::uint32_t kTriangleKinds = 8;
 GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uint32_t kind);
 
-/// Meshes with the form of a disk whose border runs once around the window. So, whatever their inner vertices do, the
-/// triangles that cover a sample and run clockwise are one more than those that run the other way.
-std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window);   ///< 4 to 64 around one vertex
-std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window); ///< slivers, side by side
-std::vector<GridTriangle> random_grid(TrialRandom& random, const Window& window);  ///< jittered or wildly folded
+/// These meshes are topological disks whose border surrounds the window once. Whatever their inner vertices are, each
+/// sample is covered by one more clockwise than counter-clockwise triangle.
+/// 4 to 64 triangles around one vertex.
+std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window);
+std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window); ///< adjacent slivers
+std::vector<GridTriangle> random_grid(TrialRandom& random, const Window& window); ///< jittered or heavily folded
 
 } // namespace duet::compare

@@ -1,4 +1,5 @@
-// Which samples triangles cover, against exact integers: one by one, and meshes whose triangles share every edge.
+// These tests compare the coverage of single triangles, and of meshes whose triangles share every edge, with exact
+// integers.
 #include "compare/stress/book_raster.h"
 #include "compare/stress/coverage_meshes.h"
 
@@ -8,7 +9,7 @@ namespace {
 
 using raster::kSubPixels;
 
-constexpr int kSide = 12; // pixels a side of a trial's window
+constexpr int kSide = 12; // pixels per side of a trial's window
 
 BookTriangle as_book(const GridTriangle& t) {
     const auto vertex = [](raster::FixedPoint p) { return BookVertex{Vec2(Vec2d(p.x, p.y) * (1.0 / kSubPixels)), 1}; };
@@ -45,8 +46,8 @@ StressResult exact_integers(const StressTest& test, const StressSetting& setting
     });
 }
 
-/// Samples of the window that the mesh's triangles do not cover exactly once, those that run counter-clockwise counted
-/// as minus one.
+/// Counts the samples of the window whose coverage by the mesh is not exactly one. Counter-clockwise triangles count
+/// as −1.
 struct NotOnce {
     int careful = 0, naive = 0;
 };

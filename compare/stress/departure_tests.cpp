@@ -1,4 +1,5 @@
-// Leaving a surface: neither hitting it again nor missing what is close to it, at any scale, also in instances.
+// These tests spawn rays from surfaces, at any scale and also from instances. The rays must neither hit their own
+// surface nor miss nearby ones.
 #include "common/vec/frame.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/naive.h"
@@ -21,7 +22,7 @@ Mat4 random_placement(TrialRandom& random, float scale) {
                 scaling(Vec3d(x, y, z)));
 }
 
-/// A triangle, a quad or a sphere of about the given size, not far from the origin.
+/// Returns a triangle, a quad or a sphere of about the given size, near the origin.
 Shape random_shape(TrialRandom& random, float scale) {
     const auto point = [&] { return random.vector() * scale; };
     switch (random.below(3)) {
@@ -39,7 +40,7 @@ Shape random_shape(TrialRandom& random, float scale) {
     }
 }
 
-/// Some point of the shape, in its own space.
+/// Returns a random point of the shape, in object space.
 Vec3 point_of(const Shape& shape, TrialRandom& random) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->center + random.direction() * sphere->radius;
     const Corners c = primitive_corners(shape, 0);
@@ -47,7 +48,7 @@ Vec3 point_of(const Shape& shape, TrialRandom& random) {
     return c.p[0] + (c.p[1] - c.p[0]) * u + ((c.count == 4 ? c.p[3] : c.p[2]) - c.p[0]) * v;
 }
 
-/// The books' hit of the one object: its t beyond t_min.
+/// Returns the t beyond t_min at which the textbook routines hit the scene's only object.
 std::optional<float> naive_hit(const Scene& scene, Ray ray) {
     const Object& object = scene.objects[0];
     ray.origin = transform_point(object.to_object, ray.origin);
@@ -59,24 +60,24 @@ std::optional<float> naive_hit(const Scene& scene, Ray ray) {
     return c.count == 4 ? naive::intersect_triangle(ray, c.p[0], c.p[2], c.p[3], 0) : std::nullopt;
 }
 
-/// Away from the surface: any direction, every third one grazing.
+/// Returns a random direction away from the surface; every third one is grazing.
 Vec3 departing(Trial& trial, Vec3 n) {
     Vec3 w = trial.random.direction();
     if (trial.number() % 3 == 0) w = w - n * (dot(w, n) * (1 - trial.random.magnitude(1e-6f, 1e-1f)));
     return normalize(w);
 }
 
-/// One object, of the shape as it is or of an instance of it: rays that leave it on either side do not hit it again.
+/// Tests that rays leaving the scene's object, a shape or an instance, on either side do not hit it again.
 void judge_departure(Trial& trial, const Scene& built, Vec3 target, float scale) {
     const Stage stage(built);
     const Vec3 origin = target + trial.random.direction() * (scale * trial.random.uniform(0.5f, 20));
     const Ray ray{origin, normalize_scaled(target - origin)};
     const Hit hit = stage.accelerator.closest(ray);
-    if (!hit.valid()) return; // the target was rounded off the rim
+    if (!hit.valid()) return; // rounding moved the target off the silhouette
     const SurfacePoint point = surface_point(*stage.scene, ray, hit);
     Vec3 w = departing(trial, point.ng);
     const bool sphere = std::holds_alternative<Sphere>(stage.scene->shapes[0]);
-    if (sphere && dot(w, point.ng) < 0) w = -w; // inwards it meets the other side, rightly
+    if (sphere && dot(w, point.ng) < 0) w = -w; // an inward ray correctly hits the other side
     const Ray spawned{offset_origin(point, w), w};
     const Hit again = stage.accelerator.closest(spawned);
     Hit end;
@@ -122,7 +123,7 @@ StressResult into_spheres(const StressTest& test, const StressSetting& setting) 
         if (dot(w, point.ng) > 0) w = -w;
         const float cosine = -dot(w, point.ng), chord = 2 * sphere.radius * cosine;
         if (cosine < 1e-2f) return; // grazing: the chord is hardly longer than the offset
-        // A start δ below the surface makes the chord δ/cos longer and 2·δ·cos shorter.
+        // A ray origin δ below the surface makes the chord δ/cos longer and 2·δ·cos shorter.
         const Vec3 start = offset_origin(point, w);
         const float offset = dot(abs(point.ng), abs(start - point.p) + point.p_error) + 4e-7f * sphere.radius;
         const auto error = [&](std::optional<float> t) {
@@ -137,7 +138,8 @@ StressResult into_spheres(const StressTest& test, const StressSetting& setting) 
     });
 }
 
-/// Two sheets 4e-5 apart: what leaves one outwards is free, what leaves it inwards meets the other there.
+/// Two parallel quads are 4e-5 apart. A ray leaving one outward must escape, and a ray leaving it inward must hit the
+/// other quad.
 StressResult parallel_surfaces(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
@@ -167,7 +169,7 @@ StressResult parallel_surfaces(const StressTest& test, const StressSetting& sett
     });
 }
 
-/// What touches a surface ten kilometres wide is told from the surface itself.
+/// A point just above a surface 20 km wide must be distinguished from the surface.
 StressResult huge_ground(const StressTest& test, const StressSetting& setting) {
     constexpr float kHalf = 1e4f;
     const Stage stage(make_scene({QuadList{{{{-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}}}}}));
@@ -184,14 +186,14 @@ StressResult huge_ground(const StressTest& test, const StressSetting& setting) {
         if (!hit.valid()) return trial.careful_wrong(true);
         const SurfacePoint point = surface_point(*stage.scene, {above, down}, hit);
         const double truth = -static_cast<double>(above.y) / static_cast<double>(down.y);
-        // Far from the surface's middle a distance is rounded like its corners' distances.
+        // Far from the surface's center a distance has the rounding error of its corners' distances.
         trial.careful_wrong(!(std::abs(static_cast<double>(hit.t) - truth) <= 4e-3) ||
                             stage.accelerator.closest({above, up}).valid() ||
                             stage.accelerator.closest({offset_origin(point, up), up}).valid());
     });
 }
 
-/// Inside a convex body every face sees every other.
+/// Inside a convex body every face is visible from every other.
 StressResult convex_shadows(const StressTest& test, const StressSetting& setting) {
     std::vector<Stage> stages;
     std::vector<float> scales;
@@ -205,7 +207,7 @@ StressResult convex_shadows(const StressTest& test, const StressSetting& setting
         const Stage& stage = stages[which];
         const Mesh& mesh = std::get<Mesh>(stage.scene->shapes[0]);
         const Vec3 center = Vec3(1, -2, 3) * scales[which];
-        const auto on_face = [&](std::uint32_t face) { // away from its edges, which belong to its neighbours, too
+        const auto on_face = [&](std::uint32_t face) { // away from the edges, which neighboring faces share
             const float u = random.uniform(0.02f, 0.96f), v = random.uniform(0.02f, 0.98f - u);
             const auto& [a, b, c] = mesh.triangles[face];
             return mesh.positions[a] * (1 - u - v) + mesh.positions[b] * u + mesh.positions[c] * v;
@@ -231,7 +233,7 @@ StressResult convex_shadows(const StressTest& test, const StressSetting& setting
 
 // Instances ----------------------------------------------------------------------------------------------------------
 
-/// The exact place of a hit of a triangle, from the same floats.
+/// Returns the exact position of a triangle hit, computed in double from the same floats.
 Vec3d exact_place(const Scene& scene, const Hit& hit) {
     const Object& object = scene.objects[hit.object];
     const Corners c = primitive_corners(scene.shapes[object.shape], hit.primitive);
@@ -258,7 +260,8 @@ StressResult error_bounds(const StressTest& test, const StressSetting& setting) 
         const float u = random.uniform();
         const Hit hit{0, random.below(20), u, random.uniform(0, 1 - u), 1};
         const SurfacePoint point = surface_point(scene, {{}, {0, 0, 1}}, hit);
-        // And the way back, which a spawned ray's origin takes in float: seen from the object, then put in the world.
+        // This also transforms the point to object space, as a spawned ray's origin is, in float, and back to the
+        // world.
         const Object& object = scene.objects[0];
         const Vec3 back = transform_point_back(object.to_world, object.to_object, point.p);
         const Vec3d there = transform_point(Mat4d(to_world), Vec3d(back));
@@ -283,7 +286,8 @@ StressResult instances_as_baked(const StressTest& test, const StressSetting& set
             const Vec3 origin = target + random.direction() * (scale * random.uniform(2, 5));
             const Ray ray{origin, normalize_scaled(target - origin)};
             const Hit a = instance.accelerator.closest(ray), b = baked.accelerator.closest(ray);
-            if (a.valid() && b.valid() && a.primitive != b.primitive) continue; // a rounding apart, across an edge
+            // Rounding chose different sides of an edge.
+            if (a.valid() && b.valid() && a.primitive != b.primitive) continue;
             if (!a.valid() || !b.valid()) {
                 trial.careful(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());
                 continue;

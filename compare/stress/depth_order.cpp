@@ -1,4 +1,4 @@
-// Which of two surfaces is before the other: a few units in the last place apart, and at the same place.
+// These tests check which of two surfaces is nearer: surfaces a few ulp apart, and surfaces at equal depth.
 #include "common/vec/robust.h"
 #include "compare/stress/book_raster.h"
 #include "compare/stress/projection_runs.h"
@@ -11,19 +11,20 @@ namespace duet::compare {
 
 namespace {
 
-constexpr int kSide = 8; // pixels a side of a trial's window
+constexpr int kSide = 8; // pixels per side of a trial's window
 
 // Depth order --------------------------------------------------------------------------------------------------------
 
 constexpr float kNear = 1e-3f, kFar = 1e5f;
 
-/// A quadrilateral about the window as two triangles, upright or tilted, at `depth` in the window's middle.
+/// Returns a quadrilateral over the window as two triangles, perpendicular to the view or tilted, at `depth` in the
+/// window's center.
 Mesh random_layer(TrialRandom& random, const TrialView& v, double depth) {
     const raster::PixelRect& r = v.window.rect;
     const double margin = static_cast<double>(random.magnitude(1, 100));
     const double tilt_x = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin(),
                  tilt_y = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin();
-    const auto corner = [&](double x, double y) { // 1/depth is linear over the picture where the surface is plane
+    const auto corner = [&](double x, double y) { // 1/depth is linear in screen space on a plane
         return point_at(v.pinhole, {lerp(r.x0 - margin, r.x1 + margin, x), lerp(r.y0 - margin, r.y1 + margin, y)},
                         depth / (1 + tilt_x * (x - 0.5) + tilt_y * (y - 0.5)));
     };
@@ -33,14 +34,14 @@ Mesh random_layer(TrialRandom& random, const TrialView& v, double depth) {
     return layer;
 }
 
-/// The same, each corner `steps` floats nearer along the view.
+/// Returns the layer with each corner moved `steps` floats nearer along the view.
 Mesh moved_nearer(Mesh layer, int steps) {
     for (Vec3& p : layer.positions)
         for (int i = 0; i < steps; ++i) p.z = next_up(p.z);
     return layer;
 }
 
-/// The layer's depth at a pixel; none close to its diagonal.
+/// Returns the layer's depth at a pixel, or none close to its diagonal.
 std::optional<double> depth_at(const Mesh& layer, const Pinhole& pinhole, Vec2d pixel) {
     for (const auto& t : layer.triangles) {
         const ProjectedTriangle half(pinhole, {layer.positions[t[0]], layer.positions[t[1]], layer.positions[t[2]]});
@@ -51,7 +52,7 @@ std::optional<double> depth_at(const Mesh& layer, const Pinhole& pinhole, Vec2d 
 
 // Draw order ---------------------------------------------------------------------------------------------------------
 
-/// Triangles over the window, some of them twice, or at the same depth as others.
+/// Returns triangles over the window, some duplicated and some at equal depth.
 Pile random_pile(TrialRandom& random, const TrialView& v) {
     Mesh mesh;
     const auto add = [&](const std::array<Vec3, 3>& corners) {
@@ -79,14 +80,14 @@ template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
         std::swap(items[i - 1], items[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-/// What a sample sees: the primitive, by two rules for equal nearness.
+/// Stores the visible primitive of a sample by two rules for equal depth. `nearness` is reversed depth.
 struct Seen {
     float nearness = 0;
-    std::uint32_t lowest = kNoObject; ///< ours
-    std::uint32_t first = kNoObject;  ///< the books': whoever came first stays
+    std::uint32_t lowest = kNoObject; ///< Duet's rule: the lowest ID wins
+    std::uint32_t first = kNoObject; ///< the textbook rule: the first drawn wins
 };
 
-/// Each triangle drawn by itself, then the nearest chosen.
+/// Renders each triangle alone and then selects the nearest.
 Image<Seen> choose_nearest(const Pile& pile, const TrialView& v) {
     Image<Seen> seen(kSide, kSide);
     for (const raster::DrawTriangle& outline : pile.outlines) {
@@ -109,13 +110,13 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
         TrialView v = random_view(random, kSide, static_cast<double>(kNear));
-        v.view.camera.eye = {0, 0, 0}; // along −z from the origin, so that a corner's z is its depth
+        v.view.camera.eye = {0, 0, 0}; // the view is along −z from the origin, so a corner's z is its depth
         v.view.camera.look_at = {0, 0, -1};
         v.view.camera.up = {0, 1, 0};
         v.pinhole = CameraModel(v.view).through();
         const double depth = static_cast<double>(random.magnitude(4 * kNear, kFar / 4));
         const int steps = static_cast<int>(random.magnitude(1, 64));
-        // The one behind has the lower number: a tie would go to it.
+        // The layer behind has the lower ID and would win a tie.
         const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
         Pile pile = set_up(behind, v.view, v.window.offset);
         const auto first_before = static_cast<std::uint32_t>(pile.wholes.size());
@@ -153,8 +154,8 @@ StressResult draw_order(const StressTest& test, const StressSetting& setting) {
             wrong += (id == raster::kNoTriangle ? kNoObject : id) != here.lowest;
             naive_wrong += here.first != here.lowest;
         });
-        trial.note(pile.outlines.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (", v.window.rect.x0,
-                   ", ", v.window.rect.y0, ')');
+        trial.note(pile.outlines.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (",
+                   v.window.rect.x0, ", ", v.window.rect.y0, ')');
         trial.careful(wrong);
         trial.naive(naive_wrong);
     });

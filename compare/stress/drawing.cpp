@@ -6,9 +6,9 @@ using raster::PixelVertex;
 
 namespace {
 
-constexpr double kProbeNear = 1e-6; ///< so many depths before it, each nearer than the last
+constexpr double kProbeNear = 1e-6; ///< first depth; each later one is nearer than the last
 
-/// A pass over the window alone.
+/// This is a render pass over the window alone.
 struct WindowPass {
     std::vector<raster::SampleOffset> samples;
     raster::PassView view;
@@ -23,7 +23,7 @@ private:
         : samples{window.offset}, view{pinhole, 0, raster::viewport_of(seen, pinhole), samples}, grid{window.rect} {}
 };
 
-/// A scene of one mesh, and what the rasterizer knows of it.
+/// This is a scene of one mesh, with the rasterizer's prepared data.
 struct MeshScene {
     Scene scene;
     raster::PreparedData data;
@@ -34,7 +34,8 @@ struct MeshScene {
                                   .polygonal = {0},
                                   .spheres = {},
                                   .irradiance = raster::Irradiance(scene.environment, 1),
-                                  .shapes = std::vector<raster::PackedShape>(scene.shapes.begin(), scene.shapes.end())} {}
+                                  .shapes = std::vector<raster::PackedShape>(scene.shapes.begin(),
+                                                                             scene.shapes.end())} {}
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;
 
@@ -65,13 +66,14 @@ CoverageProbe::CoverageProbe(const Window& window) {
     mesh.triangles = {{0, 1, 2}};
     scene_ = MeshScene::make(mesh);
     triangles_.scene = &scene_;
-    triangles_.objects.resize(1); // their map is the identity: orthographic, (x, y, depth, 1)
+    triangles_.objects.resize(1); // their transform is the identity: orthographic, (x, y, depth, 1)
     triangles_.objects[0].vertices.resize(3);
     triangles_.runs.resize(1);
     tile_.reset(window.rect, window.offset, plan_.viewport);
 }
 
-// Parallel to the picture, so that its depth is the same everywhere; nearer than the one before by 1/count.
+// The triangle is parallel to the image plane, so its depth is constant. Its depth 1/count is nearer than that of the
+// previous triangle.
 void CoverageProbe::draw(GridTriangle t) {
     ++count_;
     if (winding(t) == 0) return;
@@ -105,7 +107,7 @@ Pile set_up(const Mesh& mesh, const View& view, raster::SampleOffset offset) {
     raster::Geometry geometry;
     transform(scene.scene, {0}, pass.view.pinhole, 0, pass.view.viewport, 1, geometry.triangles.objects);
     geometry.triangles.scene = &scene.scene;
-    // Two samples a pixel, at one place: no triangle is decided in the assembly.
+    // Two samples per pixel, at one offset, keep the assembly from resolving small triangles itself.
     const raster::AssemblyPlan plan{pass.view.viewport, pass.grid, {offset, offset}, everything().skips, false};
     geometry.triangles.runs = {{0, 0, static_cast<std::uint32_t>(mesh.triangles.size()), 0, false}};
     raster::Batch batch;

@@ -6,7 +6,7 @@ namespace {
 
 __extension__ typedef __int128 Int128; // ISO C++ has no name for it
 
-/// On which side of the line from a to b the point lies: positive to the right of one who walks it in the picture.
+/// Returns the signed side of the line from a to b on which the point lies; positive is to the right in the image.
 Int128 side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
     const Int128 dx = Int128{b.x} - a.x, dy = Int128{b.y} - a.y;
     return dx * (Int128{y} - a.y) - dy * (Int128{x} - a.x);
@@ -14,8 +14,8 @@ Int128 side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int
 
 int sign(Int128 value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
-/// The side on which the moved point lies: where the point itself is on the line, the first of the steps that leaves it
-/// decides.
+/// Returns the side on which the displaced point lies. If the point is on the line, the first displacement that
+/// leaves the line decides.
 int moved_side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
     const Int128 here = side(a, b, x, y), step_right = Int128{a.y} - b.y, step_down = Int128{b.x} - a.x;
     return sign(here != 0 ? here : step_right != 0 ? step_right : step_down);

@@ -1,4 +1,5 @@
-// Which samples a triangle of the sub-pixel grid covers: by the rule's definition, in integers that cannot overflow.
+// This header declares the coverage of a triangle on the subpixel grid by the rule's definition, in integers that
+// cannot overflow.
 #pragma once
 
 #include "raster/geometry/transform.h"
@@ -8,16 +9,18 @@
 
 namespace duet::compare {
 
-/// Three points of the grid, in either winding.
+/// A grid triangle has three grid points, in either winding.
 using GridTriangle = std::array<raster::FixedPoint, 3>;
 
-/// Whether the triangle covers the grid point (x, y): if it holds the point after a move to the right by an infinitely
-/// small step, and down by one infinitely smaller, so that no edge is ever met. This is the top-left rule without its
-/// cases: of the triangles around a point exactly one holds the moved one. In 128-bit integers; a triangle without area
-/// covers nothing. Shares no code with the rasterizer.
+/// Returns whether the triangle covers the grid point (x, y). It does if it contains the point displaced to the right
+/// by an infinitesimal step, and down by an infinitely smaller one, so that the point is never on an edge. This is
+/// equivalent to the top-left rule without its cases: exactly one of the triangles around a point contains the
+/// displaced point. It uses 128-bit integers; a triangle without area covers nothing. It shares no code with the
+/// rasterizer.
 bool covers(const GridTriangle& triangle, std::int64_t x, std::int64_t y);
 
-/// Twice the area, positive where the corners run clockwise in the picture (y points down); exact, as a sign: −1, 0, 1.
+/// Returns the sign of the exact area, −1, 0 or 1. It is positive where the corners run clockwise in the image (y
+/// points down).
 int winding(const GridTriangle& triangle);
 
 } // namespace duet::compare

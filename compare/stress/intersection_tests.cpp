@@ -1,4 +1,4 @@
-// Spheres, slivers, triangles without area, duplicates, rays along axes and rays that are none.
+// These tests intersect spheres, slivers, triangles without area, duplicates, axis-parallel rays and invalid rays.
 #include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
 #include "compare/stress/errors.h"
@@ -12,7 +12,7 @@ namespace duet::compare {
 
 namespace {
 
-constexpr double kWrong = std::numeric_limits<double>::infinity(); ///< the error of a hit that is none, or none that is
+constexpr double kWrong = std::numeric_limits<double>::infinity(); ///< error of a false or a missing hit
 
 // Spheres ------------------------------------------------------------------------------------------------------------
 
@@ -21,7 +21,8 @@ struct SphereTruth {
     long double t = 0;
 };
 
-/// The nearest positive root from the very floats of ray and sphere, with the 64 bits of long double.
+/// Returns the nearest positive root for the given floats of ray and sphere, computed with the 64-bit significand of
+/// long double.
 SphereTruth sphere_truth(const Ray& ray, const Sphere& sphere) {
     using Wide = long double;
     const auto wide = [](Vec3 v) { return std::array<Wide, 3>{Wide(v.x), Wide(v.y), Wide(v.z)}; };
@@ -78,14 +79,15 @@ StressResult near_spheres(const StressTest& test, const StressSetting& setting) 
 
 // Triangles ----------------------------------------------------------------------------------------------------------
 
-/// How a float triangle test did against the plane and the edges in double, as an error in units of 2^-24 of the
-/// largest distance of a corner from the origin: of the point's place along the plane's normal, and of an edge that the
-/// ray was held to pass on the wrong side.
+/// Returns the error of a float triangle test relative to the plane and the edges in double. The unit is 2^-24 of the
+/// largest distance of a corner from the origin. For a hit it is the error of the point along the plane's normal; for
+/// a wrong decision it is the ray's distance from the edge.
 double triangle_error(const Ray& ray, const std::array<Vec3, 3>& p, std::optional<float> t) {
     const Vec3d o(ray.origin), d(ray.direction), a(p[0]), b(p[1]), c(p[2]), n = cross(b - a, c - a);
     const double slope = dot(n, d), plane = dot(n, a - o) / slope;
     const double reach = std::max({length(a - o), length(b - o), length(c - o)});
-    // How far inside all edges the ray passes, across its direction: negative outside.
+    // This is the distance by which the ray passes inside all edges, perpendicular to its direction; negative
+    // outside.
     double inside = std::numeric_limits<double>::infinity();
     const double side = slope > 0 ? 1 : -1;
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
@@ -120,7 +122,7 @@ StressResult slivers(const StressTest& test, const StressSetting& setting) {
 StressResult zero_area(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        // Collinear to the last bit: corners on a grid that sums and small multiples do not leave.
+        // The corners are exactly collinear: they are on a grid on which sums and small multiples are exact.
         const auto grid = [&] { return static_cast<float>(static_cast<int>(random.below(2001)) - 1000); };
         const float scale = std::exp2(static_cast<float>(static_cast<int>(random.below(41)) - 20));
         const Vec3 a = Vec3(grid(), grid(), grid()) * scale, step = Vec3(grid(), grid(), grid()) * scale;
@@ -132,7 +134,7 @@ StressResult zero_area(const StressTest& test, const StressSetting& setting) {
                    exact(ray.direction));
         const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
         const double thickness = 64 * 6e-8 * 3000 * static_cast<double>(scale);
-        // A sheared sliver may keep a rounding's width: what is hit then must at least lie on the line itself.
+        // A sheared sliver may have a width of one rounding error. A hit must then at least be on the line itself.
         trial.careful_wrong(hit && !(std::isfinite(hit->t) && length(cross(Vec3d(ray.at(hit->t)) - Vec3d(a),
                                                                            normalize(Vec3d(step)))) < thickness));
     });
@@ -140,7 +142,7 @@ StressResult zero_area(const StressTest& test, const StressSetting& setting) {
 
 // Many primitives ----------------------------------------------------------------------------------------------------
 
-/// Triangles of which many lie at the very same place, in one mesh and in a second object.
+/// Returns triangles of which many coincide, in one mesh and in a second object.
 std::vector<Shape> duplicated(TrialRandom& random) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < 12; ++i) {
@@ -164,7 +166,7 @@ StressResult duplicates(const StressTest& test, const StressSetting& setting) {
             if (!(found == expected))
                 trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object,
                            " and ", expected.primitive);
-            float nearest = kInfinity; // whichever comes last
+            float nearest = kInfinity; // the last one tested wins
             std::uint32_t last = 0;
             for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
                 const auto& [a, b, c] = mesh.triangles[i];
@@ -176,7 +178,7 @@ StressResult duplicates(const StressTest& test, const StressSetting& setting) {
     });
 }
 
-/// Flat quads of many sizes in a few common planes, facing along the axes.
+/// Returns axis-aligned quads of many sizes in a few common planes.
 std::vector<Shape> coplanar(TrialRandom& random) {
     QuadList list;
     for (int i = 0; i < 40; ++i) {
@@ -207,7 +209,7 @@ StressResult coplanar_faces(const StressTest& test, const StressSetting& setting
 
 // Rays along the axes ------------------------------------------------------------------------------------------------
 
-/// Boxes with whole-numbered corners.
+/// Returns boxes with integer corners.
 QuadList whole_boxes(TrialRandom& random) {
     QuadList all;
     for (int i = 0; i < 10; ++i) {
@@ -222,7 +224,8 @@ QuadList whole_boxes(TrialRandom& random) {
     return all;
 }
 
-/// Where the ray from a half-integral point along ± axis meets the first face: exact in integers; infinity: none.
+/// Returns the distance at which the ray from a half-integer point along ± axis hits the first face. It is exact, and
+/// infinity if there is none.
 float whole_distance(const QuadList& boxes, Vec3 origin, std::size_t axis, float sign) {
     float nearest = kInfinity;
     for (const Quad& quad : boxes.quads) {
@@ -251,12 +254,12 @@ StressResult axis_parallel(const StressTest& test, const StressSetting& setting)
                 ray.direction[i] = random.coin() ? 0.0f : -0.0f;
             }
             ray.direction[axis] = sign;
-            Ray other = ray; // zeros of the other sign
+            Ray other = ray; // zeros of the opposite sign
             other.direction = -ray.direction;
             other.direction[axis] = sign;
             const Hit hit = stage.accelerator.closest(ray), same = stage.accelerator.closest(other);
             double error = hit == same && hit == hit_by_testing_all(*stage.scene, ray) ? 0 : kWrong;
-            if (half > 0) { // through no edge: the answer is known
+            if (half > 0) { // the ray passes through no edge, so the exact result is known
                 const float expected = whole_distance(boxes, ray.origin, axis, sign);
                 if (hit.valid() != std::isfinite(expected)) error = kWrong;
                 if (hit.valid()) error = std::max(error, ulps(hit.t, static_cast<long double>(expected)));

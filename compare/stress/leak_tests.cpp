@@ -1,4 +1,4 @@
-// Closed surfaces let no ray through, wherever it is aimed, whatever their size and place.
+// These tests check that closed surfaces are watertight, for any ray, size and position.
 #include "common/geometry/triangle.h"
 #include "compare/stress/naive.h"
 #include "compare/stress/stage.h"
@@ -8,7 +8,7 @@ namespace duet::compare {
 
 namespace {
 
-/// A closed mesh somewhere, and the numbers that trials need of it.
+/// A vessel is a closed mesh with its size and center.
 struct Vessel {
     Stage stage;
     float scale;
@@ -19,7 +19,8 @@ struct Vessel {
     const Mesh& mesh() const { return std::get<Mesh>(stage.scene->shapes[0]); }
 };
 
-/// Around the origin from 1e-6 to 1e6, and of size 1 about 1e5 away, along the diagonal and along one axis.
+/// Returns meshes around the origin of sizes 1e-6 to 1e6, and of size 1 about 1e5 away, along the diagonal and along
+/// one axis.
 std::vector<Vessel> vessels() {
     std::vector<Vessel> all;
     for (const float scale : {1e-6f, 1e-4f, 1e-2f, 1.0f, 1e2f, 1e4f, 1e6f}) all.emplace_back(scale, Vec3());
@@ -34,7 +35,7 @@ bool hit_by_any(const Mesh& mesh, const Ray& ray) {
     return false;
 }
 
-/// A ray from inside must hit, and the accelerator must find what testing all triangles finds.
+/// Tests that a ray from inside hits, and that the accelerator finds the same hit as testing all triangles.
 void judge(Trial& trial, const Vessel& vessel, const Ray& ray) {
     const Hit expected = hit_by_testing_all(*vessel.stage.scene, ray), found = vessel.stage.accelerator.closest(ray);
     trial.note("mesh of size ", exact(vessel.scale), " at ", exact(vessel.center), ", ray from ", exact(ray.origin),
@@ -90,7 +91,8 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
     return run_trials(test, setting, [&](Trial& trial) {
         const std::size_t which = static_cast<std::size_t>(trial.number()) % kScales.size();
         const Mesh& mesh = std::get<Mesh>(stages[which].scene->shapes[0]);
-        // Aimed at vertices and edges that face the eye: what is hit first must face it, too.
+        // The ray is aimed at vertices and edges that face the eye, so the first face that it hits must face the eye,
+        // too.
         const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
         const float along = trial.random.coin() ? 0.0f : trial.random.uniform();
         const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], along);
@@ -117,7 +119,7 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
     });
 }
 
-/// Boxes are six quads: each with its own corners.
+/// A box is six quads that do not share corners.
 StressResult leak_boxes(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;

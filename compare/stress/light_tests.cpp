@@ -1,4 +1,4 @@
-// Sampling lights that are slivers, far away, near or edge-on.
+// These tests sample lights that are slivers, far away, near or edge-on.
 #include "common/light/solid_angle.h"
 #include "common/light/spherical_triangle.h"
 #include "compare/stress/errors.h"
@@ -23,18 +23,18 @@ std::array<Vec3d, 4> corners_of(const Flat& flat) {
     return {corner, corner + u, corner + u + v, corner + v};
 }
 
-/// Of size 1, as thin as 1e-5 of it.
+/// Returns a shape of size 1, as thin as 1e-5.
 Flat random_flat(TrialRandom& random) {
     const Vec3 a = random.vector(), along = random.direction();
     const Vec3 across = along * random.uniform() + random.direction() * random.magnitude(1e-5f, 1);
     return random.coin() ? Flat(Triangle{a, a + along, a + across}) : Flat(Quad{a, along, across});
 }
 
-/// Beside or before it, 0.01 to 1e4 away.
+/// Returns a viewpoint in a random direction, 0.01 to 1e4 away.
 Vec3 viewpoint(TrialRandom& random) { return random.direction() * random.magnitude(1e-2f, 1e4f); }
 
-/// |tan(Ω/2)| by Van Oosterom and Strackee 1983, eq. 8, from the corners themselves in long double: no vector is
-/// rounded to unit length.
+/// Returns the solid angle Ω from |tan(Ω/2)| (Van Oosterom and Strackee 1983, eq. 8). It uses the corners themselves
+/// in long double, so no vector is rounded to unit length.
 long double exact_solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     using Wide = Vec3T<long double>;
     const Wide o(p), x = Wide(a) - o, y = Wide(b) - o, z = Wide(c) - o;
@@ -43,10 +43,10 @@ long double exact_solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     return 2 * std::atan2(volume, nx * ny * nz + dot(x, y) * nz + dot(y, z) * nx + dot(z, x) * ny);
 }
 
-/// What one rounding of each term makes of Ω = 2 atan2(V, W), to first order: dΩ = 2 (W dV − V dW) / (V² + W²). The
-/// corners are rounded to unit vectors, which moves V = a·(b × c) by the sides |a × b| …; computed from two edges, V
-/// is rounded in their size; W = 1 + a·b + b·c + c·a in 4. V² + W² is (1 + a·b)(1 + b·c)(1 + c·a) times 2, which does
-/// not cancel as W does: with 2 + 2a·b = |a + b|².
+/// Returns the effect on Ω = 2 atan2(V, W) of one rounding of each term, to first order: dΩ = 2 (W dV − V dW) /
+/// (V² + W²). Rounding the corners to unit vectors changes V = a·(b × c) by the sides |a × b| …. V computed from
+/// two edges is rounded in proportion to their lengths, and W = 1 + a·b + b·c + c·a in proportion to 4. V² + W² is
+/// 2 (1 + a·b)(1 + b·c)(1 + c·a), which does not cancel as W does, with 2 + 2a·b = |a + b|².
 double rounded_terms(const SphericalTriangle& t) {
     const double v = std::abs(dot(t.a, cross(t.b - t.a, t.c - t.a)));
     const double w = 1 + dot(t.a, t.b) + dot(t.b, t.c) + dot(t.c, t.a);
@@ -77,7 +77,7 @@ StressResult solid_angles(const StressTest& test, const StressSetting& setting) 
     });
 }
 
-/// How far a point is from the shape, its plane and its edges, as seen from p.
+/// Returns the distance of a point from the shape, its plane and its edges, relative to its distance from p.
 double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
     using Wide = Vec3T<long double>; // the normal of a sliver is a difference that cancels
     const auto c = corners_of(flat);
@@ -90,18 +90,19 @@ double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
     return static_cast<double>(off) / length(q - p);
 }
 
-/// |cos| between the shape's normal and wi.
+/// Returns |cos| of the angle between the shape's normal and wi.
 double slant(const std::array<Vec3d, 4>& corners, Vec3d wi) {
     return std::abs(dot(normalize(cross(corners[1] - corners[0], corners[2] - corners[0])), wi));
 }
 
-/// By what a rounding of Arvo's cosine is divided: twice about the solid angle Ω of a triangle, or what it lacks of a
-/// half space, Ω' = min(Ω, 2π − Ω). The cosine is a quotient of terms such as cos(uΩ − α) − cos α, a difference of size
-/// Ω α of numbers near 1, and α ≥ Ω/2. The least of the shape's two triangles (of a triangle: its own).
+/// Returns the divisor of the rounding error of Arvo's cosine. It is about the square of a triangle's solid angle Ω,
+/// or of its complement to a hemisphere, Ω' = min(Ω, 2π − Ω). The cosine is a quotient of terms such as cos(uΩ
+/// − α) − cos α, a difference of size Ω α of numbers near 1, and α ≥ Ω/2. For a quad it is the smaller
+/// value of its two triangles.
 double squared_room(const std::array<Vec3d, 4>& c, Vec3d p) {
     double least = 2 * kPiDouble;
     for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
-        if (length(c[i + 1] - c[i]) == 0) continue; // a triangle's second one
+        if (length(c[i + 1] - c[i]) == 0) continue; // the degenerate second half of a triangle
         const auto angle = static_cast<double>(exact_solid_angle(p, c[0], c[i], c[i + 1]));
         least = std::min({least, angle, 2 * kPiDouble - angle});
     }
@@ -114,7 +115,7 @@ StressResult samples(const StressTest& test, const StressSetting& setting) {
         const Vec3d p(viewpoint(trial.random));
         const Vec2d u(trial.random.uniform_2d());
         const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
-        if (!s) return; // seen edge-on
+        if (!s) return; // edge-on
         const Vec3d q = p + s->wi * s->distance;
         const auto pdf_of = [&](Vec3d at) {
             return std::visit([&](const auto& shape) { return solid_angle_pdf(shape, p, at); }, flat);
@@ -128,14 +129,14 @@ StressResult samples(const StressTest& test, const StressSetting& setting) {
         const bool by_solid_angle = pdf_of(corners[0]) == pdf && pdf_of(corners[1]) == pdf && pdf_of(corners[2]) == pdf;
         const double place = 1 + length(q) / s->distance; // the test itself rounds q
         const double turned = 1 + (by_solid_angle ? 1 / squared_room(corners, p) : 0);
-        const double terms = place + turned / slant(corners, s->wi); // what wi is off moves the point by so much
+        const double terms = place + turned / slant(corners, s->wi); // an error of wi moves the point by this factor
         trial.careful(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
         trial.careful(in_double_roundoffs(off_shape(flat, p, q)) / terms);
         trial.careful(in_double_roundoffs(length(s->wi) - 1));
     });
 }
 
-/// The mean of 1/pdf is the solid angle.
+/// Tests that the mean of 1/pdf is the solid angle.
 StressResult densities(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
@@ -154,7 +155,7 @@ StressResult densities(const StressTest& test, const StressSetting& setting) {
         }
         if (mean == 0) return; // edge-on
         const double error = std::sqrt(std::max(0.0, square - mean * mean) / kSamples) + 1e-6 * truth;
-        if (error > 0.05 * truth) return; // too slanted for its mean to be normally distributed
+        if (error > 0.05 * truth) return; // too slanted for a normally distributed mean
         trial.note("solid angle ", truth, ", estimated ", mean, " ± ", error);
         trial.careful(family_odds(two_sided_p(std::abs(mean - truth) / error), trial.count()));
     });
@@ -171,7 +172,8 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
         if (d2 <= r2 * 1.001L) return;
         const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
         const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
-        // A rounding of sin² is one of the density, and at the limb a larger one of √(1 − sin²).
+        // A rounding error of sin² has the same relative size in the density; at the limb that of √(1 − sin²) is
+        // larger.
         const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
         const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };
         const auto s = sample_solid_angle(sphere, Vec3d(p), Vec2d(random.uniform_2d()));
@@ -179,7 +181,7 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
         if (!s) return trial.careful(std::numeric_limits<double>::infinity());
         trial.careful(density_error(s->pdf));
         trial.careful(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
-        // The point lies on the sphere, as exactly as the centre's distance allows.
+        // The point is on the sphere, up to the rounding of the center's distance.
         const double off = length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) -
                            static_cast<double>(sphere.radius);
         trial.careful(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
@@ -194,7 +196,8 @@ constexpr StressTest kTests[] = {
      "each term is rounded 16 times at most, which add up to about √16 (Higham and Mary 2019); judged by long double",
      "the angles' sum - π", 500'000, solid_angles},
     {"light/samples", "samples of such triangles and quads lie on them and have the density that is asked for", 17,
-     "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point; Arvo's cosine divides by Ω²", "",
+     "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point; Arvo's cosine divides by Ω²",
+     "",
      500'000, samples},
     {"light/densities", "the mean of 1/pdf is the solid angle", 6, "-log10 odds",
      "odds of a false alarm 1e-6 for the row (Šidák 1967); judged by long double", "", 1'000, densities},

@@ -1,4 +1,4 @@
-// Materials by the laws they all obey, refraction against double.
+// These tests check the laws that every material obeys, and refraction against double.
 #include "common/material/fresnel.h"
 #include "common/material/material.h"
 #include "common/sampling/warp.h"
@@ -21,7 +21,7 @@ Vec3 direction_of(float z, float phi) {
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// On both sides; every other one grazing by any order of magnitude.
+/// Returns a direction on either side; every second one is grazing by a random order of magnitude.
 Vec3 outgoing(TrialRandom& random) {
     const float z = random.coin() ? random.uniform(1e-3f, 1) : random.magnitude(1e-7f, 1e-1f);
     return direction_of(random.sign() * z, 2 * kPi * random.uniform());
@@ -30,12 +30,13 @@ Vec3 outgoing(TrialRandom& random) {
 // Dielectrics --------------------------------------------------------------------------------------------------------
 
 struct Crossing {
-    float eta; ///< inside over outside
+    float eta; ///< index of refraction inside over outside
     Vec3 wo;
     float relative; ///< index beyond the boundary over that on wo's side
 };
 
-/// Any angle, grazing, and from inside close to the critical angle by any order of magnitude, on either side of it.
+/// Returns a crossing at a random or grazing angle or, from inside, close to the critical angle by a random order of
+/// magnitude, on either side of it.
 Crossing crossing(TrialRandom& random) {
     const float eta = random.coin() ? random.uniform(1, 4) : 1 + random.magnitude(1e-6f, 1);
     Vec3 wo = outgoing(random);
@@ -53,7 +54,7 @@ StressResult critical_angle(const StressTest& test, const StressSetting& setting
         const float cosine = abs_cos_theta(c.wo);
         const double z = static_cast<double>(cosine), eta = static_cast<double>(c.relative), eta2 = eta * eta;
         const double truth = ((eta - 1) * (eta + 1) + z * z) / eta2;
-        const double size = (std::abs((eta - 1) * (eta + 1)) + z * z) / eta2; // of the terms, without cancellation
+        const double size = (std::abs((eta - 1) * (eta + 1)) + z * z) / eta2; // size of the terms, without cancellation
         const auto error = [&](float cos2) { return in_roundoffs((static_cast<double>(cos2) - truth) / size); };
         trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
         trial.careful(error(cos2_refracted(cosine, c.relative)));
@@ -61,15 +62,15 @@ StressResult critical_angle(const StressTest& test, const StressSetting& setting
     });
 }
 
-/// Fresnel's equations in double, from both cosines.
+/// Returns Fresnel's reflectance in double, from both cosines.
 double reflectance_of(double cos_i, double cos_t, double eta) {
     const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     const double perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
-/// How far a reflectance is from those that Fresnel's equations give in double for refracted cosines as near to the
-/// true one as the row before allows: near the critical angle reflectances are that sensitive.
+/// Returns the distance of a reflectance from the range given by Fresnel's equations in double, for refracted cosines
+/// within the bound of the critical-angle test. Near the critical angle reflectances are that sensitive.
 double fresnel_error(float reflectance, float cosine, float eta) {
     const double z = static_cast<double>(cosine), n = static_cast<double>(eta), n2 = n * n;
     const double term = (n - 1) * (n + 1) / n2, u = static_cast<double>(kRoundoff<float>);
@@ -85,7 +86,7 @@ double fresnel_error(float reflectance, float cosine, float eta) {
     return in_roundoffs(std::max({0.0, low - r, r - high}));
 }
 
-/// As textbooks write it: sines from cosines, Snell, cosines from sines.
+/// This is the textbook form: sines from cosines, Snell's law, cosines from sines.
 float textbook_fresnel(float cos_i, float eta) {
     const float sin_t = std::sqrt(std::max(0.0f, 1 - cos_i * cos_i)) / eta;
     if (sin_t >= 1) return 1;
@@ -105,7 +106,8 @@ StressResult fresnel(const StressTest& test, const StressSetting& setting) {
     });
 }
 
-/// Snell's law in double for the same floats: tangential parts and the squared cosine.
+/// Returns the error relative to Snell's law in double for the same floats: tangential components and the squared
+/// cosine.
 double refraction_error(const Crossing& c, Vec3 wi) {
     const Vec3d wo = normalize(Vec3d(c.wo));
     const double eta = static_cast<double>(c.relative);
@@ -114,11 +116,11 @@ double refraction_error(const Crossing& c, Vec3 wi) {
     if (z * wo.z > 0) return kWrong;
     const double x = static_cast<double>(wi.x) + wo.x / eta, y = static_cast<double>(wi.y) + wo.y / eta;
     const double terms =
-        std::max(1.0, 1 / (eta * eta)); // squared sine on wi's side, as far as wo's length is uncertain
+        std::max(1.0, 1 / (eta * eta)); // bounds the squared sine on wi's side, as wo's length is uncertain
     return in_roundoffs(worse(worse(std::abs(x), std::abs(y)), std::abs(z * z - cos2)) / terms);
 }
 
-/// Ray Tracing in One Weekend, §11.2, n = the side of wo.
+/// This is refract() of Ray Tracing in One Weekend, §11.2, with n on the side of wo.
 Vec3 books_refract(Vec3 wo, float relative) {
     const Vec3 n(0, 0, wo.z > 0 ? 1.0f : -1.0f), uv = -wo;
     const float cos_theta = std::fmin(dot(-uv, n), 1.0f);
@@ -133,7 +135,8 @@ StressResult refraction(const StressTest& test, const StressSetting& setting) {
         const auto s = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
         trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
         if (!s) return trial.careful(kWrong);
-        if (!s->transmitted) { // total reflection, by a rounding too early perhaps; or all but 2^-24 is reflected
+        // Total internal reflection, possibly early by one rounding; or all but 2^-24 is reflected.
+        if (!s->transmitted) {
             const double eta = static_cast<double>(c.relative), z = static_cast<double>(abs_cos_theta(c.wo));
             const double cos2 = std::max(0.0, ((eta - 1) * (eta + 1) + z * z) / (eta * eta));
             const double refracted = 1 - reflectance_of(z, std::sqrt(cos2), eta);
@@ -167,7 +170,7 @@ StressResult glass_energy(const StressTest& test, const StressSetting& setting) 
 struct Named {
     std::string_view name;
     Bsdf bsdf;
-    bool lossless; ///< sends on all it receives
+    bool lossless; ///< has an albedo of 1
 };
 
 const std::array<Named, 8>& rough_materials() {
@@ -197,8 +200,8 @@ const Named& any_material(TrialRandom& random) {
     return i < kRough ? rough_materials()[i] : specular_materials()[i - kRough];
 }
 
-/// What radiance is multiplied by where it is carried across a boundary towards wo: L/n² stays constant (Veach 1997,
-/// §5.2), so the sample's weight is larger or smaller by as much. 1 for importance, which is not.
+/// Returns the factor by which radiance scales across a boundary toward wo. L/n² is constant (Veach 1997, §5.2), so
+/// the sample's weight scales in the same way. The factor is 1 for importance.
 double radiance_spread(const Bsdf& bsdf, Vec3 wo, const BsdfSample& s, TransportMode mode) {
     const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
     if (glass == nullptr || !s.transmitted || mode == TransportMode::kImportance) return 1;
@@ -215,13 +218,14 @@ StressResult furnace(const StressTest& test, const StressSetting& setting) {
         const TransportMode mode = random.coin() ? TransportMode::kRadiance : TransportMode::kImportance;
         const auto s = sample(m.bsdf, wo, lobe, random.uniform_2d(), mode);
         trial.note(m.name, ", wo = ", exact(wo), mode == TransportMode::kRadiance ? ", radiance" : ", importance");
-        if (!s) return trial.careful(m.lossless ? kWrong : 0); // lost to a second bounce among microfacets
+        if (!s) return trial.careful(m.lossless ? kWrong : 0); // lost to a second bounce between microfacets
         const double largest = static_cast<double>(max(max(s->weight.r, s->weight.g), s->weight.b)) /
                                radiance_spread(m.bsdf, wo, *s, mode);
         if (!is_finite(s->weight) || !is_finite(s->wi) || !(s->pdf > 0)) return trial.careful(kWrong);
         if (!(min(min(s->weight.r, s->weight.g), s->weight.b) >= 0)) return trial.careful(kWrong);
         if (m.lossless) return trial.careful(in_roundoffs(largest - 1));
-        // Where lobes share the samples one of them may be drawn less often than it shines; still all weights are bounded.
+        // Where lobes share the samples, one may be sampled less often than its contribution requires; its weights
+        // are still bounded.
         constexpr double kLargest = 10;
         trial.careful(largest <= kLargest ? 0 : kWrong);
     });
@@ -255,7 +259,7 @@ StressResult reciprocity(const StressTest& test, const StressSetting& setting) {
         const Named& m = rough_materials()[random.below(8)];
         const Vec3 a = outgoing(random);
         Vec3 b = outgoing(random);
-        if (random.coin()) // near the mirror direction, where narrow lobes are
+        if (random.coin()) // near the mirror direction, where narrow lobes lie
             b = normalize(Vec3(-a.x, -a.y, a.z) + random.direction() * random.magnitude(1e-4f, 1e-1f));
         if (!same_hemisphere(a, b)) b.z = -b.z;
         const Rgb forth = eval(m.bsdf, a, b), back = eval(m.bsdf, b, a);
@@ -270,14 +274,15 @@ StressResult chi_squared_test(const StressTest& test, const StressSetting& setti
     constexpr std::array<float, 5> kCosines{1.0f, 0.6f, 0.1f, 1e-3f, -0.6f};
     return run_trials(test, setting, [&](Trial& trial) {
         const auto number = static_cast<std::size_t>(trial.number());
-        const Named& m = rough_materials()[number % 7]; // the narrowest lobe is below what cells resolve
+        const Named& m = rough_materials()[number % 7]; // the narrowest lobe is below the resolution of the cells
         const Vec3 wo = direction_of(kCosines[number / 7 % 5], 2 * kPi * trial.random.uniform());
         const auto* metal = std::get_if<MetalBsdf>(&m.bsdf);
-        DirectionTest cells; // they close in on the mirror direction, where a narrow lobe is
-        if (!is_diffuse(m.bsdf)) cells.axis = {-wo.x, -wo.y, wo.z}, cells.axis_power = metal != nullptr && metal->alpha < 0.1f ? 4 : 2;
+        DirectionTest cells; // cells narrow toward the mirror direction, where a narrow lobe lies
+        if (!is_diffuse(m.bsdf))
+            cells.axis = {-wo.x, -wo.y, wo.z}, cells.axis_power = metal != nullptr && metal->alpha < 0.1f ? 4 : 2;
         cells.samples = 50'000;
         cells.seed = trial.random.bits();
-        cells.subdivisions = 12; // the density jumps at the horizon, which cuts through cells
+        cells.subdivisions = 12; // the density is discontinuous at the horizon, which intersects cells
         const DirectionResult result = test_directions(
             cells,
             [&](Vec2 u) -> std::optional<Vec3> {
@@ -291,12 +296,12 @@ StressResult chi_squared_test(const StressTest& test, const StressSetting& setti
     });
 }
 
-/// Two estimates of the light a material sends on, by its own samples and by uniform directions.
+/// Compares two estimates of a material's albedo: from its own samples and from uniform directions.
 StressResult albedo(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
         const Named& m =
-            rough_materials()[static_cast<std::size_t>(trial.number()) % 7]; // wide enough for uniform ones
+            rough_materials()[static_cast<std::size_t>(trial.number()) % 7]; // wide enough for uniform sampling
         const Vec3 wo = direction_of(random.sign() * random.uniform(0.2f, 1), 2 * kPi * random.uniform());
         constexpr int kSamples = 50'000;
         double own = 0, own2 = 0, uniform = 0, uniform2 = 0;

@@ -1,4 +1,5 @@
-// The books' way of intersecting: what the naive column of the suite runs. Short, in float, with the usual constants.
+// This header declares the textbook intersection routines of the suite's naive column. They are short, in float, with
+// the usual constants.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -9,7 +10,7 @@
 
 namespace duet::compare::naive {
 
-/// The nearest root in (t_min, t_max] of the quadratic as school has it (Ray Tracing in One Weekend, §6.2).
+/// Returns the nearest root in (t_min, t_max] by the textbook quadratic formula (Ray Tracing in One Weekend, §6.2).
 inline std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
     const Vec3 oc = sphere.center - ray.origin;
     const float a = length_squared(ray.direction), h = dot(ray.direction, oc);
@@ -21,7 +22,7 @@ inline std::optional<float> intersect_sphere(const Ray& ray, const Sphere& spher
     return std::nullopt;
 }
 
-/// Möller and Trumbore 1997, figure 1, with its epsilon.
+/// This is Möller and Trumbore 1997, figure 1, with its epsilon.
 inline std::optional<float> intersect_triangle(const Ray& ray, Vec3 a, Vec3 b, Vec3 c, float epsilon = 1e-6f) {
     const Vec3 ab = b - a, ac = c - a, p = cross(ray.direction, ac);
     const float det = dot(ab, p);
@@ -37,7 +38,7 @@ inline std::optional<float> intersect_triangle(const Ray& ray, Vec3 a, Vec3 b, V
     return t;
 }
 
-/// Where a ray is in a box (Ray Tracing: The Next Week, §3.4).
+/// Returns whether a ray intersects a box (Ray Tracing: The Next Week, §3.4).
 inline bool intersect_box(const Ray& ray, const Box3& box) {
     float from = ray.t_min, to = ray.t_max;
     for (std::size_t axis = 0; axis < 3; ++axis) {

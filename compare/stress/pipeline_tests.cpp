@@ -1,4 +1,5 @@
-// The pipelines as a whole: the same Hits from both, and the same bits for any number of threads.
+// These tests run whole pipelines: both must find the same hits, and the images must be bitwise equal for any number
+// of threads.
 #include "common/image/same_bits.h"
 #include "compare/hits/hit_agreement.h"
 #include "compare/pipeline.h"
@@ -22,8 +23,8 @@ bool same_primitive(const Hit& a, const Hit& b) {
     return a.object == b.object && (!a.valid() || a.primitive == b.primitive);
 }
 
-/// `hits` in `most` of the pixels that differ from `reference`, chosen at random, and the reference elsewhere: to judge
-/// a pixel that is wrong takes thousands of rays, and a trial with many of them has failed all the same.
+/// Returns the reference with at most `most` of the differing pixels of `hits`, chosen at random. Judging a wrong
+/// pixel takes thousands of rays, and a trial with many wrong pixels has failed in any case.
 Image<Hit> some_differences(const Image<Hit>& hits, const Image<Hit>& reference, std::size_t most,
                             TrialRandom& random) {
     std::vector<std::size_t> different;
@@ -52,9 +53,10 @@ std::string describe(const UnexplainedPixel& p) {
                    ", double precision ", hit(p.exact));
 }
 
-/// By how much rounding the corners as seen from the eye may move a triangle's or quad's plane, as a multiple of one
-/// corner's rounding: in proportion to the farthest of them, and to how much longer it is than wide. (A float test of a
-/// ray and a triangle errs so, and not in proportion to the hit's distance: Pharr, Jakob and Humphreys 2023, §6.8.7.)
+/// Returns how much rounding the corners relative to the eye can move a triangle's or quad's plane, as a multiple of
+/// one corner's rounding error. It is proportional to the distance of the farthest corner and to the primitive's
+/// aspect ratio. (A float ray-triangle test has this error; it is not proportional to the distance of the hit: Pharr,
+/// Jakob and Humphreys 2023, §6.8.7.)
 double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
     if (corners.empty()) return 0; // a sphere
     double reach = 0, longest_squared = 0;
@@ -66,7 +68,7 @@ double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
     return reach * max(1.0, longest_squared / doubled_area);
 }
 
-/// Pixels in which both see the same primitive at different distances.
+/// Counts the pixels in which both pipelines hit the same primitive at different distances.
 int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hit>& raster,
                           const Image<Hit>& raytrace) {
     const ExactTracer tracer(random.scene, 0);
@@ -90,7 +92,7 @@ int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hi
 
 void judge_hits(Trial& trial, const TrialScene& random) {
     Control control;
-    const PipelineSettings settings{.threads = 1}; // trials run side by side
+    const PipelineSettings settings{.threads = 1}; // trials already run in parallel
     const Image<Hit> raster = raster_pipeline(random.scene, settings).hits(random.view, control).hit;
     const Image<Hit> raytrace = raytrace_pipeline(random.scene, settings).hits(random.view, control).hit;
     const auto judge = [&](const Image<Hit>& hits, std::size_t most) {
@@ -157,7 +159,7 @@ Rendering render_raytrace(const TrialScene& trial, int threads) {
 template <Rendering (*render)(const TrialScene&, int)>
 StressResult threads(const StressTest& test, const StressSetting& setting) {
     StressSetting one_by_one = setting;
-    one_by_one.threads = 1; // a trial has its own threads
+    one_by_one.threads = 1; // a trial uses its own threads
     return run_trials(test, one_by_one, [](Trial& trial) {
         const TrialScene random = random_lit_scene(trial.random, 100, 75);
         const Rendering one = render(random, 1);

@@ -28,8 +28,9 @@ double ProjectedTriangle::inside(Vec2d pixel) const {
         least = std::min(least, line.at(pixel) / std::hypot(line.x, line.y));
     };
     for (const Line& edge : edges_) consider(edge);
-    // Of a triangle parallel to the near plane that line has no direction: it holds everywhere or nowhere. The
-    // threshold lies between extended precision's rounding and the least tilt that floats can have.
+    // For a triangle parallel to the near plane this line has no direction, so the condition holds everywhere or
+    // nowhere. The threshold is between the rounding error of extended precision and the least tilt that floats can
+    // represent.
     const Extended kNothing = 0x1p-50L / near_distance_;
     if (std::hypot(near_.x, near_.y) > kNothing)
         consider(near_);

@@ -1,4 +1,5 @@
-// A triangle as the rays through pixels see it, in extended precision: where its visible part ends, and what is there.
+// This header declares a triangle projected by the rays through pixels, in extended precision: the borders of its
+// visible part, and the attributes inside.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -7,32 +8,34 @@
 
 namespace duet::compare {
 
-using Extended = long double; ///< 64 bits of significand on x86-64: 2^11 times finer than double
+using Extended = long double; ///< 64-bit significand on x86-64: 2^11 times finer than double
 using Vec3x = Vec3T<Extended>;
 
-/// Barycentric coordinates of b and c, and depth (camera-space −z).
+/// Stores the barycentric coordinates of b and c, and the depth (camera-space −z).
 struct ProjectedPoint {
     double u, v, depth;
 };
 
-/// The ray through a pixel is o + depth·d with d linear in the pixel, so of each corner the volume d·(Pⱼ × Pₖ), corners
-/// taken from o, is linear too. Those three, and 1/depth, which is linear as well, bound the visible part by straight
-/// lines of the picture, wherever the corners are: before the near plane, on the plane of the eye, behind it. (Möller
-/// and Trumbore 1997 solve for the same volumes.) Perspective views only.
+/// The ray through a pixel is o + depth·d, with d linear in the pixel. So for each pair of corners relative to o the
+/// volume d·(Pⱼ × Pₖ) is linear, too. These three volumes, and 1/depth, which is also linear, bound the visible
+/// part by straight lines in the image. This holds for corners in front of the near plane, in the plane of the eye, or
+/// behind the eye. (Möller and Trumbore 1997 solve for the same volumes.) Only perspective views are supported.
 class ProjectedTriangle {
 public:
     ProjectedTriangle(const Pinhole& pinhole, const std::array<Vec3, 3>& corners);
 
-    /// Whether the eye lies in the triangle's plane, or the corners on a line: nothing is seen of it.
+    /// Returns whether the eye is in the triangle's plane or the corners are collinear; nothing is visible then.
     bool edge_on() const { return volume_ == 0; }
-    /// The least distance to the four lines in pixels: positive inside the visible part, negative outside, where the
-    /// part itself is at least as far away. Minus infinity where all of it is before the near plane; a triangle in the
-    /// near plane is seen.
+    /// Returns the least signed distance to the four lines in pixels. It is positive inside the visible part; outside
+    /// it is negative, and the visible part is at least as far away. It is minus infinity if the whole triangle is in
+    /// front of the near plane. A triangle in the near plane is visible.
     double inside(Vec2d pixel) const;
-    /// What the ray through the pixel sees of the triangle's plane; of the triangle where inside() >= 0.
+    /// Returns the intersection of the pixel's ray with the triangle's plane. It is in the triangle where inside() >=
+    /// 0.
     ProjectedPoint at(Vec2d pixel) const;
-    /// By how many times the relative rounding errors of corners, eye and products may grow in at()'s results: large
-    /// where the eye lies next to the triangle's plane, or a corner next to the eye and far from the world's origin.
+    /// Returns the factor by which the relative rounding errors of corners, eye and products can grow in at()'s
+    /// results. It is large where the eye is near the triangle's plane, or where a corner is near the eye and far
+    /// from the world's origin.
     double condition(Vec2d pixel) const;
 
 private:
@@ -44,12 +47,13 @@ private:
     std::array<Line, 3> edges_; ///< barycentric coordinate i over depth
     Line near_;                 ///< 1/near − 1/depth
     Extended volume_;
-    Extended size_ = 0; ///< of the terms that add up to volume_ in a point's volumes, for a ray's direction of length 1
+    Extended size_ = 0; ///< sum of the terms of volume_ for a ray direction of length 1
     Vec3d direction_, direction_dx_, direction_dy_;
     Extended near_distance_;
 };
 
-/// How far a sample is on the wrong side of the triangle's visible part, in pixels; 0 where it is on the right one.
+/// Returns the distance in pixels of a wrongly covered or uncovered sample from the triangle's visible part; 0 where
+/// the decision is right.
 double displacement(const ProjectedTriangle& triangle, Vec2d pixel, bool covered);
 
 } // namespace duet::compare

@@ -1,4 +1,4 @@
-// Tests of the group "projection" that have a file of their own (projection_tests.cpp has their rows).
+// This header declares tests of the group "projection" with their own files; projection_tests.cpp has their rows.
 #pragma once
 
 #include "compare/stress/stress.h"

@@ -9,13 +9,13 @@ double magnitude(TrialRandom& random, float low, float high) {
 }
 double either_sign(TrialRandom& random, double x) { return random.coin() ? x : -x; }
 
-/// A point by its place in camera space, exact where the camera is at the origin and looks along −z.
+/// Returns a point from its camera-space coordinates. It is exact if the camera is at the origin and looks along −z.
 Vec3 in_camera_space(const Pinhole& pinhole, double right, double up, double depth) {
     const Vec3d x = normalize(pinhole.direction_dx), y = -normalize(pinhole.direction_dy);
     return Vec3(pinhole.origin + pinhole.forward * depth + x * right + y * up);
 }
 
-/// Anywhere: before the eye, behind it, or exactly on one of the planes that divide the two.
+/// Returns a point in front of the eye, behind it, or exactly on the near plane or the eye's plane.
 Vec3 anywhere(TrialRandom& random, const Pinhole& pinhole) {
     double depth = magnitude(random, 1e-3f, 1e3f);
     switch (random.below(8)) {
@@ -78,7 +78,7 @@ Vec2d pixel_in(TrialRandom& random, const Window& window) {
 std::array<Vec3, 3> random_straddling(TrialRandom& random, const TrialView& v) {
     const Vec3 a = anywhere(random, v.pinhole), c = anywhere(random, v.pinhole);
     if (random.coin()) return {a, anywhere(random, v.pinhole), c};
-    // The second corner on the far side of a point that the window sees: the edge passes through it.
+    // The second corner is beyond a point visible in the window, so the edge passes through that point.
     const Vec3 seen = point_at(v.pinhole, pixel_in(random, v.window), v.pinhole.near + magnitude(random, 1e-3f, 1e2f));
     return {a, seen + (seen - a) * random.magnitude(1e-2f, 1e2f), random.coin() ? c : seen};
 }
@@ -93,7 +93,7 @@ std::array<Vec3, 3> random_beyond_guard(TrialRandom& random, const TrialView& v)
     };
     const Vec2d away = direction();
     const Vec3 a = point_at(v.pinhole, far(away), depth()), c = point_at(v.pinhole, far(direction()), depth());
-    if (random.coin()) return {a, point_at(v.pinhole, far(away * -1.0), depth()), c}; // an edge right through p
+    if (random.coin()) return {a, point_at(v.pinhole, far(away * -1.0), depth()), c}; // an edge exactly through p
     return {a, point_at(v.pinhole, p + direction() * magnitude(random, 0.1f, 100), depth()), c};
 }
 

@@ -1,4 +1,5 @@
-// What is seen of triangles, and where on them: against the ray through each pixel in extended precision.
+// These tests compare the visibility and the attributes of triangles with the ray through each pixel in extended
+// precision.
 #include "compare/stress/book_raster.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/projection_runs.h"
@@ -8,7 +9,7 @@ namespace duet::compare {
 
 namespace {
 
-constexpr int kSide = 12; // pixels a side of a trial's window
+constexpr int kSide = 12; // pixels per side of a trial's window
 
 using MakeTriangle = std::array<Vec3, 3> (*)(TrialRandom&, const TrialView&);
 
@@ -27,7 +28,7 @@ void note_trial(Trial& trial, const TrialView& v, const std::array<Vec3, 3>& cor
 
 // Coverage -----------------------------------------------------------------------------------------------------------
 
-/// Whether all that a hit says can be: within the triangle and beyond the near plane.
+/// Returns whether a hit's values are possible: inside the triangle and beyond the near plane.
 bool possible(const Hit& hit, double depth, double near) {
     return hit.u >= 0 && hit.v >= 0 && hit.u <= 1 && hit.v <= 1 && depth >= near * (1 - 0x1p-20) && depth < 1e30;
 }
@@ -57,8 +58,8 @@ template <MakeTriangle make> StressResult displaced(const StressTest& test, cons
 
 // Attributes ---------------------------------------------------------------------------------------------------------
 
-/// Calls judge(x, y, pixel, truth) for the window's samples well inside the triangle, where snapped corners have no
-/// say, and where double precision loses less than a hundredth of a float's roundoff.
+/// Calls judge(x, y, pixel, truth) for the window's samples well inside the triangle. There, vertex snapping has no
+/// effect, and double precision loses less than a hundredth of a float's roundoff.
 template <typename Judge>
 void for_each_inside(const TrialView& v, const ProjectedTriangle& triangle, const raster::HitTile& tile,
                      const Judge& judge) {
@@ -90,7 +91,7 @@ template <MakeTriangle make> StressResult barycentrics(const StressTest& test, c
     });
 }
 
-/// How far from its sample the point of each hit is seen, in pixels.
+/// Tests the distance of each hit point's projection from its sample, in pixels.
 StressResult points_aside(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         const TrialView v = random_view(trial.random, kSide);
@@ -118,7 +119,7 @@ StressResult points_aside(const StressTest& test, const StressSetting& setting) 
 
 constexpr float kBookNear = 0.1f, kBookFar = 1e5f;
 
-/// The depth that a book's z-buffer holds at a pixel: z/w linear over the screen, from −1 at 0.1 m to 1 at 1e5 m.
+/// Returns the textbook z-buffer's depth at a pixel: z/w is linear in screen space, from −1 at 0.1 m to 1 at 1e5 m.
 double book_depth(const BookTriangle& t, Vec2 pixel) {
     const Vec3 b = book_barycentrics(t, pixel);
     const auto z = [&](std::size_t i) { return book_z(t[i].depth, kBookNear, kBookFar); };

@@ -6,7 +6,7 @@ namespace duet::compare {
 
 namespace {
 
-/// Adds a shape under a transform, which carries it to its place.
+/// Adds a shape with its object-to-world transform.
 void add(Scene& scene, Shape shape, const Mat4& to_world, std::uint32_t material = 0) {
     Object object;
     object.shape = static_cast<std::uint32_t>(scene.shapes.size());
@@ -33,7 +33,7 @@ Mesh soup(TrialRandom& random) {
     return mesh;
 }
 
-/// A closed torus about y, counter-clockwise seen from outside.
+/// Returns a closed torus about y, counter-clockwise seen from outside.
 Mesh torus(std::uint32_t around, std::uint32_t across, double small) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < around; ++i)
@@ -63,7 +63,7 @@ QuadList walls(TrialRandom& random) {
 
 Mat4 random_turn(TrialRandom& random) { return rotation(random.direction(), random.uniform(0, 6)); }
 
-/// Each factor ±0.2 to ±2: mirrored half of the times.
+/// Returns a scaling by factors of ±0.2 to ±2, which mirrors in half of the cases.
 Mat4 random_stretch(TrialRandom& random) {
     const auto factor = [&] { return random.sign() * random.magnitude(0.2f, 2); };
     const float x = factor(), y = factor();
@@ -110,7 +110,7 @@ Camera random_camera(TrialRandom& random, const Placement& placement) {
     camera.look_at = there(random.vector());
     camera.up = Vec3d(random.direction());
     camera.fov_degrees = static_cast<double>(random.uniform(10, 110));
-    // Far from the world's origin parallel rays, which all start elsewhere, would start from rounded places.
+    // Far from the world's origin the origins of parallel rays would be rounded.
     if (random.below(8) == 0 && placement.offset == Vec3()) {
         camera.projection = Camera::Projection::kOrthographic;
         camera.height = static_cast<double>(placement.scale * random.uniform(1, 6));

@@ -1,4 +1,4 @@
-// Scenes made by chance, on which the two pipelines are set against each other.
+// This header declares random scenes for comparing the two pipelines.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -7,17 +7,17 @@
 
 namespace duet::compare {
 
-/// What a scene is made of, in a ball of about 2 metres.
+/// Selects the parts of a scene, within a sphere of about 2 meters.
 struct SceneParts {
-    bool soup = false;      ///< triangles of all sizes and slivers, through each other, before the eye and behind it
-    bool meshes = false;    ///< closed tori with shared vertices, whose back faces may be culled
+    bool soup = false; ///< intersecting triangles of all sizes, and slivers, in front of and behind the eye
+    bool meshes = false; ///< closed tori with shared vertices, whose back faces may be culled
     bool spheres = false;   ///< of radii 0.01 to 1
     bool quads = false;     ///< boxes and walls
-    bool instances = false; ///< of each shape so far: turned, stretched, mirrored
+    bool instances = false; ///< of each shape so far: rotated, stretched, mirrored
 };
 
-/// Where the whole stands: the ball's centre and its scale; the view goes with it, a perspective one where the centre
-/// is not the world's origin.
+/// Places the scene: the sphere's center and scale. The view moves with it, and is perspective if the center is not
+/// the world's origin.
 struct Placement {
     Vec3 offset;
     float scale = 1;
@@ -25,14 +25,14 @@ struct Placement {
 
 struct TrialScene {
     Scene scene;
-    View view; ///< from outside or from within, perspective or (one in eight) orthographic
+    View view; ///< from outside or inside; perspective or (one in eight) orthographic
 };
 
-/// All objects of one grey material; finished.
+/// Returns a finished scene; all its objects have one gray material.
 TrialScene random_scene(TrialRandom& random, const SceneParts& parts, const Placement& placement, int width,
                         int height);
 
-/// As random_scene with all parts, but of all materials, with all kinds of light, a moving object and a lens.
+/// Returns a random scene with all parts, all materials, all kinds of lights, a moving object and a thin lens.
 TrialScene random_lit_scene(TrialRandom& random, int width, int height);
 
 } // namespace duet::compare

@@ -1,4 +1,4 @@
-// Guards that a test build can take away by name, and the test that must fail then.
+// This header declares the guards that a fault-injection build can remove by name, and the test that must then fail.
 #pragma once
 
 #include "common/system/sabotage.h"
@@ -12,13 +12,13 @@ namespace duet::compare {
 struct Sabotage {
     Guard guard;
     std::string_view name;
-    std::string_view test; ///< of `compare stress`: fails without the guard
+    std::string_view test; ///< test of `compare stress` that fails without the guard
 };
 
-/// One for each Guard, in their order.
+/// Returns one entry for each Guard, in the same order.
 std::span<const Sabotage> sabotages();
-/// Takes the guard of that name away, from now on. Throws Error listing the names where there is none, and in any build
-/// but the sabotage one.
+/// Removes the guard of this name from now on. Throws Error, listing the names, if there is no such guard, and in any
+/// build other than the fault-injection build.
 void remove_guard(const std::string& name);
 
 } // namespace duet::compare

@@ -1,4 +1,5 @@
-// What the intersection tests shoot at: shapes and scenes of them, and the answer of testing every primitive.
+// This header declares the shapes and scenes of the intersection tests, and the reference hit from testing every
+// primitive.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -8,24 +9,25 @@
 
 namespace duet::compare {
 
-/// A scene of shapes with one grey material: each placed once, or as often as there are matrices for it.
+/// Returns a scene of shapes with one gray material. Each shape is placed once, or once per matrix.
 Scene make_scene(std::vector<Shape> shapes);
 Scene make_scene(Shape shape, const std::vector<Mat4>& placements);
 
-/// A scene with the path tracer's accelerator over it; the scene stays where it is.
+/// A stage owns a scene at a stable address, with the path tracer's accelerator.
 struct Stage {
     explicit Stage(Scene scene_) : scene(std::make_unique<const Scene>(std::move(scene_))), accelerator(*scene, 1) {}
     std::unique_ptr<const Scene> scene;
     raytrace::Accelerator accelerator;
 };
 
-/// The first hit by testing every primitive in turn, in the library's own way and order: what an accelerator must find.
+/// Returns the first hit by testing every primitive in order with the library's own routines; an accelerator must
+/// find the same hit.
 Hit hit_by_testing_all(const Scene& scene, const Ray& ray);
 
-/// A triangle mesh around the origin, closed, of 20·4^levels triangles with common vertices: a sphere of radius 1, or
-/// with bumps of up to ± `bump`, so that it is concave and its triangles differ in form.
+/// Returns a closed triangle mesh around the origin, with 20·4^levels triangles and shared vertices. It is a sphere
+/// of radius 1, or one with bumps of up to ± `bump`, which make it concave and vary its triangles.
 Mesh ball(int levels, float bump = 0);
-/// Its vertices scaled, then moved.
+/// Scales and then translates the vertices.
 Mesh placed(Mesh mesh, float scale, Vec3 shift);
 
 } // namespace duet::compare

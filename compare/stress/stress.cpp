@@ -14,7 +14,7 @@ std::int64_t StressSetting::trials(std::int64_t by_default) const {
 
 void StressOutcome::add(std::int64_t trial, double error, double bound) {
     worst = worse(error, worst);
-    if (error <= bound) return; // a NaN is not
+    if (error <= bound) return; // false for a NaN
     ++failures;
     if (first_failure < 0 || trial < first_failure) first_failure = trial;
 }
@@ -37,13 +37,13 @@ std::vector<StressTest> all_stress_tests() {
 
 namespace {
 
-/// Whether the name begins with the part, and the part ends where a word does.
+/// Returns whether the name begins with `part` at a word boundary.
 bool begins(std::string_view name, std::string_view part) {
     return name.starts_with(part) &&
            (name.size() == part.size() || name[part.size()] == '/' || name[part.size()] == '-');
 }
 
-/// The tests of that very name, or else those that begin with it.
+/// Returns the tests of exactly that name or, if there are none, those that begin with it.
 std::vector<bool> meant(const std::vector<StressTest>& tests, const std::string& name) {
     std::vector<bool> whole, part;
     for (const StressTest& test : tests) {

@@ -1,4 +1,4 @@
-// The numerical stability suite: what a test of it is, and what it reports.
+// This header declares the tests and the results of the numerical stability suite.
 #pragma once
 
 #include "common/system/control.h"
@@ -12,57 +12,58 @@
 
 namespace duet::compare {
 
-/// What a test is given. The same seed and factor give the same row, for any number of threads.
+/// Holds the settings of a test. The same seed and factor give the same result for any number of threads.
 struct StressSetting {
     std::uint64_t seed = 0;
-    double factor = 1; ///< of the default number of trials, > 0
+    double factor = 1; ///< multiplies the default number of trials, > 0
     int threads = 0;   ///< 0: all
-    Control control;   ///< of the test at hand; where it is stopped, its result means nothing
+    Control control; ///< of the current test; if it is stopped, its result is invalid
 
-    /// A test's number of trials, at least 1.
+    /// Returns a test's number of trials, at least 1.
     std::int64_t trials(std::int64_t by_default) const;
 };
 
-/// How one way of computing fared: a trial fails where its error is above the test's bound, or is NaN.
+/// Counts the failures of one implementation. A trial fails if its error is above the test's bound or NaN.
 struct StressOutcome {
     std::int64_t failures = 0;
-    double worst = 0;                ///< largest error, in the unit of the bound; NaN is worse than all
-    std::int64_t first_failure = -1; ///< the lowest number of a trial that failed; −1: none did
+    double worst = 0; ///< largest error, in the unit of the bound; NaN is the worst
+    std::int64_t first_failure = -1; ///< lowest number of a failed trial; −1: none failed
 
     void add(std::int64_t trial, double error, double bound);
-    StressOutcome& operator+=(const StressOutcome& other); ///< in any order the same
+    StressOutcome& operator+=(const StressOutcome& other); ///< commutative
 };
 
 struct StressResult {
-    std::int64_t trials = 0;            ///< those that judged something …
-    std::int64_t least_trials = 1;      ///< … and how many had to (StressTest::judged)
-    StressOutcome careful;              ///< the library's way: any failure fails the suite
-    std::optional<StressOutcome> naive; ///< the books' way on the same trials: shows what care buys
-    std::string account;                ///< what the first failed trial of the careful way noted of itself
+    std::int64_t trials = 0; ///< trials that judged something
+    std::int64_t least_trials = 1; ///< least number of such trials (StressTest::judged)
+    StressOutcome careful; ///< the library's implementation: any failure fails the suite
+    std::optional<StressOutcome> naive; ///< the textbook implementation on the same trials, for comparison
+    std::string account; ///< notes of the first failed trial of the library's implementation
 
-    /// Whether the row is red: a trial failed, or too few judged anything.
+    /// Returns whether the test failed: a trial failed, or too few trials judged anything.
     bool failed() const { return careful.failures > 0 || trials < least_trials; }
 };
 
-/// One row of the suite.
+/// This is one row of the suite.
 struct StressTest {
     std::string_view name;   ///< "intersection/leak-edges": a group and a test, both in lower case with hyphens
-    std::string_view what;   ///< a sentence: what must hold, for which inputs
-    double bound;            ///< of a trial's error; 0 where a trial simply holds (error 0) or not (error 1)
+    std::string_view what; ///< a sentence: what must hold, for which inputs
+    double bound; ///< of a trial's error; 0 for a trial that either holds (error 0) or fails (error 1)
     std::string_view unit;   ///< of error and bound: "ulp", "relative", "wrong" …
-    std::string_view source; ///< where the bound comes from: a paper, a derivation in a few words, an exact oracle
-    std::string_view naive;  ///< what the naive column is: "t > 0.001, as the books have it"; empty: there is none
-    std::int64_t trials;     ///< by default
-    /// Usually run_trials (compare/stress/trials.h) with a function that makes and judges one trial.
+    std::string_view source; ///< source of the bound: a paper, a short derivation, or an exact oracle
+    std::string_view naive; ///< description of the naive column, such as "t > 0.001, as the books have it"; empty: none
+    std::int64_t trials; ///< default number
+    /// Runs the test, usually by run_trials (compare/stress/trials.h) with a function that makes and judges one
+    /// trial.
     StressResult (*run)(const StressTest& test, const StressSetting& setting);
-    /// The share of the trials that must judge something: others met a case that the row does not speak of. What always
-    /// refuses to answer must not pass.
+    /// This fraction of the trials must judge something; the others meet a case that the row does not cover. It
+    /// prevents an implementation that never answers from passing.
     double judged = 0.99;
 };
 
-// The groups, each in a file of its own (compare/stress/*_tests.cpp).
+// Each group has its own file (compare/stress/*_tests.cpp).
 std::span<const StressTest> arithmetic_tests();   ///< robust arithmetic, frames, film sums
-std::span<const StressTest> leak_tests();         ///< closed surfaces let no ray through
+std::span<const StressTest> leak_tests(); ///< closed surfaces are watertight
 std::span<const StressTest> intersection_tests(); ///< spheres, slivers, degenerate triangles and rays, ties
 std::span<const StressTest> departure_tests();    ///< leaving a surface: self-hits, parallel surfaces, instances
 std::span<const StressTest> material_tests();     ///< refraction, furnaces, chi-squared, reciprocity
@@ -71,10 +72,11 @@ std::span<const StressTest> coverage_tests();     ///< edges covered once, exact
 std::span<const StressTest> projection_tests();   ///< near plane, attributes, derivatives, depth order
 std::span<const StressTest> pipeline_tests();     ///< thread counts, both pipelines' Hits
 
-/// All groups' tests in the order above.
+/// Returns the tests of all groups in the order above.
 std::vector<StressTest> all_stress_tests();
-/// Those of the given names, or, of a name that no test has, those that begin with it up to a '/' or '-': "departure",
-/// "intersection/leak". All where no names are given. Throws Error listing the tests where a name fits none.
+/// Returns the tests of the given names. A name that matches no test selects those that begin with it up to a '/' or
+/// '-', such as "departure" or "intersection/leak". Without names, all tests are returned. Throws Error, listing the
+/// tests, if a name matches none.
 std::vector<StressTest> select_stress_tests(const std::vector<std::string>& names);
 
 } // namespace duet::compare

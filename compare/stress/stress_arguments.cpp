@@ -1,4 +1,4 @@
-// The arguments of `compare stress`.
+// This file declares the arguments of `compare stress`.
 #include "common/program/option_checks.h"
 #include "common/system/sabotage.h"
 #include "compare/arguments.h"

@@ -26,7 +26,7 @@ std::string readable(double value) {
     return out.str();
 }
 
-/// The terminal's table: widths are those of the names at hand.
+/// Prints the terminal's table; its column widths fit the selected names.
 class Table {
 public:
     Table(const std::vector<StressTest>& tests, bool visible) : visible_(visible) {
@@ -67,7 +67,7 @@ private:
     std::size_t name_ = 4, bound_ = 5;
 };
 
-/// What is needed to see a failure again.
+/// Prints what is needed to reproduce a failure.
 void explain(const StressTest& test, const StressResult& result, const StressOptions& options) {
     std::cerr << "compare: " << test.name << ": ";
     if (result.trials < result.least_trials)
@@ -80,7 +80,7 @@ void explain(const StressTest& test, const StressResult& result, const StressOpt
     std::cerr << "\n  what must hold: " << test.what << "\n  the bound's source: " << test.source << '\n';
 }
 
-/// A number as JSON holds it: one that is not finite as a string.
+/// Returns a number as JSON; a non-finite one becomes a string.
 json number(double value) { return std::isfinite(value) ? json(value) : json(readable(value)); }
 
 json as_json(const StressTest& test, const StressResult& result) {
@@ -123,7 +123,7 @@ int stress(const StressOptions& options) {
         print_list(tests);
         return kExitOk;
     }
-    check_json_path(options.stats); // found out before a long run, not after
+    check_json_path(options.stats); // fails before a long run rather than after it
     if (!options.sabotage.empty()) remove_guard(options.sabotage);
     const InterruptFlag interrupt;
     const Stopwatch watch;
@@ -153,7 +153,8 @@ int stress(const StressOptions& options) {
                            {"seed", options.seed},
                            {"factor", options.factor},
                            {"tests", rows}};
-        if (!options.sabotage.empty()) statistics["sabotage"] = options.sabotage; // no figures of the real numerics
+        // These results are not those of the real numerics.
+        if (!options.sabotage.empty()) statistics["sabotage"] = options.sabotage;
         write_json(options.stats, statistics);
     }
     if (!options.quiet)

@@ -1,4 +1,4 @@
-// `compare stress`: runs the numerical stability suite.
+// This header declares `compare stress`, which runs the numerical stability suite.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@
 namespace duet::compare {
 
 struct StressOptions {
-    double factor = 1;             ///< times the default number of trials, > 0
-    std::vector<std::string> only; ///< tests or beginnings of their names; empty: all
-    bool list = false;             ///< say what the tests are, and run none
+    double factor = 1; ///< multiplies the default number of trials, > 0
+    std::vector<std::string> only; ///< names of tests or their beginnings; empty: all
+    bool list = false; ///< list the tests instead of running them
     std::uint64_t seed = 0;
     int threads = 0;   ///< 0: all
-    std::string stats; ///< a file for the rows as JSON, "-" for standard output, empty: none
+    std::string stats; ///< output file for the rows as JSON; "-": standard output; empty: none
     bool quiet = false;
-    std::string sabotage; ///< a guard to do without, in a sabotage build; empty: none
+    std::string sabotage; ///< guard to remove in a fault-injection build; empty: none
 };
 
-/// Prints a row a test as it is done. Returns 1 where a test failed, 130 where a signal came, else 0. Throws Error for
-/// names and files that cannot be used.
+/// Prints one row per test as it finishes. Returns 1 if a test failed, 130 after a signal, else 0. Throws Error for
+/// invalid names and files.
 int stress(const StressOptions& options);
 
 } // namespace duet::compare

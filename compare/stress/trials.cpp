@@ -29,14 +29,14 @@ Vec3 TrialRandom::direction() { return uniform_sphere(uniform_2d()); }
 
 namespace {
 
-/// A number for a name: FNV-1a (Fowler, Noll and Vo), the same on every machine, unlike std::hash.
+/// Returns the FNV-1a hash of a name (Fowler, Noll and Vo). Unlike std::hash it is the same on every platform.
 std::uint64_t hash_name(std::string_view name) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     return hash;
 }
 
-/// Whether the trial judged anything; adds its errors.
+/// Adds a trial's errors unless it judged nothing.
 void add(StressResult& result, const StressTest& test, const Trial& trial) {
     if (!trial.careful_error()) return;
     ++result.trials;
@@ -44,7 +44,7 @@ void add(StressResult& result, const StressTest& test, const Trial& trial) {
     if (result.naive && trial.naive_error()) result.naive->add(trial.number(), *trial.naive_error(), test.bound);
 }
 
-/// Passes on the fraction of a test that is done, one call at a time and never less than before.
+/// Reports the completed fraction of a test: one call at a time, and never decreasing.
 class SharedProgress {
 public:
     SharedProgress(const Control& control, std::size_t parts) : control_(control), parts_(parts) {}
@@ -59,7 +59,7 @@ private:
     std::mutex mutex_;
 };
 
-/// The share that must judge, less five standard deviations: of a few trials chance may take that many.
+/// Returns the required number of judging trials, less five standard deviations for random variation.
 std::int64_t least_trials(std::int64_t count, double judged) {
     const double n = static_cast<double>(count), spread = std::sqrt(n * judged * (1 - judged));
     return std::max<std::int64_t>(1, std::llround(std::floor(n * judged - 5 * spread)));
@@ -76,7 +76,8 @@ StressResult run_trials(const StressTest& test, const StressSetting& setting, co
         return trial;
     };
 
-    // Parts are small enough to be shared evenly, costly trials one by one, and large enough to cost nothing.
+    // Chunks are small enough for load balancing, down to single costly trials, and large enough to make scheduling
+    // overhead negligible.
     const std::int64_t part = std::clamp<std::int64_t>(count / 512, 1, 4096);
     std::vector<StressResult> parts(static_cast<std::size_t>((count + part - 1) / part));
     SharedProgress progress(setting.control, parts.size());

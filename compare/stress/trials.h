@@ -1,4 +1,5 @@
-// Many trials of one test, in parallel: the numbers a trial draws depend on seed, test and trial alone.
+// This header declares trials of one test that run in parallel. A trial's random numbers depend only on seed, test
+// and trial.
 #pragma once
 
 #include "common/sampling/hash.h"
@@ -10,32 +11,32 @@
 
 namespace duet::compare {
 
-/// A trial's random numbers: a stream of its own.
+/// This is a trial's own random number stream.
 class TrialRandom {
 public:
     explicit TrialRandom(std::uint64_t state) : state_(state) {}
 
     std::uint64_t bits() { return stream_number(state_, index_++); }
-    /// Uniform in [0, 1): a multiple of 2^-24, as the samplers' numbers are.
+    /// Returns a uniform value in [0, 1), a multiple of 2^-24 like the samplers' values.
     float uniform() { return unit_float(high_bits(bits())); }
     float uniform(float low, float high) { return low + (high - low) * uniform(); }
     Vec2 uniform_2d();
-    /// 10 to a uniform power: every order of magnitude from `low` to `high` alike; both positive.
+    /// Returns a log-uniform value in [low, high]; both must be positive.
     float magnitude(float low, float high);
-    /// 0 … n − 1.
+    /// Returns a uniform integer in 0 … n − 1.
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>((bits() >> 32) * n >> 32); }
     bool coin() { return (bits() >> 63) != 0; }
     float sign() { return coin() ? 1.0f : -1.0f; }
-    /// Each component uniform in [−1, 1).
+    /// Returns a vector with each component uniform in [−1, 1).
     Vec3 vector();
-    /// Uniform over the unit sphere; of unit length up to the rounding of its components.
+    /// Returns a uniform direction, of unit length up to the rounding of its components.
     Vec3 direction();
 
 private:
     std::uint64_t state_, index_ = 0;
 };
 
-/// One trial: what it draws from, and where it reports.
+/// A trial has a random number stream and collects the results.
 class Trial {
 public:
     Trial(std::uint64_t state, std::int64_t number, std::int64_t count, bool noting)
@@ -43,17 +44,19 @@ public:
 
     TrialRandom random;
 
-    std::int64_t number() const { return number_; } ///< 0 … count() − 1: for tests that go through cases in turn
-    std::int64_t count() const { return count_; }   ///< of all trials of the test
-    /// An error of the library's way, or of the books' way. The largest of several counts, NaN above all. A trial that
-    /// reports no error of the library's way judged nothing, and is not counted.
+    std::int64_t number() const { return number_; } ///< 0 … count() − 1, for tests that cycle through cases
+    std::int64_t count() const { return count_; } ///< number of trials of the test
+    /// Reports an error of the library's or of the textbook implementation. The largest of several errors counts,
+    /// with NaN as the largest. A trial without an error of the library's implementation judged nothing and is not
+    /// counted.
     void careful(double error) { report(careful_, error); }
     void naive(double error) { report(naive_, error); }
-    /// For trials that simply hold or not.
+    /// Reports a trial that either holds or fails.
     void careful_wrong(bool wrong) { careful(wrong ? 1 : 0); }
     void naive_wrong(bool wrong) { naive(wrong ? 1 : 0); }
 
-    /// Parts of a message that explains the trial. Only read where it has failed: it is then run once more for this.
+    /// Appends to the message that explains the trial. It is only used after a failure, when the trial runs again to
+    /// collect it.
     template <typename... Parts> void note(const Parts&... parts) {
         if (noting_) account_ += (account_.empty() ? "" : "; ") + message(parts...);
     }
@@ -73,11 +76,11 @@ private:
     std::string account_;
 };
 
-/// Runs body for each trial of the test, on setting.threads threads, and adds up. The body may read what it shares with
-/// others, and writes to its trial alone.
+/// Runs `body` for each trial of the test on setting.threads threads and accumulates the results. The body may read
+/// shared data, but must only write to its trial.
 StressResult run_trials(const StressTest& test, const StressSetting& setting, const std::function<void(Trial&)>& body);
 
-/// "(1, 2, 3)" with all digits, for notes.
+/// Returns the value with all digits, such as "(1, 2, 3)", for notes.
 std::string exact(Vec3 v);
 std::string exact(float x);
 

@@ -12,7 +12,8 @@
 namespace duet::raster {
 namespace {
 
-/// Takes places relative to a point to the cosine's space, in the frame of the viewer's side, the viewer in the plane y = 0.
+/// Maps vectors from a shading point to the space of the clamped cosine. The local frame has its normal on the
+/// viewer's side, and the viewer lies in the plane y = 0.
 class ToCosine {
 public:
     ToCosine(const ShadingPoint& point, float alpha) : point_(point), flip_(point.wo.z < 0 ? -1.0f : 1.0f) {
@@ -32,7 +33,7 @@ private:
     LobeMatrix lobe_;
 };
 
-// The part of the cosine that each shape fills, times π.
+// Each overload returns π times the form factor of a shape under the transformed cosine.
 
 double filled(std::span<Vec3> corners, const ToCosine& to_cosine, Vec3 p) {
     for (Vec3& corner : corners) corner = to_cosine(corner - p);
@@ -46,20 +47,21 @@ double filled(const Quad& quad, const ToCosine& to_cosine, Vec3 p) {
     std::array<Vec3, 4> all = corners(quad);
     return filled(all, to_cosine, p);
 }
-/// The greatest root of μ³ − trace μ² + minors μ − determinant, the characteristic polynomial of a matrix all of whose roots are
-/// real: from `bound`, which is over it, Newton's steps go down to it.
+/// Returns the greatest root of μ³ − trace μ² + minors μ − determinant, the characteristic polynomial of a
+/// matrix whose roots are all real. Newton's method starts from `bound`, an upper bound, and descends monotonically.
 double greatest_eigenvalue(double trace, double minors, double determinant, double bound) {
     double mu = bound;
     for (int i = 0; i < 32; ++i) {
-        const double value = ((mu - trace) * mu + minors) * mu - determinant, slope = (3 * mu - 2 * trace) * mu + minors;
+        const double value = ((mu - trace) * mu + minors) * mu - determinant,
+                     slope = (3 * mu - 2 * trace) * mu + minors;
         if (!(value > 1e-12 * mu * slope)) break;
         mu -= value / slope;
     }
     return mu;
 }
 
-/// Of a symmetric matrix and its eigenvalue: across the rows of the matrix less that, of which two at most are independent. Of any
-/// length, 0 where it is not unique.
+/// Returns an eigenvector of a symmetric matrix: the longest cross product of two rows of the matrix minus the
+/// eigenvalue, since at most two of its rows are independent. It is not normalized, and 0 where it is not unique.
 Vec3d eigenvector(std::array<Vec3d, 3> rows, double eigenvalue) {
     for (std::size_t i = 0; i < 3; ++i) rows[i][i] -= eigenvalue;
     Vec3d longest;
@@ -68,11 +70,11 @@ Vec3d eigenvector(std::array<Vec3d, 3> rows, double eigenvalue) {
     return longest;
 }
 
-/// A sphere fills a cone about the direction d, in which (w·d)² ≥ cos²σ w². In the cosine's space that is an elliptical
-/// cone, whose form factor and axis an eigenvalue and its vector give (Heitz and Hill 2017, «Real-Time Line- and Disk-Light
-/// Shading with Linearly Transformed Cosines»; here of the cone itself, without a disk). The horizon cuts it as it does the
-/// round cone of the same axis and form factor (Hill and Heitz 2016, «Real-Time Area Lighting: a Journey from Research to
-/// Production»).
+/// A sphere subtends a cone about the direction d, in which (w·d)² ≥ cos²σ w². In the cosine's space this is an
+/// elliptical cone. An eigenvalue and its eigenvector give the form factor and the axis of that cone (Heitz and Hill
+/// 2017, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines"; here for the cone itself,
+/// without a disk). The horizon clips it as it clips the circular cone of the same axis and form factor (Hill and
+/// Heitz 2016, "Real-Time Area Lighting: a Journey from Research to Production").
 double filled(const Sphere& sphere, const ToCosine& to_cosine, Vec3 p) {
     const Vec3 way = sphere.center - p;
     const double squared = dot(Vec3d(way), Vec3d(way));
@@ -82,7 +84,8 @@ double filled(const Sphere& sphere, const ToCosine& to_cosine, Vec3 p) {
     const Vec3d a(to_cosine({1, 0, 0})), b(to_cosine({0, 1, 0})), c(to_cosine({0, 0, 1}));
     const auto row = [&](std::size_t i) { return u * u[i] - (a * a[i] + b * b[i] + c * c[i]) * sine2; };
     const std::array<Vec3d, 3> rows{row(0), row(1), row(2)};
-    const double trace = rows[0].x + rows[1].y + rows[2].z, determinant = sqr(sine2 * dot(a, cross(b, c))) * (1 - sine2);
+    const double trace = rows[0].x + rows[1].y + rows[2].z,
+                 determinant = sqr(sine2 * dot(a, cross(b, c))) * (1 - sine2);
     const double minors = rows[0].x * rows[1].y - sqr(rows[0].y) + rows[0].x * rows[2].z - sqr(rows[0].z) +
                           rows[1].y * rows[2].z - sqr(rows[1].z);
     const double mu = greatest_eigenvalue(trace, minors, determinant, dot(u, u));
@@ -102,10 +105,11 @@ Rgb area_reflection(const SurfaceLight& light, const MetalBsdf& bsdf, const Shad
     if (!emits_towards(light, surface.p)) return {};
     const ToCosine to_cosine(point, bsdf.alpha);
     const double part = std::visit([&](const auto& shape) { return filled(shape, to_cosine, surface.p); }, light.shape);
-    // Further reflections leave evenly enough to be taken for diffuse.
+    // The light of multiple scattering is nearly uniform over directions, so it is treated as diffuse.
     const GgxAlbedo single = ggx_albedo(bsdf.alpha, std::abs(point.wo.z));
     const Rgb further = bsdf.multiple * ((1 - single.energy) * ggx_means(bsdf.alpha).lost);
-    return light.radiance * single.of(bsdf.reflectance) * static_cast<float>(part / kPiDouble) + irradiance(light, point) * further;
+    return light.radiance * single.of(bsdf.reflectance) * static_cast<float>(part / kPiDouble) +
+        irradiance(light, point) * further;
 }
 
 } // namespace duet::raster

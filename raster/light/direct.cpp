@@ -20,7 +20,7 @@ struct Polygon {
 Polygon outline(const SurfaceLight::Triangle& t) { return {{t.a, t.b, t.c}, 3}; }
 Polygon outline(const Quad& q) { return {{q.corner, q.corner + q.u, q.corner + q.u + q.v, q.corner + q.v}, 4}; }
 
-/// The part of a polygon above the plane through p with normal n.
+/// Clips a polygon to the half-space above the plane through p with normal n.
 Polygon above(const Polygon& polygon, Vec3 p, Vec3 n) {
     Polygon result;
     const auto emit = [&](Vec3 v) {
@@ -35,8 +35,8 @@ Polygon above(const Polygon& polygon, Vec3 p, Vec3 n) {
     return result;
 }
 
-/// Irradiance where the shading normal is not the horizon's: the light is cut at the horizon, then, in the closed
-/// form, at the shading normal's.
+/// Returns the irradiance where the shading normal differs from `ShadingPoint::horizon`. The light is clipped at the
+/// plane of `horizon` first; the closed form then clips it at the plane of the shading normal.
 template <typename Shape>
 Rgb irradiance_above(const SurfaceLight& light, const Shape& shape, const ShadingPoint& point) {
     const Vec3 p = point.surface.p;
@@ -60,7 +60,7 @@ Vec3 center(const SurfaceLight::Triangle& t) { return (t.a + t.b + t.c) * (1.0f 
 Vec3 center(const Quad& q) { return q.corner + (q.u + q.v) * 0.5f; }
 Vec3 center(const Sphere& s) { return s.center; }
 
-/// Light as from one direction: what a delta light gives.
+/// This is a light treated as arriving from one direction, as a delta light does.
 using Incident = IncidentT<float>;
 std::optional<Incident> delta_light(const Light& light, Vec3 p) {
     const std::optional<LightSample> sample = sample_light(light, p, kMiddle);
@@ -123,13 +123,16 @@ Direct direct_light(std::span<const Light> lights, const RoughDiffuseBsdf& bsdf,
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const auto* surface = std::get_if<SurfaceLight>(&lights[i]);
         if (surface != nullptr && is_own(*surface, point.surface)) continue;
-        const auto incident = surface ? from_center(*surface, point.surface.p) : delta_light(lights[i], point.surface.p);
+        const auto incident = surface ? from_center(*surface, point.surface.p)
+                                      : delta_light(lights[i], point.surface.p);
         if (!incident) continue;
-        // How rough it is turns with the light's direction, the irradiance is a surface light's own.
+        // The BSDF is evaluated for the direction to the light's center; the irradiance is integrated over the
+        // surface light.
         Rgb light;
         if (surface != nullptr) {
             Vec3 wi = point.frame.to_local(incident->wi);
-            wi.z = std::abs(wi.z) * (point.wo.z < 0 ? -1.0f : 1.0f); // a light on the horizon may have its centre below
+            // The center of a light that straddles the horizon may be below it.
+            wi.z = std::abs(wi.z) * (point.wo.z < 0 ? -1.0f : 1.0f);
             light = bsdf.eval(point.wo, wi, TransportMode::kRadiance) * irradiance(*surface, point);
         } else {
             light = reflected(bsdf, point, *incident);

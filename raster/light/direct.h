@@ -1,4 +1,4 @@
-// Light that comes straight from the scene's lights.
+// This header declares direct lighting from the scene's lights.
 #pragma once
 
 #include "common/geometry/surface_point.h"
@@ -12,59 +12,62 @@
 
 namespace duet::raster {
 
-/// A point on a surface as its viewer sees it. The side that is seen is the geometric one.
+/// A shading point is a surface point together with its viewer. The visible side is that of the geometric normal.
 struct ShadingPoint {
     const SurfacePoint& surface;
-    Vec3 ng;     ///< geometric normal, on the viewer's side: light from its other side doesn't arrive
-    Vec3 horizon; ///< SurfacePoint::horizon, on the viewer's side
-    Vec3 ns;     ///< shading normal, in the hemisphere of ng
-    Frame frame; ///< about the surface's own shading normal (+z is the outside), in which materials work
-    Vec3 wo;     ///< to the viewer, unit, in that frame; always on the side that is seen
+    Vec3 ng; ///< geometric normal, on the viewer's side; light from the other side does not arrive
+    Vec3 horizon; ///< SurfacePoint::horizon (the normal of the shading-terminator fix), on the viewer's side
+    Vec3 ns; ///< shading normal, in the hemisphere of ng
+    Frame frame; ///< about the surface's own shading normal (+z is outside), in which BSDFs are evaluated
+    Vec3 wo; ///< direction to the viewer, unit, in `frame`; always on the visible side
 
-    /// to_viewer: unit, in the world.
+    /// `to_viewer` is a unit vector in world space.
     ShadingPoint(const SurfacePoint& point, Vec3 to_viewer);
-    /// Whether light from w (in the world) arrives on the side of the surface that is seen: above its horizon.
+    /// Returns whether light from the world-space direction w arrives on the visible side: above the plane of
+    /// `horizon`.
     bool receives(Vec3 w) const { return dot(horizon, w) > 0; }
 };
 
-/// Irradiance from a surface light at a shading point, in closed form: over the directions above the horizons of both
-/// normals. 0 on the light's own primitive.
+/// Returns the unoccluded irradiance from a surface light at a shading point, in closed form. It covers the
+/// directions above the planes of both `horizon` and the shading normal, and is 0 on the light's own primitive.
 Rgb irradiance(const SurfaceLight& light, const ShadingPoint& point);
 
 class Shadows; // raster/shadow/shadows.h
 
-/// Light towards the viewer, and what shadows keep from it.
+/// Direct light toward the viewer is split into the visible and the shadowed fraction.
 struct Direct {
     Rgb arriving, shadowed;
 
-    /// Light of which a part is visible.
+    /// Adds light of which the fraction `visible`, in [0, 1], is unshadowed.
     void add(Rgb light, float visible) {
         arriving += light * visible;
         shadowed += light * (1 - visible);
     }
 };
 
-/// Tells of each light how much of it arrives.
+/// Returns the visible fraction of each light, in [0, 1].
 struct Visibility {
-    const Shadows* shadows = nullptr; ///< null: all of all
+    const Shadows* shadows = nullptr; ///< null: every light is fully visible
     TapRange taps{};
 
     float operator()(std::size_t light, const ShadingPoint& point) const;
 };
 
-/// Radiance towards the viewer. Diffuse: exact for every light. Rough metal: exact for point, spot and sun; a surface
-/// light by transformed cosines (raster/light/area_specular.h), or, without, as a distant one of the same irradiance at its
-/// centre. Smooth metal: none.
+/// Returns the radiance toward the viewer. A diffuse BSDF is exact for every light. Rough metal is exact for point,
+/// spot and sun lights. For a surface light it uses linearly transformed cosines (raster/light/area_specular.h) or,
+/// without `transformed_cosines`, a distant light of the same irradiance in the direction of the light's center.
+/// Smooth metal reflects none.
 Direct direct_light(std::span<const Light> lights, const DiffuseBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility);
-/// Rough diffuse: exact for point, spot and sun; a surface light by its irradiance, reflected as from its centre.
+/// Rough diffuse is exact for point, spot and sun lights. A surface light contributes its irradiance, reflected as if
+/// all of it came from the light's center.
 Direct direct_light(std::span<const Light> lights, const RoughDiffuseBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility);
 Direct direct_light(std::span<const Light> lights, const MetalBsdf& bsdf, const ShadingPoint& point,
                     const Visibility& visibility, bool transformed_cosines);
 
-/// A surface light as a distant one in its centre's direction, and its irradiance at p on a surface facing that way;
-/// black in the centre itself.
+/// Approximates a surface light by a distant light in the direction of its center. The irradiance is that at p on a
+/// surface facing this direction. The result is black if p is the center itself.
 template <typename T> struct IncidentT;
 IncidentT<float> as_distant(const SurfaceLight& light, Vec3 p);
 

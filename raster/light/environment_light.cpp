@@ -19,9 +19,10 @@ std::optional<Rgb> constant_background(const PreparedData& data, const Settings&
 
 namespace {
 
-/// What a diffuse surface in a pixel sees of the environment.
+/// Returns the fraction of the environment that is unoccluded for a diffuse surface in a pixel.
 SkySeen sky_seen(const Settings& settings, const Screen* screen, const ShadingPoint& point) {
-    if (screen == nullptr || screen->occlusion() == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone) return {};
+    if (screen == nullptr || screen->occlusion() == nullptr || settings.ambient_occlusion == AmbientOcclusion::kNone)
+        return {};
     const Vec3 p = screen->relative(point.surface.p), place = screen->project(p);
     if (!(place.z > 0)) return {};
     const auto [x, y] = screen->pixel_at(place);
@@ -31,15 +32,16 @@ SkySeen sky_seen(const Settings& settings, const Screen* screen, const ShadingPo
 } // namespace
 
 template <typename BsdfType> Rgb EnvironmentLight::look_up(const BsdfType& bsdf, bool transmitted, float alpha) const {
-    // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
+    // TransportMode::kImportance omits the factor η² of radiance inside the medium, which cancels on leaving it.
     const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
     const auto sample = bsdf.sample(point_.wo, lobe, {0.5f, 0.5f}, TransportMode::kImportance);
     if (!sample || sample->transmitted != transmitted) return {};
     const Vec3 wi = point_.frame.to_world(sample->wi);
-    if (point_.receives(wi) == transmitted) return {}; // the two normals disagree
+    if (point_.receives(wi) == transmitted) return {}; // the geometric and the shading normal disagree
     const Rgb crossings = transmitted ? sample->weight * sample->weight : sample->weight;
     const Vec3 way = normalize(wi);
-    const Rgb light = alpha > 0 ? prefiltered_->at(data_.scene.environment, way, alpha) : radiance(data_.scene.environment, way);
+    const Rgb light = alpha > 0 ? prefiltered_->at(data_.scene.environment, way, alpha)
+                                : radiance(data_.scene.environment, way);
     return light * crossings * sample->pdf;
 }
 

@@ -1,4 +1,4 @@
-// What a surface reflects of the environment, and what glass shows of it alone.
+// This header declares the reflection and refraction of the environment at a surface.
 #pragma once
 
 #include "raster/light/direct.h"
@@ -10,33 +10,35 @@
 
 namespace duet::raster {
 
-/// Whether the settings show the scene's environment.
+/// Returns whether the settings show the scene's environment.
 bool shows_environment(const PreparedData& data, const Settings& settings);
-/// What is seen where nothing is, if it is the same everywhere.
+/// Returns the radiance of pixels without geometry if it is the same in every direction.
 std::optional<Rgb> constant_background(const PreparedData& data, const Settings& settings);
 
-/// Light from the environment, occluded as far as that is known.
+/// Computes the light reflected from the environment, with ambient occlusion where `screen` provides it.
 class EnvironmentLight {
 public:
-    EnvironmentLight(const PreparedData& data, const Settings& settings, const ShadingPoint& point, const Screen* screen)
-        : data_(data), settings_(settings), prefiltered_(settings.prefiltered_environment ? data.prefiltered.get() : nullptr),
+    EnvironmentLight(const PreparedData& data, const Settings& settings, const ShadingPoint& point,
+                     const Screen* screen)
+        : data_(data), settings_(settings),
+          prefiltered_(settings.prefiltered_environment ? data.prefiltered.get() : nullptr),
           point_(point), screen_(screen) {}
 
     Rgb operator()(const DiffuseBsdf& bsdf) const;
-    /// Of a rough one by the split sum; else what a smooth metal reflects.
+    /// Rough metal uses the split sum; without a prefiltered environment it is treated as smooth.
     Rgb operator()(const MetalBsdf& bsdf) const;
     Rgb operator()(const RoughDiffuseBsdf& bsdf) const;
-    /// The mirror image, and what is seen through this side of the glass alone: refracted once, tinted as by two
-    /// crossings; weighed by Fresnel's equations.
+    /// Returns the mirror reflection and the transmission through this interface alone: refracted once, tinted as by
+    /// two crossings, and weighted by the Fresnel equations.
     Rgb operator()(const DielectricBsdf& bsdf) const;
-    /// The same, blurred.
+    /// A rough dielectric uses the smooth one's directions with the prefiltered environment.
     Rgb operator()(const RoughDielectricBsdf& bsdf) const;
-    /// The mirror image, and what is straight behind.
+    /// Returns the mirror reflection and the undeviated transmission.
     Rgb operator()(const ThinDielectricBsdf& bsdf) const;
-    Rgb operator()(const LayeredBsdf&) const { return {}; } // its layers are shaded each by itself
+    Rgb operator()(const LayeredBsdf&) const { return {}; } // each layer is shaded separately
 
 private:
-    Rgb received() const; ///< What arrives at a diffuse surface.
+    Rgb received() const; ///< irradiance at a diffuse surface
     Vec3 mirrored() const;
     template <typename BsdfType> Rgb look_up(const BsdfType& bsdf, bool transmitted, float alpha = 0) const;
 

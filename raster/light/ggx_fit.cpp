@@ -11,7 +11,7 @@
 namespace duet::raster {
 namespace {
 
-// Where entries lie: roughness in equal steps, angles by √(1 − cos), in which both tables are smooth.
+// Table entries are at equal steps of roughness and of √(1 − cos). The table is smooth in both.
 float roughness_of(int row, int side) {
     return lerp(kSmoothest, kRoughest, static_cast<float>(row) / static_cast<float>(side - 1));
 }
@@ -28,7 +28,8 @@ Vec2d point(int i, int count) {
 
 Vec3d viewer(double cosine) { return {std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine}; }
 
-/// The lobe without its Fresnel term: D G₂ / (4 cos θₒ), the cosine included; and the density of its own samples.
+/// This is the GGX lobe without its Fresnel term, D G₂ / (4 cos θₒ), including the cosine, with its sampling
+/// density.
 struct Lobe {
     double alpha;
     Vec3d wo;
@@ -42,7 +43,7 @@ struct Lobe {
     double weight(Vec3d wi) const { return wi.z > 0 ? ggx_g2_over_g1(wo, wi, alpha) : 0; }
 };
 
-/// All of the lobe's light and where it goes in the mean.
+/// Holds the lobe's albedo (`energy`) and its mean direction, not normalized.
 struct Moments {
     double energy = 0;
     Vec3d mean;
@@ -60,24 +61,26 @@ Moments moments(const Lobe& lobe) {
     return sum;
 }
 
-/// Heitz's parameters: the scales along the lobe's axes and its skew, about its mean direction (sin, 0, cos).
+/// These are the parameters of Heitz et al. 2016: the scales along the lobe's axes and its skew, in a frame about its
+/// mean direction (sin, 0, cos).
 struct Parameters {
     double m11 = 1, m22 = 1, m13 = 0;
 };
 LobeMatrix matrix(const Parameters& p, Vec3d mean) {
     const double a = std::max(p.m11, 1e-7), b = std::max(p.m22, 1e-7);
-    // [X Y Z] · [m11 0 m13; 0 m22 0; 0 0 1] with X = (z, 0, −x), Z = (x, 0, z).
+    // The matrix is [X Y Z] · [m11 0 m13; 0 m22 0; 0 0 1] with X = (z, 0, −x) and Z = (x, 0, z).
     return {static_cast<float>(mean.z * a), static_cast<float>(mean.z * p.m13 + mean.x), static_cast<float>(b),
             static_cast<float>(-mean.x * a), static_cast<float>(-mean.x * p.m13 + mean.z)};
 }
 
-/// A linearly transformed cosine's density.
+/// This is the density of a linearly transformed cosine.
 struct Cosine {
-    double i11, i13, i22, i31, i33, determinant; ///< of the inverse
+    double i11, i13, i22, i31, i33, determinant; ///< of the inverse matrix
     LobeMatrix m;
 
     explicit Cosine(const LobeMatrix& lobe) : m(lobe) {
-        const double m11 = static_cast<double>(m.m11), m13 = static_cast<double>(m.m13), m22 = static_cast<double>(m.m22),
+        const double m11 = static_cast<double>(m.m11), m13 = static_cast<double>(m.m13),
+                     m22 = static_cast<double>(m.m22),
                      m31 = static_cast<double>(m.m31), m33 = static_cast<double>(m.m33);
         const double d = m11 * m33 - m13 * m31;
         i11 = m33 / d, i13 = -m13 / d, i31 = -m31 / d, i33 = m11 / d, i22 = 1 / m22;
@@ -97,7 +100,7 @@ struct Cosine {
     }
 };
 
-/// ∫ |f − t|^power, by samples of both.
+/// Estimates ∫ |f − t|^power from samples of both densities.
 double difference(const Lobe& lobe, double energy, const LobeMatrix& fit, int power, int samples) {
     const Cosine cosine(fit);
     double sum = 0;
@@ -116,7 +119,7 @@ double difference(const Lobe& lobe, double energy, const LobeMatrix& fit, int po
 
 using Simplex = std::array<double, 3>;
 
-/// The least of a function of three numbers (Nelder and Mead 1965, «A Simplex Method for Function Minimization»).
+/// Minimizes a function of three variables (Nelder and Mead 1965, "A Simplex Method for Function Minimization").
 template <typename F> Simplex minimize(const F& f, const Simplex& start, double step) {
     std::array<std::pair<double, Simplex>, 4> s;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -157,13 +160,16 @@ template <typename F> Simplex minimize(const F& f, const Simplex& start, double 
     return std::min_element(s.begin(), s.end(), less)->second;
 }
 
-/// Fits one entry, from its neighbour's parameters, which it replaces.
+/// Fits one entry. The search starts from `parameters`, those of a neighboring entry, and replaces them by the
+/// result.
 LobeMatrix fit(float alpha, float cosine, Parameters& parameters) {
     const Lobe lobe{static_cast<double>(alpha), viewer(static_cast<double>(cosine))};
     const Moments m = moments(lobe);
     const Vec3d mean = normalize(m.mean);
-    const bool round = cosine >= 1; // seen from straight above the lobe is
-    const auto from = [&](const Simplex& s) { return round ? Parameters{s[0], s[0], 0} : Parameters{s[0], s[1], s[2]}; };
+    const bool round = cosine >= 1; // at normal incidence the lobe is rotationally symmetric
+    const auto from = [&](const Simplex& s) {
+        return round ? Parameters{s[0], s[0], 0} : Parameters{s[0], s[1], s[2]};
+    };
     const Vec3d axis = round ? Vec3d(0, 0, 1) : mean;
     const Simplex best = minimize(
         [&](const Simplex& s) { return difference(lobe, m.energy, matrix(from(s), axis), 3, kFitSamples); },
@@ -175,8 +181,8 @@ LobeMatrix fit(float alpha, float cosine, Parameters& parameters) {
 
 } // namespace
 
-/// Straight above, from the roughest down; then each row from there to the horizon: each fit starts from its
-/// neighbour's.
+/// Fits normal incidence first, from the greatest roughness down, then each row from normal incidence to grazing
+/// angles. Each fit starts from the neighboring entry's parameters.
 GgxTable<5, kLobeSide> compute_lobe_table() {
     std::array<Parameters, kLobeSide> straight;
     Parameters p;

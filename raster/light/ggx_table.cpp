@@ -12,10 +12,12 @@ extern const GgxTable<5, kLobeSide> kLobeTable; // written by raster/light/ggx_t
 
 namespace {
 
-/// Bilinear between the four entries about a place.
-template <std::size_t N, int Side> std::array<float, N> look_up(const GgxTable<N, Side>& table, float alpha, float cosine) {
+/// Interpolates bilinearly between the four nearest entries.
+template <std::size_t N, int Side> std::array<float, N> look_up(const GgxTable<N, Side>& table, float alpha,
+                                                                float cosine) {
     const float roughness = (std::sqrt(alpha) - kSmoothest) / (kRoughest - kSmoothest);
-    const float y = clamp(roughness, 0.0f, 1.0f) * (Side - 1), x = std::sqrt(clamp(1 - cosine, 0.0f, 1.0f)) * (Side - 1);
+    const float y = clamp(roughness, 0.0f, 1.0f) * (Side - 1),
+                x = std::sqrt(clamp(1 - cosine, 0.0f, 1.0f)) * (Side - 1);
     const int row = std::min(static_cast<int>(y), Side - 2), column = std::min(static_cast<int>(x), Side - 2);
     const float fy = y - static_cast<float>(row), fx = x - static_cast<float>(column);
     std::array<float, N> result;

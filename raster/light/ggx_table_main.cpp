@@ -1,4 +1,4 @@
-// Writes the table of raster/light/ggx_table.h as a source file, when the project is built.
+// This program writes the table of raster/light/ggx_table.h as a source file when the project is built.
 #include "raster/light/ggx_fit.h"
 
 #include "common/system/source_table.h"

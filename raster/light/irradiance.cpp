@@ -10,7 +10,7 @@ namespace {
 
 using Harmonics = std::array<double, 9>;
 
-/// The real spherical harmonics of orders 0, 1 and 2 in direction w (Ramamoorthi and Hanrahan 2001, eq. 3).
+/// Returns the real spherical harmonics of orders 0, 1 and 2 in direction w (Ramamoorthi and Hanrahan 2001, eq. 3).
 Harmonics harmonics(Vec3d w) {
     return {0.28209479177387814,
             0.4886025119029199 * w.y,
@@ -23,12 +23,12 @@ Harmonics harmonics(Vec3d w) {
             0.5462742152960396 * (w.x * w.x - w.y * w.y)};
 }
 
-/// What convolution with the clamped cosine does to each order (eq. 8).
+/// Convolution with the clamped cosine scales each order by these factors (eq. 8).
 constexpr Harmonics kCosineLobe = {kPiDouble,         kPiDouble * 2 / 3, kPiDouble * 2 / 3,
                                    kPiDouble * 2 / 3, kPiDouble / 4,     kPiDouble / 4,
                                    kPiDouble / 4,     kPiDouble / 4,     kPiDouble / 4};
 
-/// One row of the sky: radiance × harmonics over its pixels, each weighted by the solid angle it subtends.
+/// Projects one row of the environment map: the sum of radiance × harmonics over its pixels, weighted by solid angle.
 std::array<Rgbd, 9> project_row(const Environment& environment, int row, int width, int height) {
     std::array<Rgbd, 9> sums{};
     const double top = kPiDouble * row / height, bottom = kPiDouble * (row + 1) / height; // angles from +y
@@ -63,12 +63,13 @@ Rgb Irradiance::at(const Environment& environment, Vec3 n, const SkySeen& seen) 
     if (hidden == 0) return at(environment, n);
     const auto positive = [](Rgb c) { return Rgb(max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)); };
     if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) {
-        // down + (up − down) (1 + w·y)/2 over what is hidden.
+        // The sky is down + (up − down) (1 + w·y)/2, integrated over the occluded directions.
         const Rgb lost = (sky->down + sky->up) * (0.5f * hidden) + (sky->up - sky->down) * (0.5f * seen.hidden.y);
         return positive(at(environment, n) - lost * kPi);
     }
     if (closed_form_) return at(environment, n) * seen.visible;
-    // An order's irradiance is its light convolved with the cosine, a factor: that of a hidden direction is its light.
+    // Irradiance scales each order of the radiance by the cosine's factor, whereas light from an occluded direction
+    // is unscaled. The factor 1.5 = π / (2π/3) converts order 1 of the coefficients back.
     const Harmonics at_n = harmonics(Vec3d(n)), at_hidden = harmonics(Vec3d(seen.hidden));
     Rgbd sum = coefficients_[0] * at_n[0] * static_cast<double>(seen.visible);
     for (std::size_t i = 1; i < 4; ++i) sum += coefficients_[i] * (at_n[i] - 1.5 * at_hidden[i]);

@@ -1,4 +1,4 @@
-// Irradiance from the environment, nothing in between.
+// This header declares the unoccluded irradiance from the environment.
 #pragma once
 
 #include "common/light/environment.h"
@@ -8,20 +8,21 @@
 
 namespace duet::raster {
 
-/// ∫ L(w) max(0, n·w) dw over all directions: in closed form where the environment has one; of a picture by its
-/// spherical harmonics up to the second order, which hold irradiance to 1 % of its mean for natural light (Ramamoorthi
-/// and Hanrahan 2001, «An Efficient Representation for Irradiance Environment Maps»; a small bright sun is worse: up to
-/// 9 %).
+/// Computes ∫ L(w) max(0, n·w) dw over all directions. It uses a closed form where the environment has one. An image
+/// is projected to spherical harmonics up to the second order, which give irradiance to within 1 % of its mean for
+/// natural light (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps"). A
+/// small bright sun has a larger error, up to 9 %.
 class Irradiance {
 public:
-    /// Projects a picture, in parallel; the result is the same for any number of threads.
+    /// Projects an image in parallel; the result is the same for any number of threads.
     Irradiance(const Environment& environment, int threads);
 
-    /// At a surface with unit normal n; never negative. `environment` is the one it was made for.
+    /// Returns the irradiance of a surface with unit normal n; never negative. `environment` must be the one given to
+    /// the constructor.
     Rgb at(const Environment& environment, Vec3 n) const;
-    /// The same where a part of the sky is hidden, and that is black. Of light that is constant and of light that is
-    /// linear in the direction, exactly what is lost: a sky's in full; of a picture's light, the orders 0 and 1 of its
-    /// harmonics, the second being taken to be lost as much of as of all directions.
+    /// Returns the irradiance where a fraction of the environment is occluded by black surfaces. The loss is exact
+    /// for radiance that is constant or linear in the direction, hence for a sky. For an image it is exact for orders
+    /// 0 and 1 of its harmonics; order 2 is scaled by the visible fraction.
     Rgb at(const Environment& environment, Vec3 n, const SkySeen& seen) const;
     bool is_closed_form() const { return closed_form_; }
 

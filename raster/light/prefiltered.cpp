@@ -14,7 +14,7 @@
 namespace duet::raster {
 namespace {
 
-/// A sample of the lobe about +z: a direction, its weight, and the solid angle that it stands for.
+/// A sample of the lobe about +z has a direction, a weight, and the solid angle that it represents.
 struct LobeSample {
     Vec3 w;
     float weight, solid_angle;
@@ -35,7 +35,7 @@ std::vector<LobeSample> lobe_samples(float alpha) {
     return samples;
 }
 
-/// The mean height of a lobe: what it does to light that is linear in the direction.
+/// Returns the mean cosine of a lobe, by which it scales the part of the radiance that is linear in the direction.
 float mean_cosine(const std::vector<LobeSample>& samples) {
     float sum = 0;
     for (const LobeSample& s : samples) sum += s.weight * s.w.z;
@@ -45,16 +45,18 @@ float mean_cosine(const std::vector<LobeSample>& samples) {
 float wrapped(float u) { return u - std::floor(u); }
 
 Rgb at_direction(const ImageRgb& map, Vec2 uv) {
-    return bilinear(map, wrapped(uv.x) * static_cast<float>(map.width()), (1 - uv.y) * static_cast<float>(map.height()), true);
+    return bilinear(map, wrapped(uv.x) * static_cast<float>(map.width()),
+                    (1 - uv.y) * static_cast<float>(map.height()), true);
 }
 
-/// The direction at the middle of a map's pixel: the inverse of latlong_uv.
+/// Returns the direction at the center of a map's pixel: the inverse of latlong_uv.
 Vec3 direction(int x, int y, const ImageRgb& map) {
     const double theta = kPiDouble * (y + 0.5) / map.height(), phi = 2 * kPiDouble * ((x + 0.5) / map.width() - 0.5);
     return Vec3(Vec3d(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)));
 }
 
-/// The environment at half the width and height again and again, each pixel the mean of the radiance in its cell.
+/// Builds a mip chain of the environment: each level halves the width and height and averages radiance by solid
+/// angle.
 std::vector<ImageRgb> reduced(const Environment& environment, int width, int threads) {
     std::vector<ImageRgb> levels{ImageRgb(width, width / 2)};
     parallel_for(static_cast<std::size_t>(width / 2), threads, [&](std::size_t row) {
@@ -65,7 +67,7 @@ std::vector<ImageRgb> reduced(const Environment& environment, int width, int thr
         const ImageRgb& fine = levels.back();
         ImageRgb coarse(fine.width() / 2, fine.height() / 2);
         for (int y = 0; y < coarse.height(); ++y) {
-            // Rows nearer to a pole cover less of the sphere.
+            // Rows nearer to a pole subtend less solid angle.
             const auto a = static_cast<float>(std::sin(kPiDouble * (2 * y + 0.5) / fine.height())),
                        b = static_cast<float>(std::sin(kPiDouble * (2 * y + 1.5) / fine.height()));
             for (int x = 0; x < coarse.width(); ++x)
@@ -77,8 +79,8 @@ std::vector<ImageRgb> reduced(const Environment& environment, int width, int thr
     return levels;
 }
 
-/// Each sample looks at a level whose pixels are as large as what it stands for (Křivánek and Colbert 2008, «Real-time
-/// Shading with Filtered Importance Sampling»).
+/// Each sample reads the mip level whose pixels match the solid angle that it represents (Křivánek and Colbert 2008,
+/// "Real-time Shading with Filtered Importance Sampling").
 Rgb filtered(const std::vector<ImageRgb>& levels, const std::vector<LobeSample>& samples, Vec3 axis) {
     const Frame frame = frame_from_normal(axis);
     const ImageRgb& finest = levels.front();
@@ -87,10 +89,12 @@ Rgb filtered(const std::vector<ImageRgb>& levels, const std::vector<LobeSample>&
         const Vec3 w = frame.to_world(s.w);
         const float sine = std::max(std::sqrt(w.x * w.x + w.z * w.z), 1.0f / static_cast<float>(finest.height()));
         const float pixel = 2 * kPi * kPi * sine / static_cast<float>(finest.size());
-        const float level = clamp(0.5f * std::log2(s.solid_angle / pixel) + 0.5f, 0.0f, static_cast<float>(levels.size() - 1));
+        const float level = clamp(0.5f * std::log2(s.solid_angle / pixel) + 0.5f, 0.0f,
+                                  static_cast<float>(levels.size() - 1));
         const auto low = std::min(static_cast<std::size_t>(level), levels.size() - 2);
         const Vec2 uv = latlong_uv(normalize(w));
-        sum += lerp(at_direction(levels[low], uv), at_direction(levels[low + 1], uv), level - static_cast<float>(low)) * s.weight;
+        sum += lerp(at_direction(levels[low], uv), at_direction(levels[low + 1], uv),
+                    level - static_cast<float>(low)) * s.weight;
     }
     return sum;
 }
@@ -131,10 +135,11 @@ Rgb Prefiltered::at(const Environment& environment, Vec3 w, float alpha) const {
         const float cosine = lerp(mean_cosine_[i], mean_cosine_[i + 1], at - static_cast<float>(i));
         return lerp(sky->down, sky->up, 0.5f * (1 + w.y * cosine));
     }
-    const float place = clamp(std::sqrt(alpha), 0.0f, 1.0f) * kMaps - 1; // −1: the picture itself
+    const float place = clamp(std::sqrt(alpha), 0.0f, 1.0f) * kMaps - 1; // −1: the unfiltered image
     if (place < 0) return lerp(radiance(environment, w), at_direction(maps_.front(), latlong_uv(w)), place + 1);
     const auto low = std::min(static_cast<std::size_t>(place), maps_.size() - 2);
-    return lerp(at_direction(maps_[low], latlong_uv(w)), at_direction(maps_[low + 1], latlong_uv(w)), place - static_cast<float>(low));
+    return lerp(at_direction(maps_[low], latlong_uv(w)), at_direction(maps_[low + 1], latlong_uv(w)),
+                place - static_cast<float>(low));
 }
 
 Vec3 Prefiltered::axis(Vec3 normal, Vec3 mirrored, float alpha) {

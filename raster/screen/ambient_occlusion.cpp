@@ -10,11 +10,13 @@
 namespace duet::raster {
 namespace {
 
-constexpr float kSlack = 1e-3f;    ///< of the distance between two points: lower is no step over a plane, but rounding
-constexpr float kClosest = 3e-4f;  ///< of the distance to the eye: closer points' directions are rounding
-constexpr float kFadeFrom = 0.75f; ///< of the radius: where horizons begin to count less
-constexpr float kLeastCosine = 0.02f; ///< between normal and viewer: shading normals may even turn away
-constexpr int kPoints = 16;        ///< of a pattern in the hemisphere
+/// Relative to the distance between two points: a smaller height above the plane is rounding error.
+constexpr float kSlack = 1e-3f;
+/// Relative to the distance from the eye: the direction to a nearer point is dominated by rounding.
+constexpr float kClosest = 3e-4f;
+constexpr float kFadeFrom = 0.75f; ///< fraction of the radius at which horizons begin to fade
+constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated shading normals may face away
+constexpr int kPoints = 16; ///< sample points per pattern in the hemisphere
 
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
@@ -25,50 +27,56 @@ template <typename F> std::array<float, OcclusionPattern::kPatterns> each_patter
     return result;
 }
 
-/// Of each place in 8 × 8 pixels, row by row, its pattern: a number whose reversed bits differ most for those next to each
-/// other (Bayer 1973, «An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures»). Aligned parts have
-/// consecutive ones, which are parts of the net below.
+/// Stores the sampling pattern of each pixel in an 8 × 8 block, row by row. The index is from a dither matrix: the
+/// reversed bits of neighboring pixels' indices differ most (Bayer 1973, "An Optimum Method for Two-Level Rendition
+/// of Continuous-Tone Pictures"). Aligned sub-blocks have consecutive indices, which are sub-nets of the net below.
 const std::array<std::int32_t, OcclusionPattern::kPatterns> kPatternOf = [] {
     std::array<std::int32_t, OcclusionPattern::kPatterns> result{};
     for (std::uint32_t place = 0; place < result.size(); ++place)
-        for (std::uint32_t x = place % OcclusionPattern::kSide, y = place / OcclusionPattern::kSide, bit = 0; bit < 3; ++bit)
+        for (std::uint32_t x = place % OcclusionPattern::kSide, y = place / OcclusionPattern::kSide, bit = 0;
+             bit < 3; ++bit)
             result[place] |= static_cast<std::int32_t>((((x ^ y) >> bit & 1u) | (y >> bit & 1u) << 1) << 2 * bit);
     return result;
 }();
-/// Of each pattern, in [0, 1): how far its lines are turned, and where between two steps they look; together a
+/// For each pattern, these are the rotation of its lines and the jitter of its steps, in [0, 1). Together they form a
 /// (0,2)-net.
 const auto kTurn = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).x; });
 const auto kJitter = each_pattern([](std::uint32_t i) { return net_point(i, OcclusionPattern::kPatterns).y; });
 
-/// arccos, to 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
+/// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
     const Floats a = min(abs(x), Floats(1.0f));
-    const Floats polynomial = Floats(1.5707288f) + a * (Floats(-0.2121144f) + a * (Floats(0.0742610f) + a * Floats(-0.0187293f)));
+    const Floats polynomial = Floats(1.5707288f) + a *
+        (Floats(-0.2121144f) + a * (Floats(0.0742610f) + a * Floats(-0.0187293f)));
     const Floats result = xsimd::sqrt(Floats(1.0f) - a) * polynomial;
     return xsimd::select(x < Floats(0.0f), Floats(kPi) - result, result);
 }
 
 Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
 
-/// Where an image has a pixel, of those inside. Pictures have up to 2^28 of them, more than floats can tell apart.
+/// Returns the index of a pixel, or of pixel 0 for positions outside. Images have up to 2^28 pixels, more than floats
+/// can distinguish, so the index is an integer.
 Ints pixel_place(const Screen& screen, const Floats& x, const Floats& y, const Mask& inside) {
     const Floats none(0.0f);
     return truncated(xsimd::select(inside, y, none)) * Ints(screen.width()) + truncated(xsimd::select(inside, x, none));
 }
 
-/// What is seen from the viewer's direction, θ = 0, to a horizon, of directions in the plane of v and t whose normal
-/// there is at the angle γ: ∫ cos(θ − γ) sin θ dθ, and the same times cos θ and sin θ.
+/// Stores integrals over the unoccluded arc from the viewer's direction, θ = 0, to a horizon, in the plane of v and
+/// t. The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; the others include the factors
+/// cos θ and sin θ.
 struct Arc {
     Floats all, along_v, along_t;
 };
-Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Floats& cos_gamma, const Floats& sin_gamma) {
+Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Floats& cos_gamma,
+        const Floats& sin_gamma) {
     const Floats third(1.0f / 3), cube = sine * sine * sine * third;
     return {Floats(0.5f) * (cos_gamma * sine * sine + sin_gamma * (angle - sine * cosine)),
             cos_gamma * (third - cosine * cosine * cosine * third) + sin_gamma * cube,
             cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
 }
 
-/// The greatest cosine to the viewer of what the picture shows along a line from each point, at least `lowest`.
+/// Finds the horizon along a line from each point: the greatest cosine to the viewer of any visible surface, at least
+/// `lowest`.
 class HorizonSearch {
 public:
     HorizonSearch(const Screen& screen, const OcclusionPoints& points, float radius, int steps)
@@ -78,27 +86,31 @@ public:
         x_ = home_[0] * over_w, y_ = home_[1] * over_w;
     }
 
-    /// `way`: unit, across the view.
+    /// `way` is a unit vector perpendicular to the view.
     Floats operator()(const Vec3s& way, const Floats& lowest, const Floats& jitter) const {
         const std::array<Floats, 4> change = screen_.homogeneous_change(way);
         const Floats over_w = Floats(1.0f) / home_[3];
         Floats step_x = (change[0] - x_ * change[3]) * over_w, step_y = (change[1] - y_ * change[3]) * over_w;
-        const Floats speed = xsimd::sqrt(step_x * step_x + step_y * step_y), per_pixel = Floats(1.0f) / max(speed, Floats(1e-20f));
+        const Floats speed = xsimd::sqrt(step_x * step_x + step_y * step_y),
+                     per_pixel = Floats(1.0f) / max(speed, Floats(1e-20f));
         step_x *= per_pixel, step_y *= per_pixel;
         const Floats width(static_cast<float>(screen_.width())), height(static_cast<float>(screen_.height()));
-        const Floats pixels = min(speed * Floats(radius_), min(to_edge(x_, step_x, width), to_edge(y_, step_y, height)));
+        const Floats pixels =
+            min(speed * Floats(radius_), min(to_edge(x_, step_x, width), to_edge(y_, step_y, height)));
         Floats highest = lowest;
         for (int i = 0; i < steps_; ++i) {
             const Floats part = (Floats(static_cast<float>(i)) + jitter) * Floats(1 / static_cast<float>(steps_));
-            const Floats reach = Floats(1.0f) + part * part * pixels; // closer together near the point
+            const Floats reach = Floats(1.0f) + part * part * pixels; // samples are denser near the point
             const Floats x = xsimd::floor(x_ + step_x * reach), y = xsimd::floor(y_ + step_y * reach);
             const Mask inside = (x >= Floats(0.0f)) & (y >= Floats(0.0f)) & (x < width) & (y < height);
             const Floats nearness = gather(screen_.nearness().pixels().data(), pixel_place(screen_, x, y, inside));
             const Vec3s to = screen_.at(x, y, nearness) - points_.p;
             const Floats squared = dot(to, to), over = inverse_sqrt(squared), distance = squared * over;
-            const Mask counts = inside & (nearness > Floats(0.0f)) & (squared > closest_) & (distance < Floats(radius_)) &
+            const Mask counts = inside & (nearness > Floats(0.0f)) & (squared > closest_) &
+                (distance < Floats(radius_)) &
                                 (dot(points_.n, to) >= Floats(kSlack) * distance);
-            const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) - Floats(kFadeFrom / (1 - kFadeFrom)), Floats(0.0f));
+            const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) -
+                                    Floats(kFadeFrom / (1 - kFadeFrom)), Floats(0.0f));
             const Floats cosine = dot(to, points_.to_viewer) * over;
             highest = xsimd::select(counts, max(highest, lerp(cosine, lowest, fade)), highest);
         }
@@ -106,7 +118,7 @@ public:
     }
 
 private:
-    /// How far the picture goes on in a unit direction, pixels.
+    /// Returns the distance in pixels to the image's edge in a unit direction.
     static Floats to_edge(const Floats& at, const Floats& way, const Floats& size) {
         const Floats end = xsimd::select(way > Floats(0.0f), size, Floats(0.0f));
         return max(xsimd::select(way == Floats(0.0f), Floats(1e9f), (end - at) / way), Floats(0.0f));
@@ -120,7 +132,7 @@ private:
     int steps_;
 };
 
-/// Points in the hemisphere about +z, each pattern's one after the other.
+/// Stores sample points in the hemisphere about +z, ordered by pattern.
 struct HemispherePoints {
     std::array<std::array<float, OcclusionPattern::kPatterns>, kPoints> x, y, z;
 };
@@ -155,7 +167,8 @@ OcclusionPattern OcclusionPattern::of_point(int first) {
     return {truncated(load(kLanesAsFloats, 0)) + Ints(first)};
 }
 
-SkySeenT<Floats> screen_space_occlusion(const Screen& screen, const OcclusionPoints& points, const OcclusionPattern& pattern,
+SkySeenT<Floats> screen_space_occlusion(const Screen& screen, const OcclusionPoints& points,
+                                        const OcclusionPattern& pattern,
                                         float radius) {
     const FrameT<Floats> frame = frame_from_normal(points.n);
     const HemispherePoints& hemisphere = hemisphere_points();
@@ -170,10 +183,11 @@ SkySeenT<Floats> screen_space_occlusion(const Screen& screen, const OcclusionPoi
         const Mask inside = (depth > none) & (x >= none) & (y >= none) & (x < width) & (y < height);
         const Floats nearness = gather(screen.nearness().pixels().data(), pixel_place(screen, x, y, inside));
         const Vec3s to = screen.at(x, y, nearness) - points.p;
-        // Far in front of the point it hides the view, but hardly its light.
+        // A surface far in front of the point hides it from the viewer, but blocks little of its light.
         const Floats squared = dot(to, to);
         const Mask hides = inside & (nearness * depth > Floats(screen.near())) & (squared > closest) &
-                           (squared < Floats(radius * radius)) & (dot(points.n, to) > Floats(kSlack) * xsimd::sqrt(squared));
+                           (squared < Floats(radius * radius)) &
+                               (dot(points.n, to) > Floats(kSlack) * xsimd::sqrt(squared));
         hidden += xsimd::select(hides, Floats(1.0f / kPoints), none);
     }
     return {Floats(1.0f) - hidden, points.n * (hidden * Floats(2.0f / 3))};
@@ -194,17 +208,19 @@ SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& 
         const Floats angle = (turn + Floats(static_cast<float>(i))) * Floats(kPi / static_cast<float>(lines));
         const auto [sine, cosine] = xsimd::sincos(angle);
         const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
-        const Vec3s in_plane = n - across * dot(n, across); // the normal in the plane of v and t
+        const Vec3s in_plane = n - across * dot(n, across); // the normal projected to the plane of v and t
         const Floats size = xsimd::sqrt(dot(in_plane, in_plane)), over = one / max(size, Floats(1e-6f));
         const Floats cos_gamma = min(dot(in_plane, v) * over, one), sin_gamma = dot(in_plane, t) * over;
         const Floats turned = arc_cosine(cos_gamma), gamma = xsimd::select(sin_gamma < none, -turned, turned);
         all += size * (cos_gamma + gamma * sin_gamma);
         for (const float side : {1.0f, -1.0f}) {
-            const Floats s = Floats(side) * sin_gamma, lowest = -s; // the cosine of its own horizon, π/2 past the normal
+            // Cosine of the tangent plane's horizon, π/2 from the normal.
+            const Floats s = Floats(side) * sin_gamma, lowest = -s;
             const Floats highest = search(t * Floats(side), lowest, side > 0 ? jitter : other_jitter);
             const Arc open = arc(Floats(kPi / 2) + Floats(side) * gamma, lowest, cos_gamma, cos_gamma, s);
-            const Arc seen = arc(arc_cosine(highest), highest, xsimd::sqrt(max(one - highest * highest, none)), cos_gamma, s);
-            const auto less = [&](const Floats& whole, const Floats& part) { // nothing hidden is exactly nothing
+            const Arc seen = arc(arc_cosine(highest), highest, xsimd::sqrt(max(one - highest * highest, none)),
+                                 cos_gamma, s);
+            const auto less = [&](const Floats& whole, const Floats& part) { // exactly 0 if nothing is occluded
                 return xsimd::select(highest > lowest, size * (whole - part), none);
             };
             lost += max(less(open.all, seen.all), none);

@@ -1,4 +1,4 @@
-// The way of a ray across a picture.
+// This header declares the projection of a ray to image pixels.
 #pragma once
 
 #include "raster/screen/screen.h"
@@ -8,35 +8,36 @@
 
 namespace duet::raster {
 
-/// A ray's way across the picture, from 0 where it begins to 1, in whole steps of a pixel. Along it 1/depth is linear (under
-/// perspective; a parallel view's depth is itself).
+/// This is a ray projected to the image, with a parameter from 0 at its origin to 1, marched in steps of one pixel.
+/// Along it 1/depth is linear in a perspective view; in an orthographic view depth is linear.
 class Crossing {
 public:
     Crossing(const Screen& screen, Vec3 p, Vec3 way) : from_(screen.project(p)), perspective_(screen.perspective()) {
         if (!(from_.z > 0)) return;
-        const float deeper = screen.homogeneous_change(way)[2]; // depth gained a metre
-        // Up to the near plane, or a good deal nearer or farther than anything that moves a pixel.
+        const float deeper = screen.homogeneous_change(way)[2]; // depth gained per meter
+        // The ray ends at the near plane, or at a depth beyond which its projection hardly moves.
         const float nearest = std::min(from_.z, std::max(screen.near(), 1e-4f * from_.z));
         const float to_nearest = deeper < 0 ? (from_.z - nearest) / -deeper : kInfinity, farthest = 1e3f * from_.z;
         reach_ = std::min(to_nearest, farthest);
         to_ = screen.project(p + way * reach_);
         pixels_ = std::max(std::abs(to_.x - from_.x), std::abs(to_.y - from_.y));
         if (!moves()) return;
-        over_pixels_ = 1 / pixels_, near_ = screen.near(), nearness_from_ = near_ / from_.z, nearness_to_ = near_ / to_.z;
+        over_pixels_ = 1 / pixels_, near_ = screen.near(), nearness_from_ = near_ / from_.z, nearness_to_ =
+            near_ / to_.z;
         float in = 0, out = 1, out_at_side = 1;
         clip(from_.x, to_.x - from_.x, static_cast<float>(screen.width()), in, out_at_side);
         out = out_at_side;
         clip(from_.y, to_.y - from_.y, static_cast<float>(screen.height()), in, out);
         leaves_ = out < 1, leaves_at_side_ = leaves_ && out_at_side <= out;
         if (!(in <= out)) return;
-        // A start far beside the picture may be any number of pixels away.
+        // A ray origin far outside the image may be any number of pixels away.
         const auto whole = [](float steps) { return static_cast<int>(std::min(1e9f, steps)); };
         first_ = std::max(1, whole(std::ceil(in * pixels_))), last_ = whole(std::floor(out * pixels_));
     }
 
     Vec3 from() const { return from_; }
     bool moves() const { return pixels_ > 1; }
-    int first() const { return first_; } ///< steps at which it is in the picture: rays may begin beside that
+    int first() const { return first_; } ///< first step inside the image; a ray may start outside it
     int last() const { return last_; }
     float part(int step) const { return static_cast<float>(step) * over_pixels_; }
     float x(float t) const { return lerp(from_.x, to_.x, t); }
@@ -44,23 +45,27 @@ public:
     float step_x() const { return (to_.x - from_.x) * over_pixels_; }
     float step_y() const { return (to_.y - from_.y) * over_pixels_; }
     float depth(float t) const { return perspective_ ? 1 / lerp(1 / from_.z, 1 / to_.z, t) : lerp(from_.z, to_.z, t); }
-    /// near / depth, as Screen::nearness() has it.
-    float nearness(float t) const { return perspective_ ? lerp(nearness_from_, nearness_to_, t) : near_ / lerp(from_.z, to_.z, t); }
-    bool leaves() const { return leaves_; } ///< whether an edge of the picture cuts it off
-    bool leaves_at_side() const { return leaves_at_side_; } ///< at the left or right one
+    /// Returns the reversed depth, near / depth, as in Screen::nearness().
+    float nearness(float t) const {
+        return perspective_ ? lerp(nearness_from_, nearness_to_, t) : near_ / lerp(from_.z, to_.z, t);
+    }
+    bool leaves() const { return leaves_; } ///< whether an edge of the image clips the ray
+    bool leaves_at_side() const { return leaves_at_side_; } ///< at the left or right edge
     bool comes_nearer() const { return to_.z < from_.z; }
-    /// The other way round; the end where it keeps its depth.
+    /// Inverts depth(); returns the end if the depth is constant.
     float part_at(float depth) const {
         const float gained = perspective_ ? 1 / to_.z - 1 / from_.z : to_.z - from_.z;
         return gained != 0 ? (perspective_ ? 1 / depth - 1 / from_.z : depth - from_.z) / gained : 1;
     }
-    /// Metres gone at t, where it has a depth: a ray across the view keeps that.
+    /// Returns the distance in meters at t, where the ray has this depth. A ray perpendicular to the view has
+    /// constant depth, so t is used then.
     float distance(float t, float depth) const {
-        return std::abs(to_.z - from_.z) > 1e-3f * from_.z ? reach_ * (depth - from_.z) / (to_.z - from_.z) : reach_ * t;
+        return std::abs(to_.z - from_.z) > 1e-3f * from_.z ? reach_ * (depth - from_.z) / (to_.z - from_.z)
+                                                          : reach_ * t;
     }
 
 private:
-    /// Of one axis: where the line from `at` on stays within [0, size).
+    /// Clips one axis: the line from `at` must be within [0, size).
     static void clip(float at, float way, float size, float& in, float& out) {
         if (way == 0) {
             if (!(at >= 0 && at < size)) out = -1;
@@ -70,7 +75,7 @@ private:
         in = std::max(in, std::min(a, b)), out = std::min(out, std::max(a, b));
     }
 
-    Vec3 from_, to_; ///< in pixels, and depth
+    Vec3 from_, to_; ///< in pixels, with depth
     bool perspective_, leaves_ = false, leaves_at_side_ = false;
     float reach_ = 0, pixels_ = 0, over_pixels_ = 0, near_ = 0, nearness_from_ = 0, nearness_to_ = 0;
     int first_ = 1, last_ = 0;

@@ -9,14 +9,15 @@
 namespace duet::raster {
 namespace {
 
-constexpr float kNothing = 0.95f; ///< how well what is behind all is known to be there behind what stands before it: RadiancePyramid
+/// Confidence that the background continues behind a foreground object; see RadiancePyramid.
+constexpr float kNothing = 0.95f;
 
 } // namespace
 
 float normal_turn(const Screen& screen, int x, int y) {
     const Vec3 n = screen.normal(x, y);
     const float depth = screen.depth(x, y);
-    if (!(depth < kInfinity)) return 0; // nothing is seen
+    if (!(depth < kInfinity)) return 0; // background
     const Image<std::uint32_t>& objects = screen.first_look().objects;
     float most = -1;
     for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
@@ -26,13 +27,14 @@ float normal_turn(const Screen& screen, int x, int y) {
         const float turn = length(screen.normal(i, k) - n);
         if (turn < kSmallTurn) most = std::max(most, turn);
     }
-    return most < 0 ? kSmallTurn : most; // alone it is small, and any way round
+    return most < 0 ? kSmallTurn : most; // an isolated pixel is small, and its curvature unknown
 }
 
 ImageFloat normal_turns(const Screen& screen, int threads) {
     ImageFloat turns(screen.width(), screen.height());
     parallel_for(static_cast<std::size_t>(screen.height()), threads, [&](std::size_t row) {
-        for (int x = 0; x < screen.width(); ++x) turns(x, static_cast<int>(row)) = normal_turn(screen, x, static_cast<int>(row));
+        for (int x = 0; x < screen.width(); ++x)
+            turns(x, static_cast<int>(row)) = normal_turn(screen, x, static_cast<int>(row));
     });
     return turns;
 }

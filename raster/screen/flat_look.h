@@ -1,4 +1,4 @@
-// Which of what a picture shows is flat, and goes on behind what stands before it.
+// This header declares which visible surfaces are flat, and so are assumed to continue behind occluders.
 #pragma once
 
 #include "raster/screen/screen.h"
@@ -8,22 +8,27 @@
 
 namespace duet::raster {
 
-inline constexpr float kSameSurface = 0.05f; ///< of the depth: how far neighbouring pixels of one surface may be apart
-inline constexpr float kSmallTurn = 0.5f;    ///< radians: a sharper edge is not a curve; and of a pixel alone
+/// Relative to the depth: largest difference between neighboring pixels of one surface.
+inline constexpr float kSameSurface = 0.05f;
+/// Radians: a larger turn is an edge rather than curvature; also the value for an isolated pixel.
+inline constexpr float kSmallTurn = 0.5f;
 
-/// By how much the normal turns from pixel (x, y) to the next one on its surface, radians at most, of a screen that knows its
-/// objects: twice that is what a mirror's rays spread by. Half a radian where no neighbour is of its surface.
+/// Returns the largest angle in radians between the normal of pixel (x, y) and those of adjacent pixels on the same
+/// surface. Reflected rays diverge by twice that angle. The screen's G-buffer must have object IDs. The result is
+/// half a radian if no neighbor is on the same surface.
 float normal_turn(const Screen& screen, int x, int y);
-/// Of all pixels: Screen::set_turns.
+/// Returns the turns of all pixels for Screen::set_turns.
 ImageFloat normal_turns(const Screen& screen, int threads);
-/// Screen::set_flat_look: the first look at flat surfaces and past all surfaces, the turns being known. Empty where there is
-/// neither. What lies behind all is a part of it, that where a flat surface ends what is hidden beside its edge changes
-/// gradually: else it is all surface up to there, and a pixel at the edge flickers while the camera moves. Objects that are
-/// `mirrors`, not 0, are none of it: the first look does not know what they show.
+/// Returns the radiance of flat surfaces and of the background from the color prepass (`first_look`), for
+/// Screen::set_flat_look; the turns must be set. It is empty where there is neither. The background is included so
+/// that the color changes gradually behind an occluder next to a flat surface's border; otherwise pixels at the
+/// border flicker while the camera moves. Objects with a nonzero entry in `mirrors` are excluded, because the prepass
+/// does not contain their reflections.
 RadiancePyramid flat_look(const Screen& screen, std::span<const std::uint8_t> mirrors, int threads);
 
-/// Whether what a pixel shows goes on as its plane does: its radius of curvature is more than its depth, however fine the
-/// picture; or, seen from infinitely far, than what the picture shows is high.
+/// Returns whether the surface at a pixel is flat enough to continue as its plane. In a perspective view its radius of
+/// curvature must exceed its depth, independent of the resolution. In an orthographic view it must exceed the height of
+/// the view.
 bool is_flat(const Screen& screen, int x, int y);
 
 } // namespace duet::raster

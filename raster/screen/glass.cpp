@@ -6,17 +6,19 @@
 namespace duet::raster {
 namespace {
 
-/// Refracted from inside through a boundary with the outward normal n, eta inside over outside; empty at total reflection.
+/// Refracts a ray from inside at a boundary with the outward normal n; eta is the index inside over outside. The
+/// result is empty at total internal reflection.
 std::optional<Vec3> refract_out(Vec3 way, Vec3 n, float eta) {
     const float cosine = dot(way, n), squared = 1 - sqr(eta) * (1 - sqr(cosine));
     if (!(squared > 0)) return std::nullopt;
     return normalize(way * eta + n * (std::sqrt(squared) - eta * cosine));
 }
 
-constexpr float kTouching = 1e-3f; ///< of the depth: what is no farther from glass touches it
-constexpr float kParting = 0.3f; ///< radians by which neighbouring rays part, by guess, whose ways through glass differ
+constexpr float kTouching = 1e-3f; ///< relative to the depth: a surface within this distance touches the glass
+/// Heuristic angle in radians by which neighboring rays diverge if their paths through glass differ.
+constexpr float kParting = 0.3f;
 
-/// Whether the surface at a pixel is curved outwards, as its neighbours' normals say.
+/// Returns whether the surface at a pixel is convex, according to its neighbors' normals.
 bool bulges(const Screen& screen, int x, int y) {
     const std::optional<Vec3> here = screen.seen(x, y);
     float sum = 0;
@@ -26,7 +28,8 @@ bool bulges(const Screen& screen, int x, int y) {
     return sum >= 0;
 }
 
-/// How wide GGX alpha makes what is seen through two boundaries: slopes turn a refracted ray by η − 1.
+/// Returns the blur angle of GGX alpha through two boundaries: a slope deflects a refracted ray by η − 1 times its
+/// angle.
 float blur_through(float eta, float alpha) { return 2.8f * std::abs(eta - 1) * alpha; }
 
 } // namespace
@@ -35,7 +38,8 @@ bool is_glass(const PreparedData& data, std::uint32_t object) {
     return std::binary_search(data.glass.begin(), data.glass.end(), object);
 }
 
-SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point)
+SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, const Screen& screen,
+                         const ShadingPoint& point)
     : data_(data), screen_(screen), point_(point), scenery_{screen, screen.behind(), point.surface.object},
       around_(data, settings, scenery_),
       p_(screen.relative(point.surface.p)), size_(length(data.objects[point.surface.object].bounds.diagonal())) {
@@ -46,21 +50,22 @@ SeenThrough::SeenThrough(const PreparedData& data, const Settings& settings, con
     turn_ = bulges(screen, x, y) ? screen.turn(x, y) : -screen.turn(x, y);
 }
 
-/// Of its front.
+/// Returns the reflection at the front surface.
 Rgb SeenThrough::mirror(Vec3 way, float alpha, bool lamps) const {
-    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = 2 * turn_, .spread = blur_mirrored(alpha),
+    return around_.seen({.p = p_, .n = point_.ng, .way = way, .width = width_, .turn = 2 * turn_,
+                         .spread = blur_mirrored(alpha),
                          .alpha = alpha, .lamps = lamps, .point = &point_, .from_picture = false});
 }
 
 Rgb SeenThrough::boundary(const DielectricBsdf& bsdf, float alpha) const {
     Rgb sum;
     for (const bool transmitted : {false, true}) {
-        // Importance leaves out the factor η² of radiance inside the medium, which the way out takes back.
+        // TransportMode::kImportance omits the factor η² of radiance inside the medium, which cancels on leaving it.
         const float lobe = transmitted ? kOneMinusEpsilon : 0.0f;
         const auto sample = bsdf.sample(point_.wo, lobe, {0.5f, 0.5f}, TransportMode::kImportance);
         if (!sample || sample->transmitted != transmitted) continue;
         const Vec3 way = normalize(point_.frame.to_world(sample->wi));
-        if (point_.receives(way) == transmitted) continue; // the two normals disagree
+        if (point_.receives(way) == transmitted) continue; // the geometric and the shading normal disagree
         if (!transmitted)
             sum += mirror(way, alpha, alpha == 0) * sample->weight * sample->pdf;
         else if (point_.wo.z < 0) // seen from inside
@@ -77,23 +82,24 @@ Rgb SeenThrough::through(Vec3 way, float eta, float alpha) const {
     const auto& glass = std::get<Dielectric>(data_.scene.materials[point_.surface.material]);
     const Rgb tint = glass.at(data_.scene.textures, point_.surface).tint;
     const Segment left = follow(way, eta);
-    // Each side bends neighbours towards each other where it bulges: as a thick lens whose sides are alike.
+    // A convex side makes neighboring rays converge, as in a thick symmetric lens.
     const float bend = (1 - 1 / eta) * turn_, parting = static_cast<float>(left.lost) * kParting;
     const auto kept = [&](float absorption) { return std::exp(-left.inside * absorption); };
     const std::optional<Rgb> met = met_inside(left.p);
-    SurfacePoint exit = point_.surface; // where shadow maps tell which lamps it sees
+    SurfacePoint exit = point_.surface; // the point at which shadow maps are sampled for visible lights
     exit.p = screen_.absolute(left.p);
     exit.ng = exit.ns = exit.horizon = left.n;
     exit.lift = {};
     const ShadingPoint leaves(exit, left.n);
     const Look look{.p = left.p, .n = left.n, .way = left.way, .width = width_ - left.inside * bend, .turn = -2 * bend,
-                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0, .point = &leaves,
+                    .spread = parting + blur_through(eta, alpha), .alpha = alpha, .lamps = left.lost == 0,
+                    .point = &leaves,
                     .from_picture = false};
     const Rgb light = met ? *met : around_.seen(look);
     return light * tint * tint * Rgb(kept(glass.absorption.r), kept(glass.absorption.g), kept(glass.absorption.b));
 }
 
-/// What stands in the glass, or touches it where the ray would leave.
+/// Returns the radiance of a surface inside the glass, or touching it where the ray would leave.
 std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
     const Vec3 place = screen_.project(p);
     if (!(place.z > 0) || !screen_.contains(place.x, place.y)) return std::nullopt;
@@ -104,10 +110,11 @@ std::optional<Rgb> SeenThrough::met_inside(Vec3 p) const {
     return behind.first_look().radiance.at(place.x, place.y, 1);
 }
 
-/// From where the ray enters to where it leaves, or to the last place that is known.
+/// Follows the ray from its entry to its exit, or to the last known point.
 SeenThrough::Segment SeenThrough::follow(Vec3 way, float eta) const {
     Segment at{.p = p_, .way = way, .n = way};
-    const bool ball = std::holds_alternative<Sphere>(data_.scene.shapes[data_.scene.objects[point_.surface.object].shape]);
+    const bool ball =
+        std::holds_alternative<Sphere>(data_.scene.shapes[data_.scene.objects[point_.surface.object].shape]);
     for (int i = 0; i < kSegments; ++i) {
         const std::optional<Segment> next = ball ? across_ball(at) : across_picture(at);
         if (!next) break;
@@ -129,13 +136,15 @@ std::optional<SeenThrough::Segment> SeenThrough::across_ball(const Segment& from
     const Sphere& sphere = std::get<Sphere>(data_.scene.shapes[object.shape]);
     const Vec3 p = transform_point(transform.to_object, screen_.absolute(from.p)) - sphere.center,
                way = transform_vector(transform.to_object, from.way);
-    const float t = -2 * dot(p, way) / dot(way, way); // it starts on the sphere
+    const float t = -2 * dot(p, way) / dot(way, way); // the ray starts on the sphere
     if (!(t > 0)) return std::nullopt;
     const Vec3 n = transform_normal(transform.to_object, p + way * t);
-    return Segment{.p = from.p + from.way * t, .way = from.way, .n = normalize(n), .inside = from.inside + t, .lost = from.lost};
+    return Segment{.p = from.p + from.way * t, .way = from.way, .n = normalize(n), .inside = from.inside + t,
+                   .lost = from.lost};
 }
 
-/// The layer that shows this object at a pixel: beside what covers a part of it, that is another than under the cover.
+/// Returns the glass layer with this object at a pixel. Where another glass object partly covers it, the covered and
+/// uncovered pixels are in different layers.
 const Screen& SeenThrough::layer(int x, int y) const {
     for (const Screen* layer = &screen_.front(); layer->backs() != nullptr; layer = layer->behind())
         if (layer->first_look().objects(x, y) == point_.surface.object) return *layer;
@@ -154,7 +163,7 @@ std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& f
         const Screen& shown = layer(x, y);
         const Screen& far = deeper ? *shown.backs() : shown;
         const std::optional<Vec3> seen = far.seen(x, y);
-        if (!seen) { // past its outline: half the way back
+        if (!seen) { // outside the silhouette: go back halfway
             if (i == 0) return std::nullopt;
             t *= 0.5f;
             continue;
@@ -162,23 +171,25 @@ std::optional<SeenThrough::Segment> SeenThrough::across_picture(const Segment& f
         n = far.normal(x, y);
         if (dot(n, from.way) < 0) n = -n;
         const Vec3 to = *seen - from.p;
-        const float along = dot(n, to) / max(dot(n, from.way), 0.2f); // no farther than the plane's neighbourhood
+        const float along = dot(n, to) / max(dot(n, from.way), 0.2f); // limits extrapolation at grazing angles
         const float next = clamp(along > 0 ? along : length(to), 0.0f, size_);
         found = std::abs(next - t) < width_;
         t = next;
     }
-    return Segment{.p = from.p + from.way * t, .way = from.way, .n = n, .inside = from.inside + t, .lost = from.lost + !found};
+    return Segment{.p = from.p + from.way * t, .way = from.way, .n = n, .inside = from.inside + t, .lost = from.lost +
+                   !found};
 }
 
-/// The mirror image, and what is straight behind. Of a closed sheet two sides lie on the way, between which light is mirrored
-/// again and again.
+/// Returns the mirror reflection and the undeviated transmission. A closed sheet has two sides along the ray, with
+/// multiple reflections between them.
 Rgb SeenThrough::operator()(const ThinDielectricBsdf& bsdf) const {
     const ThinDielectricBsdf::Parts parts = bsdf.parts(std::abs(point_.wo.z));
     const Object& object = data_.scene.objects[point_.surface.object];
     const Shape& shape = data_.scene.shapes[object.shape];
     const auto* mesh = std::get_if<Mesh>(&shape);
     const bool closed = std::holds_alternative<Sphere>(shape) || (mesh != nullptr && mesh->closed);
-    const Vec3 straight = point_.frame.to_world(-point_.wo), mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
+    const Vec3 straight = point_.frame.to_world(-point_.wo),
+               mirrored = point_.frame.to_world({-point_.wo.x, -point_.wo.y, point_.wo.z});
     Rgb transmitted = parts.transmitted, reflected = parts.reflected;
     for (std::size_t c = 0; c < 3 && closed; ++c) { // T²/(1 − R²) and R + T² R/(1 − R²)
         const float t = sqr(parts.transmitted[c]) / max(1 - sqr(parts.reflected[c]), 1e-6f);

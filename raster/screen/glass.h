@@ -1,4 +1,4 @@
-// What glass shows of the scene, as far as the picture without it does.
+// This header declares the shading of glass from the image rendered without it.
 #pragma once
 
 #include "common/material/material.h"
@@ -7,21 +7,23 @@
 
 namespace duet::raster {
 
-inline constexpr int kGlassDeep = 4; ///< objects of glass on a pixel's way that are seen through each other
+/// Maximum number of glass objects along a pixel's ray that are visible through each other.
+inline constexpr int kGlassDeep = 4;
 
-/// Light by way of glass at a point of the picture: the mirror image on its front, and what is seen through it, each
-/// looked up along its ray in a picture of the scene without this object (Scenery). In that, other glass shows what is
-/// behind it, up to kGlassDeep objects deep; the last is seen as if there were no glass behind it.
+/// Computes the light that glass reflects and transmits at a point of the image. Both are looked up along their rays
+/// in an image of the scene without this object (Scenery). Other glass in that image shows what is behind it, up to
+/// kGlassDeep objects deep; the last one assumes no glass behind it.
 ///
-/// Refraction is at two boundaries (Wyman 2005, «An Approximate Image-Space Approach for Interactive Refraction»): where
-/// the ray enters, and where it leaves again. A ball's far side is found exactly. A mesh's is looked for in the depths of
-/// its nearest back faces, by steps from plane to plane (the fixed-point search of Oliveira and Brauwers 2007, «Real-Time
-/// Refraction through Deformable Objects», by the normals too); at total reflection the ray goes on inside, to them or
-/// to the front, kSegments times at most. Light that is mirrored within glass in part is taken to leave with the rest, so
-/// that nothing is lost. What stands in an inside, or behind a sheet without one, is seen there.
+/// Light is refracted at two boundaries, where the ray enters and where it leaves (Wyman 2005, "An Approximate
+/// Image-Space Approach for Interactive Refraction"). The exit from a sphere is exact. The exit from a mesh is
+/// searched in the depths of its nearest back faces, from plane to plane (the fixed-point search of Oliveira and
+/// Brauwers 2007, "Real-Time Refraction through Deformable Objects", using the normals, too). At total internal
+/// reflection the ray continues inside, to the back faces or to the front, at most kSegments times. Light partially
+/// reflected inside the glass is assumed to leave with the rest, so that no energy is lost. Objects inside the glass,
+/// or behind a thin sheet, are visible through it.
 class SeenThrough {
 public:
-    /// `screen` has Screen::behind. Refers to all.
+    /// `screen` must have Screen::behind. All arguments must outlive this object.
     SeenThrough(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point);
 
     Rgb operator()(const DielectricBsdf& bsdf) const { return boundary(bsdf, 0); }
@@ -32,12 +34,13 @@ public:
     static constexpr int kSegments = 4, kSteps = 6;
 
 private:
-    /// A ray in glass or just out of it, relative to the eye.
+    /// A segment is a ray inside glass, or just outside of it, relative to the eye.
     struct Segment {
         Vec3 p, way;
-        Vec3 n;            ///< outwards, where it leaves
-        float inside = 0;  ///< metres gone through glass
-        int lost = 0;      ///< how often neighbouring rays have parted: mirrored within, or its far side not found for sure
+        Vec3 n; ///< outward, where the ray leaves
+        float inside = 0; ///< distance through glass, in meters
+        /// Number of events that make neighboring rays diverge: total internal reflection, or an uncertain exit.
+        int lost = 0;
     };
 
     Rgb boundary(const DielectricBsdf& bsdf, float alpha) const;
@@ -54,13 +57,13 @@ private:
     const ShadingPoint& point_;
     Scenery scenery_;
     Surroundings around_;
-    Vec3 p_;           ///< relative to the eye
-    float width_ = 0, turn_ = 0; ///< of a pixel here, metres; by which its neighbour's normal parts from its own, radians:
-                                 ///< negative in a hollow
-    float size_;       ///< of the object, metres
+    Vec3 p_; ///< relative to the eye
+    /// Width of a pixel here, in meters; angle between neighboring normals, in radians: negative if concave.
+    float width_ = 0, turn_ = 0;
+    float size_; ///< of the object, in meters
 };
 
-/// Whether an object's light comes by way of glass alone, and the picture without it is looked at for what that shows.
+/// Returns whether an object is glass, shaded only by reflection and refraction in the image without it.
 bool is_glass(const PreparedData& data, std::uint32_t object);
 
 } // namespace duet::raster

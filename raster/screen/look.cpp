@@ -22,12 +22,12 @@
 namespace duet::raster {
 namespace {
 
-/// What a look has of a pixel, if that saw the same.
+/// Returns the prepass radiance of a pixel if its key matches, else null.
 const Rgb* known_radiance(const Screen::FirstLook& look, std::uint32_t key, int x, int y) {
     return key != 0 && key == look.keys(x, y) ? &look.radiance.finest()(x, y) : nullptr;
 }
 
-/// Of each object: whether all of it is_mirror.
+/// Returns, for each object, whether all of its materials satisfy is_mirror.
 std::vector<std::uint8_t> mirrors(const Scene& scene) {
     const auto of_mirror = [&](std::uint32_t material) { return is_mirror(scene.materials[material]); };
     std::vector<std::uint8_t> result;
@@ -36,18 +36,21 @@ std::vector<std::uint8_t> mirrors(const Scene& scene) {
     return result;
 }
 
-/// Works the occlusion out, if shading needs it.
+/// Computes the ambient occlusion if shading needs it.
 void add_occlusion(const PreparedData& data, const Settings& settings, Screen& screen) {
     if (needs_occlusion(data, settings))
         screen.set_occlusion(std::make_shared<const OcclusionImage>(
-            screen, settings.ambient_occlusion, static_cast<float>(occlusion_radius(data, settings)), settings.threads));
+            screen, settings.ambient_occlusion, static_cast<float>(occlusion_radius(data, settings)),
+            settings.threads));
 }
 
-/// One view's look at the scene.
+/// Renders the G-buffer and the prepasses of one view.
 class Looker {
 public:
-    Looker(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& central, const Control& control)
-        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control), mirrors_(mirrors(data.scene)),
+    Looker(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& central,
+           const Control& control)
+        : data_(data), settings_(settings), grid_(grid), central_(central), control_(control),
+          mirrors_(mirrors(data.scene)),
           with_glass_(grid.size(), 0) {}
 
     std::unique_ptr<Screen> look() {
@@ -78,7 +81,7 @@ private:
 
     void set_flat_look(Screen& screen) const { screen.set_flat_look(flat_look(screen, mirrors_, settings_.threads)); }
 
-    /// The depths and normals at the pixels' centres.
+    /// Renders the depths and normals at the pixels' centers.
     std::unique_ptr<Screen> depths_and_normals(const Geometry& geometry) const {
         ImageFloat nearness(width(), height());
         ImageRgb normals(width(), height());
@@ -91,7 +94,7 @@ private:
         return screen;
     }
 
-    /// How things are curved and how thick they are.
+    /// Adds the curvature and the thickness of the visible surfaces.
     void add_shapes(bool glass, Screen& screen) const {
         screen.set_turns(normal_turns(screen, settings_.threads));
         GeometryLoan geometry(*data_.geometries);
@@ -109,10 +112,10 @@ private:
         screen.set_thickness(std::move(backs));
     }
 
-    /// The radiance at the pixels' centres, all parts of it, without reflections of the picture in itself. `known`: the
-    /// screen's own or another first look, of which pixels that see the same are taken; or null. Glass is not done with
-    /// before the screen has Screen::behind: tiles that show some are found where nothing is known; the others are taken
-    /// whole from what is.
+    /// Renders the radiance at the pixels' centers, with all components but screen-space reflections. `known` is the
+    /// screen's own or another color prepass from which pixels with matching keys are copied; or null. Glass needs
+    /// Screen::behind. So the pass without `known` marks the tiles with glass, and a pass with `known` copies all
+    /// other tiles.
     void first_look(const Geometry& geometry, const Screen::FirstLook* known, Screen& screen) {
         PassView pass = central_;
         pass.screen = &screen;
@@ -130,7 +133,8 @@ private:
                     if (later) with_glass_[i] = 1;
                     const std::uint32_t key = later ? 0 : FirstLookPicture::key(data_.scene, hit);
                     const Rgb* same = known != nullptr ? known_radiance(*known, key, x, y) : nullptr;
-                    picture.set(data_, x, y, hit, same != nullptr ? *same : shade(data_, settings, tile, x, y).radiance, key);
+                    picture.set(data_, x, y, hit,
+                                same != nullptr ? *same : shade(data_, settings, tile, x, y).radiance, key);
                 }
         });
         screen.set_first_look(std::move(picture).finish());
@@ -143,7 +147,7 @@ private:
         return settings;
     }
 
-    /// What there is without glass; over it, from the back, the objects of glass that are behind other ones.
+    /// Renders the scene without glass and, over it from back to front, the glass objects behind other glass.
     void look_behind_glass(Screen& screen) {
         GeometryLoan geometry(*data_.geometries), glass(*data_.geometries);
         process_without_glass(data_, grid_, central_, settings_, *geometry);
@@ -158,20 +162,23 @@ private:
         const std::vector<GlassLayer> layers = further_glass(screen, *geometry, *glass);
         process_backs_of_glass(data_, grid_, central_, settings_, false, *glass);
         std::vector<std::shared_ptr<Screen>> screens(layers.size() + 1, bare);
-        for (std::size_t i = layers.size(); i-- > 0;) screens[i] = glass_screen(layers[i], *bare, screens[i + 1], *glass, screen);
+        for (std::size_t i = layers.size(); i-- > 0;)
+            screens[i] = glass_screen(layers[i], *bare, screens[i + 1], *glass, screen);
         screen.set_glass(screens.front(), backs);
         for (std::size_t i = layers.size(); i-- > 0;) shade_glass(*geometry, layers[i].hits, *screens[i]);
     }
 
-    /// Glass behind other glass; no hits elsewhere.
+    /// A layer holds glass behind other glass, and invalid hits elsewhere.
     struct GlassLayer {
         Image<Hit> hits;
         ImageFloat nearness;
     };
 
-    /// The first surfaces of the second object of glass on each pixel's way, the third …, as far as there are any.
-    std::vector<GlassLayer> further_glass(const Screen& front, const Geometry& bare_geometry, const Geometry& glass) const {
-        std::vector<GlassLayer> layers(kGlassDeep - 1, GlassLayer{Image<Hit>(width(), height()), ImageFloat(width(), height())});
+    /// Returns the front surfaces of the second, third, … glass object along each pixel's ray.
+    std::vector<GlassLayer> further_glass(const Screen& front, const Geometry& bare_geometry,
+                                          const Geometry& glass) const {
+        std::vector<GlassLayer> layers(kGlassDeep - 1,
+                                       GlassLayer{Image<Hit>(width(), height()), ImageFloat(width(), height())});
         std::atomic<std::size_t> found{0};
         for_glass_tiles(&bare_geometry, glass, [&](HitTile& tile, HitLists& lists) {
             lists.for_each([&](int x, int y, const Hit& hit) {
@@ -191,8 +198,10 @@ private:
         return layers;
     }
 
-    /// All but the radiance of such a layer before `behind`. `backs`: of all glass.
-    std::shared_ptr<Screen> glass_screen(const GlassLayer& layer, const Screen& bare, std::shared_ptr<const Screen> behind,
+    /// Builds the screen of such a layer in front of `behind`, except for its radiance. `backs` has the back faces of
+    /// all glass.
+    std::shared_ptr<Screen> glass_screen(const GlassLayer& layer, const Screen& bare,
+                                         std::shared_ptr<const Screen> behind,
                                          const Geometry& backs, const Screen& front) const {
         ImageFloat nearness = bare.nearness(), thickness(width(), height());
         ImageRgb normals(width(), height());
@@ -221,7 +230,7 @@ private:
     }
     static Rgb as_color(Vec3 n) { return Rgb(n.x + 1, n.y + 1, n.z + 1) * 0.5f; }
 
-    /// The nearest back face of each hit's own object.
+    /// Renders the nearest back face of the object of each hit.
     std::shared_ptr<const Screen> backs_of(const Image<Hit>& hits, const Geometry& backs) const {
         ImageFloat nearness(width(), height());
         ImageRgb normals(width(), height());
@@ -240,10 +249,10 @@ private:
         return screen;
     }
 
-    /// The first look of such a layer, which sees what is behind it.
+    /// Renders the color prepass of such a layer, which sees what is behind it.
     void shade_glass(const Geometry& bare_geometry, const Image<Hit>& hits, Screen& screen) {
         Screen::FirstLook places = screen.behind()->first_look();
-        places.objects = screen.first_look().objects; // which object is where, before any is shaded
+        places.objects = screen.first_look().objects; // object IDs must be set before shading
         screen.set_first_look(std::move(places));
         PassView pass = central_;
         pass.screen = &screen;
@@ -265,7 +274,8 @@ private:
         set_flat_look(screen);
     }
 
-    /// The tiles that show glass: their hits of one geometry, or none, and the lists of another's before them.
+    /// Calls visit for each tile with glass, with the tile's hits of `seen`, or none if it is null, and the lists of
+    /// the hits of `listed` in front of them.
     template <typename F> void for_glass_tiles(const Geometry* seen, const Geometry& listed, const F& visit) const {
         for_tiles([&](std::size_t i, const PixelRect& rect) {
             if (with_glass_[i] == 0) return;
@@ -306,7 +316,8 @@ void FirstLookPicture::set(const PreparedData& data, int x, int y, const Hit& hi
     keys_(x, y) = key;
     objects_(x, y) = hit.object;
     const std::int64_t light = hit.valid() ? surface_light_index(data.scene, hit.object, hit.primitive) : -1;
-    lamps_(x, y) = light >= 0 && std::binary_search(data.lamps.begin(), data.lamps.end(), static_cast<std::size_t>(light));
+    lamps_(x, y) = light >= 0 &&
+        std::binary_search(data.lamps.begin(), data.lamps.end(), static_cast<std::size_t>(light));
 }
 
 FirstLookPicture::FirstLookPicture(const Screen::FirstLook& look)
@@ -321,13 +332,15 @@ Screen::FirstLook FirstLookPicture::finish() && {
 }
 
 const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y) {
-    if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() || !settings.parts.all())
+    if (tile.screen() == nullptr || tile.screen()->first_look().radiance.empty() || settings.aovs.any() ||
+        !settings.parts.all())
         return nullptr;
     const Screen::FirstLook& look = tile.screen()->first_look();
     return known_radiance(look, FirstLookPicture::key(data.scene, tile.hit(x, y)), x, y);
 }
 
-std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& pass,
+std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid,
+                                       const PassView& pass,
                                        const Control& control) {
     if (!needs_screen(data, settings)) return nullptr;
     const std::vector<SampleOffset> centers(1);

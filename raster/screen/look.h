@@ -1,4 +1,5 @@
-// A look at the whole picture ahead of its shading, a sample at each pixel's centre, for effects that look around in it.
+// This header declares the G-buffer pass and the color prepass, with a sample at each pixel's center, for
+// screen-space effects.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -14,19 +15,20 @@ struct Control;
 
 namespace duet::raster {
 
-/// What a first look at the picture, without reflections in itself, makes of the centre of each pixel.
+/// Accumulates the color prepass, without screen-space reflections, at the center of each pixel.
 class FirstLookPicture {
 public:
     FirstLookPicture(int width, int height)
-        : radiance_(width, height), keys_(width, height, 0), objects_(width, height, kNoObject), lamps_(width, height, 0) {}
-    /// Begins as another.
+        : radiance_(width, height), keys_(width, height, 0), objects_(width, height, kNoObject),
+          lamps_(width, height, 0) {}
+    /// Starts from a copy of another prepass.
     explicit FirstLookPicture(const Screen::FirstLook& look);
 
-    /// `key`: of the hit, or 0 where it is to be shaded again.
+    /// `key` is the hit's key, or 0 if the pixel must be shaded again.
     void set(const PreparedData& data, int x, int y, const Hit& hit, Rgb radiance, std::uint32_t key);
     Screen::FirstLook finish() &&;
 
-    /// Of what a pixel sees: 0 of what looks around in the picture, and of nothing.
+    /// Returns the key of a hit. It is 0 for materials whose shading samples the image, and for the background.
     static std::uint32_t key(const Scene& scene, const Hit& hit);
 
 private:
@@ -35,13 +37,14 @@ private:
     Image<std::uint8_t> lamps_;
 };
 
-/// What the first look made of a pixel, where all of the pixel is shaded at its centre and sees what that does: the same
-/// as shading it again. Null where it would be another.
+/// Returns the prepass radiance of a pixel if all of the pixel is shaded at its center and the center's key matches.
+/// It equals shading the pixel again. Otherwise returns null.
 const Rgb* seen_before(const PreparedData& data, const Settings& settings, const HitTile& tile, int x, int y);
 
-/// What the pass sees at the pixels' centres, wherever its samples are, if an effect needs it; else null. Stopped by
-/// `control` it is unfinished.
-std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid, const PassView& pass,
+/// Renders the G-buffer at the pixels' centers, independent of the pass's sample positions, if an effect needs it;
+/// else returns null. The result is incomplete if `control` stops it.
+std::unique_ptr<Screen> look_at_screen(const PreparedData& data, const Settings& settings, const TileGrid& grid,
+                                       const PassView& pass,
                                        const Control& control);
 
 } // namespace duet::raster

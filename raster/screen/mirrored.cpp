@@ -10,7 +10,7 @@ namespace {
 
 bool mirrors(const ScalarSlot& roughness) { return !roughness.constant() || sqr(roughness.value) <= kRoughestMirror; }
 
-/// Ray number i of Mirrored::kRays from a rough metal: a (0,2)-net, of which each aligned part is one.
+/// Returns ray i of Mirrored::kRays from a rough metal. The rays form a (0,2)-net, as does each aligned subset.
 Vec2 mirror_ray(int i) { return net_point(static_cast<std::uint32_t>(i), Mirrored::kRays); }
 
 } // namespace
@@ -27,7 +27,8 @@ bool may_mirror(const Material& material) {
 bool is_mirror(const Material& material) {
     if (const auto* metal = std::get_if<Metal>(&material)) return mirrors(metal->roughness);
     const auto* layers = std::get_if<Principled>(&material);
-    return layers != nullptr && layers->metallic.constant() && layers->metallic.value == 1 && mirrors(layers->roughness);
+    return layers != nullptr && layers->metallic.constant() && layers->metallic.value == 1 &&
+        mirrors(layers->roughness);
 }
 
 Mirrored::Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point,
@@ -56,7 +57,8 @@ std::optional<Rgb> Mirrored::operator()(TapRange taps) const {
     }
     if (all == Rgb()) return std::nullopt;
     const Rgb albedo = bsdf_.albedo(std::abs(point_.wo.z));
-    for (std::size_t c = 0; c < 3; ++c) sum[c] = all[c] > 0 ? sum[c] * static_cast<float>(share) / all[c] * albedo[c] : 0.0f;
+    for (std::size_t c = 0; c < 3; ++c)
+        sum[c] = all[c] > 0 ? sum[c] * static_cast<float>(share) / all[c] * albedo[c] : 0.0f;
     return sum;
 }
 
@@ -67,10 +69,10 @@ Mirrored::Sample Mirrored::sample(Vec2 u) const {
     return point_.receives(way) ? Sample{way, sample->pdf, sample->weight} : Sample{};
 }
 
-/// Along one of so many rays.
+/// Returns the radiance along one of `rays` rays.
 Rgb Mirrored::seen(const Sample& ray, int rays) const {
     const bool smooth = bsdf_.smooth();
-    // A cone about the ray, in which there is one ray: of the solid angle 1/(rays · pdf).
+    // The cone about the ray has the solid angle 1/(rays · pdf), so that it contains one ray on average.
     const float wide = smooth ? 0.0f : 2 * std::sqrt(kInvPi / (static_cast<float>(rays) * max(ray.pdf, 1e-6f)));
     return around_.seen({.p = p_, .n = point_.ng, .way = ray.way, .width = width_, .turn = spread_, .spread = wide,
                          .alpha = min(alpha_as_wide(wide), 1.0f), .lamps = smooth, .point = &point_});

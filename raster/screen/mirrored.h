@@ -1,4 +1,4 @@
-// What metal mirrors of what the picture shows.
+// This header declares screen-space reflections on metal.
 #pragma once
 
 #include "raster/light/direct.h"
@@ -10,23 +10,26 @@
 
 namespace duet::raster {
 
-/// Whether a material, somewhere, mirrors what the picture shows.
+/// Returns whether a material may reflect the image somewhere.
 bool may_mirror(const Material& material);
-/// Whether that is all that one of it shows: a first look at the picture knows of it but the environment.
+/// Returns whether such a reflection is all that the material shows. The color prepass then has only the environment
+/// for it.
 bool is_mirror(const Material& material);
 
-/// What a smooth or not too rough metal mirrors, in directions of its lobe: the same few for every point, each as wide
-/// as the part of the lobe that it stands for.
+/// Computes the reflection on a smooth or moderately rough metal, in a few directions of its lobe. They are the same
+/// for every point, and each is as wide as the part of the lobe that it represents.
 class Mirrored {
 public:
-    static constexpr int kRays = 8; ///< of a pixel of rough metal
+    static constexpr int kRays = 8; ///< per pixel of rough metal
 
-    /// `screen` has radiance. Refers to all.
-    Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point, const MetalBsdf& bsdf);
+    /// `screen` must have radiance. All arguments must outlive this object.
+    Mirrored(const PreparedData& data, const Settings& settings, const Screen& screen, const ShadingPoint& point,
+             const MetalBsdf& bsdf);
 
-    /// Of rough metal the lobe's mean, as the few rays find it, times all that the metal reflects: so that what they miss of
-    /// the lobe, and what rays lose that come out beneath its horizon, is not lost. A part of the taps asks for a part of the
-    /// rays: the mean of all parts is the whole. Empty where no ray comes out above the horizon.
+    /// Returns the reflected radiance. For rough metal it is the weighted mean over the rays times the metal's
+    /// albedo, so that no energy is lost to unsampled parts of the lobe or to rays below the horizon. A subset of the
+    /// taps uses a subset of the rays, and the mean of all subsets is the full result. It is empty if no ray is above
+    /// the horizon.
     std::optional<Rgb> operator()(TapRange taps) const;
 
 private:
@@ -42,7 +45,7 @@ private:
     const ShadingPoint& point_;
     const MetalBsdf& bsdf_;
     Vec3 p_;
-    float width_ = 0, spread_ = 0; ///< of a pixel; radians between its mirrored ray and the next one's
+    float width_ = 0, spread_ = 0; ///< width of a pixel; angle in radians between its reflected ray and the neighbor's
 };
 
 } // namespace duet::raster

@@ -1,19 +1,19 @@
-// What shading by some settings asks of a look at the picture beforehand (raster/screen/screen.h).
+// This header declares which prepasses (raster/screen/screen.h) shading with given settings needs.
 #pragma once
 
 #include "raster/prepare.h"
 
 namespace duet::raster {
 
-/// Whether shading looks at HitTile::screen.
+/// Returns whether shading uses HitTile::screen.
 bool needs_screen(const PreparedData& data, const Settings& settings);
-/// Whether that must have its radiance, too, shaded by the same settings without reflections of it.
+/// Returns whether the screen must have radiance, shaded by the same settings without screen-space reflections.
 bool needs_screen_radiance(const PreparedData& data, const Settings& settings);
-/// Whether that must have what there is without glass (Screen::behind).
+/// Returns whether the screen needs the scene without glass (Screen::behind).
 bool needs_screen_behind(const PreparedData& data, const Settings& settings);
-/// Whether that must have its occlusion.
+/// Returns whether the screen needs ambient occlusion.
 bool needs_occlusion(const PreparedData& data, const Settings& settings);
-/// Settings::occlusion_radius, or what its 0 stands for.
+/// Returns Settings::occlusion_radius, or the default radius if that is 0, in meters.
 double occlusion_radius(const PreparedData& data, const Settings& settings);
 
 } // namespace duet::raster

@@ -8,16 +8,19 @@
 namespace duet::raster {
 namespace {
 
-constexpr float kPixels = 2;       ///< how many pixels' widths off a point's plane its neighbours may lie
-constexpr float kLeastLike = 0.7f; ///< cosine between normals of one surface
-constexpr float kCoarse = 160, kFine = 400; ///< pixels, the lesser side of pictures in which 8 of them are wide, and little
-/// By the distance from the middle: a box of 4 pixels; and one of 8, softened by one of 4, so that what a pattern meets comes
-/// and goes slowly. In both each place in 4 × 4 pixels counts alike, and so, in the second, each pattern.
+constexpr float kPixels = 2; ///< largest distance of neighbors from a point's plane, in pixel widths
+constexpr float kLeastLike = 0.7f; ///< least cosine between normals of one surface
+/// Shorter image side, in pixels, at which a filter of 8 pixels is wide, and narrow.
+constexpr float kCoarse = 160, kFine = 400;
+/// These are filter weights by distance from the center: a box of 4 pixels, and a box of 8 convolved with one of 4,
+/// which avoids abrupt changes. Both weight each pixel of a 4 × 4 block equally; the second also weights each pattern
+/// equally.
 constexpr std::array<float, 7> kBox{0.25f, 0.25f, 0.125f, 0, 0, 0, 0};
 constexpr std::array<float, 7> kSoftBox{0.125f, 0.125f, 3.75f / 32, 3.0f / 32, 2.0f / 32, 1.0f / 32, 0.25f / 32};
 constexpr int kLanesWide = static_cast<int>(Floats::size);
 
-/// From the first to the second, as pictures grow from coarse to fine: no size looks other than the next one.
+/// Blends from the first to the second kernel as the image size grows, so that the result changes continuously with
+/// the size.
 std::array<float, 7> kernel_of(const Screen& screen) {
     const float side = static_cast<float>(std::min(screen.width(), screen.height()));
     const float soft = clamp((side - kCoarse) / (kFine - kCoarse), 0.0f, 1.0f);
@@ -26,9 +29,10 @@ std::array<float, 7> kernel_of(const Screen& screen) {
     return kernel;
 }
 
-/// 1 on the same plane facing the same way, 0 off it.
+/// Returns 1 for points on the same plane with equal normals, falling to 0 off the plane.
 template <typename T> T same_surface(Vec3T<T> to, Vec3T<T> n, Vec3T<T> other_n, T tolerance) {
-    const T off = T(1) - abs(dot(n, to)) / tolerance, facing = (dot(n, other_n) - T(kLeastLike)) * T(1 / (1 - kLeastLike));
+    const T off = T(1) - abs(dot(n, to)) / tolerance,
+            facing = (dot(n, other_n) - T(kLeastLike)) * T(1 / (1 - kLeastLike));
     return max(off, T(0)) * min(max(facing, T(0)), T(1));
 }
 
@@ -38,10 +42,10 @@ Vec3T<Floats> normals_from(const Screen& screen, int x, int y) {
     return {load_from(nx, x, y), load_from(ny, x, y), load_from(nz, x, y)};
 }
 
-/// What a pixel that sees nothing is given, so that all that follows stays finite.
+/// Replaces an empty pixel's reversed depth by 1, so that all following values are finite.
 Floats any_nearness(const Floats& nearness) { return xsimd::select(nearness > Floats(0.0f), nearness, Floats(1.0f)); }
 
-/// Columns at which batches begin that cover a row; the last ones may overlap.
+/// Calls `use` with the start columns of batches that cover a row; the last ones may overlap.
 template <typename F> void for_batches(int width, const F& use) {
     for (int x = 0; x < width; x += kLanesWide) use(std::min(x, width - kLanesWide));
 }
@@ -50,10 +54,11 @@ template <typename F> void for_batches(int width, const F& use) {
 
 OcclusionImage::OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads)
     : screen_(screen), kind_(kind), radius_(radius), kernel_(kernel_of(screen)) {
-    if (screen.width() < kLanesWide) return; // every point is looked at by itself
+    if (screen.width() < kLanesWide) return; // every point is then evaluated separately
     const auto rows = static_cast<std::size_t>(screen.height());
     Planes along_rows;
-    for (std::size_t k = 0; k < found_.size(); ++k) found_[k] = along_rows[k] = ImageFloat(screen.width(), screen.height());
+    for (std::size_t k = 0; k < found_.size(); ++k)
+        found_[k] = along_rows[k] = ImageFloat(screen.width(), screen.height());
     parallel_for(rows, threads, [&](std::size_t y) { look_row(static_cast<int>(y)); });
     parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), false, found_, along_rows); });
     parallel_for(rows, threads, [&](std::size_t y) { smooth_row(static_cast<int>(y), true, along_rows, found_); });
@@ -116,7 +121,7 @@ void OcclusionImage::smooth_row(int y, bool down, const Planes& from, Planes& to
     });
 }
 
-/// How much what pixel (x, y) sees is of the surface through p.
+/// Returns the similarity of the surface at pixel (x, y) to that through p.
 float OcclusionImage::likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) const {
     const std::optional<Vec3> seen = screen_.seen(x, y);
     return seen ? same_surface(*seen - p, n, screen_.normal(x, y), tolerance) : 0.0f;
@@ -126,7 +131,8 @@ SkySeen OcclusionImage::at(int x, int y, Vec3 p, Vec3 n) const {
     if (found_[0].empty()) return look(p, n);
     const float depth = screen_.homogeneous(p)[2], tolerance = screen_.pixel_size(kPixels * depth);
     const auto found = [&](int column, int row) {
-        return SkySeen{found_[0](column, row), {found_[1](column, row), found_[2](column, row), found_[3](column, row)}};
+        return SkySeen{found_[0](column, row),
+                       {found_[1](column, row), found_[2](column, row), found_[3](column, row)}};
     };
     if (likeness(x, y, p, n, tolerance) > 0.5f) return found(x, y);
     float weights = 0;

@@ -1,44 +1,45 @@
-// How much of the environment each pixel of a picture sees.
+// This header declares the ambient occlusion of each pixel of an image.
 #pragma once
 
 #include "raster/screen/ambient_occlusion.h"
 
 namespace duet::raster {
 
-/// The occlusion of what a Screen shows, once a pixel however many samples it has. Each pixel looks in a few directions;
-/// what it finds is averaged with those of its neighbours, 8 × 8 of which look everywhere (of 4 × 4, nearly, in small
-/// pictures, where so many pixels are wide), that lie on the same surface:
-/// within a pixel's width or two of its plane, facing nearly its way. Along rows, then along columns: on a plane that is
-/// the mean of all 64, and elsewhere near enough (Pham and van Vliet 2005, «Separable Bilateral Filtering for Fast Video
-/// Preprocessing»).
+/// Stores the occlusion of the surfaces in a Screen, computed once per pixel for any number of samples. Each pixel
+/// samples a few directions. The result is averaged over neighbors on the same surface: within one or two pixel
+/// widths of its plane and with similar normals. A block of 8 × 8 pixels covers all directions (in small images,
+/// where 8 pixels are wide, nearly a block of 4 × 4). The filter is separable, along rows and then columns. On a
+/// plane it is the mean of all 64 patterns, and elsewhere a good approximation (Pham and van Vliet 2005, "Separable
+/// Bilateral Filtering for Fast Video Preprocessing").
 class OcclusionImage {
 public:
-    /// The screen must outlive it. The same for any number of threads.
+    /// The screen must outlive this object. The result is the same for any number of threads.
     OcclusionImage(const Screen& screen, AmbientOcclusion kind, float radius, int threads);
 
-    /// At a point (relative to the eye) in pixel (x, y), with its unit shading normal: what the pixel's sample, or one
-    /// of its neighbours', has found if they lie on the same surface; else looked up anew.
+    /// Returns the occlusion at a point (relative to the eye) in pixel (x, y), with its unit shading normal. It uses
+    /// the stored value of this pixel or of its neighbors if they are on the same surface; otherwise it is computed
+    /// for this point.
     SkySeen at(int x, int y, Vec3 p, Vec3 n) const;
-    /// At any point in view.
+    /// Computes the occlusion at any visible point.
     SkySeen look(Vec3 p, Vec3 n) const;
     std::size_t memory_bytes() const { return found_.front().size() * found_.size() * sizeof(float); }
 
     static constexpr int kLines = 3, kSteps = 24;
 
 private:
-    /// The part visible, and the three coordinates of what is hidden.
+    /// The planes are the visible fraction and the three coordinates of SkySeen::hidden.
     using Planes = std::array<ImageFloat, 4>;
 
     SkySeenT<Floats> look(const OcclusionPoints& points, const OcclusionPattern& pattern) const;
     void look_row(int y);
-    /// Means along rows, or down columns, of the pixels of a row.
+    /// Filters a row of pixels along rows, or down columns.
     void smooth_row(int y, bool down, const Planes& from, Planes& to) const;
     float likeness(int x, int y, Vec3 p, Vec3 n, float tolerance) const;
 
     const Screen& screen_;
     AmbientOcclusion kind_;
     float radius_;
-    std::array<float, 7> kernel_; ///< weights of the mean, by the distance from the middle
+    std::array<float, 7> kernel_; ///< filter weights by distance from the center
     Planes found_;
 };
 

@@ -9,13 +9,14 @@
 namespace duet::raster {
 namespace {
 
-/// Small levels cost less than threads do.
+/// Runs small levels on one thread, because starting threads would cost more than the work.
 template <typename F> void for_rows(const ImageRgb& image, int threads, const F& visit) {
     const auto rows = static_cast<std::size_t>(image.height());
     parallel_for(rows, image.size() < 10000 ? 1 : threads, [&](std::size_t y) { visit(static_cast<int>(y)); });
 }
 
-/// Row y of a coarse level from two of the fine one: means by weight. What is not known for sure counts half as much from level to level.
+/// Computes row y of a coarse level as the weighted mean of two rows of the fine level. Uncertain pixels lose half of
+/// their weight per level.
 void pull(const ImageRgb& fine, const ImageFloat& fine_weights, int y, ImageRgb& coarse, ImageFloat& coarse_weights) {
     for (int row = 2 * y; row < std::min(2 * y + 2, fine.height()); ++row)
         for (int x = 0; x < fine.width(); ++x) {
@@ -27,16 +28,18 @@ void pull(const ImageRgb& fine, const ImageFloat& fine_weights, int y, ImageRgb&
         if (weight > 0) coarse(x, y) = coarse(x, y) / weight;
         weight = 0;
         for (int row = 2 * y; row < std::min(2 * y + 2, fine.height()); ++row)
-            for (int i = 2 * x; i < std::min(2 * x + 2, fine.width()); ++i) weight = std::max(weight, fine_weights(i, row));
+            for (int i = 2 * x; i < std::min(2 * x + 2, fine.width()); ++i)
+                weight = std::max(weight, fine_weights(i, row));
         if (weight < 1) weight *= 0.5f;
     }
 }
 
-/// What row y of a fine level does not know is filled from the coarse one.
+/// Fills the unknown pixels in row y of a fine level from the coarse level.
 void push(const ImageRgb& coarse, const ImageFloat& fine_weights, int y, ImageRgb& fine) {
     for (int x = 0; x < fine.width(); ++x)
         if (const float weight = fine_weights(x, y); weight < 1) {
-            const Rgb about = bilinear(coarse, 0.5f * (static_cast<float>(x) + 0.5f), 0.5f * (static_cast<float>(y) + 0.5f));
+            const Rgb about = bilinear(coarse, 0.5f * (static_cast<float>(x) + 0.5f),
+                                       0.5f * (static_cast<float>(y) + 0.5f));
             fine(x, y) = weight > 0 ? lerp(about, fine(x, y), weight) : about;
         }
 }

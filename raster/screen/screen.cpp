@@ -40,8 +40,10 @@ std::optional<Vec3> Screen::seen(int x, int y) const {
 std::size_t Screen::memory_bytes() const {
     const auto bytes_of = [](const auto& image) { return image.size() * sizeof(image[0]); };
     const FirstLook& look = first_look_;
-    std::size_t sum = bytes_of(nearness_) + static_cast<std::size_t>(nearest_.memory_bytes()) + bytes_of(turns_) + bytes_of(thickness_) +
-                      bytes_of(look.keys) + bytes_of(look.objects) + bytes_of(look.lamps) + look.radiance.memory_bytes() +
+    std::size_t sum = bytes_of(nearness_) + static_cast<std::size_t>(nearest_.memory_bytes()) + bytes_of(turns_) +
+        bytes_of(thickness_) +
+                      bytes_of(look.keys) + bytes_of(look.objects) + bytes_of(look.lamps) +
+                          look.radiance.memory_bytes() +
                       look.without_lamps.memory_bytes() + flat_look_.memory_bytes();
     for (const ImageFloat& plane : normals_) sum += bytes_of(plane);
     if (occlusion_) sum += occlusion_->memory_bytes();

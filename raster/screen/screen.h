@@ -1,4 +1,4 @@
-// What a picture knows of the scene: depth and normal at each pixel. Effects in screen space look around in it.
+// This header declares the G-buffer, with depth and normal at each pixel, that screen-space effects sample.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -19,12 +19,12 @@ namespace duet::raster {
 
 class OcclusionImage; // raster/screen/occlusion_image.h
 
-/// The depths of one view, one sample a pixel. Positions are relative to the camera's eye.
+/// A screen is the G-buffer of one view with one sample per pixel. Positions are relative to the camera's eye.
 class Screen {
 public:
     Screen(const Screen&) = delete; // its occlusion refers to it
     Screen& operator=(const Screen&) = delete;
-    /// `nearness`: near / depth of each pixel's sample, 0 where nothing is seen.
+    /// `nearness` is the reversed depth, near / depth, of each pixel's sample; 0 for the background.
     Screen(const Pinhole& view, SampleOffset offset, ImageFloat nearness);
 
     int width() const { return nearness_.width(); }
@@ -32,28 +32,32 @@ public:
     Vec3 relative(Vec3 p) const { return Vec3(Vec3d(p) - eye_); }
     Vec3 absolute(Vec3 relative) const { return Vec3(Vec3d(relative) + eye_); }
 
-    /// Where a point is seen: x and y in pixels, depth. Depth is 0 or less, and x and y mean nothing, behind the eye.
+    /// Projects a point: x and y in pixels, and depth. Behind the eye depth is 0 or less, and x and y are
+    /// meaningless.
     Vec3 project(Vec3 p) const {
         const auto [x, y, depth, w] = homogeneous(p);
         return {x / w, y / w, depth};
     }
-    /// The pixel of such a place, or the nearest one.
+    /// Returns the pixel that contains a projected point, or the nearest pixel.
     std::pair<int, int> pixel_at(Vec3 place) const {
-        const auto within = [](float at, int size) { return static_cast<int>(clamp(at, 0.0f, static_cast<float>(size - 1))); };
+        const auto within = [](float at, int size) {
+            return static_cast<int>(clamp(at, 0.0f, static_cast<float>(size - 1)));
+        };
         return {within(place.x, width()), within(place.y, height())};
     }
-    /// What is seen at a pixel; nothing outside the picture, or where nothing is.
+    /// Returns the visible point at a pixel; empty outside the image and for the background.
     std::optional<Vec3> seen(int x, int y) const;
-    /// Depth at a pixel; infinity where nothing is seen. The pixel must be one.
+    /// Returns the depth at a pixel inside the image; infinity for the background.
     float depth(int x, int y) const { return near_ / nearness_(x, y); }
     bool perspective() const { return perspective_; }
     bool contains(float x, float y) const {
         return x >= 0 && y >= 0 && x < static_cast<float>(width()) && y < static_cast<float>(height());
     }
 
-    // The same for one point or a batch of them.
+    // The following functions accept one point or a SIMD batch.
 
-    /// x·w, y·w, depth and w of a point, and their change from a point to the next that is `way` away.
+    /// Returns x·w, y·w, depth and w of a point. The second function returns their change over the displacement
+    /// `way`.
     template <typename T> std::array<T, 4> homogeneous(Vec3T<T> p) const {
         std::array<T, 4> h = homogeneous_change(p);
         for (std::size_t row = 0; row < 4; ++row) h[row] += T(to_pixel_[row].w);
@@ -66,7 +70,7 @@ public:
         };
         return {row(0), row(1), row(2), row(3)};
     }
-    /// What the pixel in column x and row y, both whole numbers, sees at near / depth.
+    /// Returns the visible point of the pixel in column x and row y, both integers, at the reversed depth `nearness`.
     template <typename T> Vec3T<T> at(T x, T y, T nearness) const {
         const T depth = T(near_) / nearness;
         const auto axis = [&](float Vec3::*c) {
@@ -75,39 +79,42 @@ public:
         };
         return {axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)};
     }
-    /// Unit, from what a pixel sees to the viewer.
+    /// Returns the unit direction from a visible point to the viewer.
     template <typename T> Vec3T<T> to_viewer(Vec3T<T> p) const {
         const Vec3T<T> way = perspective_ ? p : Vec3T<T>{T(direction_.x), T(direction_.y), T(direction_.z)};
         return way * -inverse_sqrt(dot(way, way));
     }
-    /// The width of a pixel at a depth, metres.
-    template <typename T> T pixel_size(T depth) const { return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_)); }
+    /// Returns the width of a pixel at a depth, in meters.
+    template <typename T> T pixel_size(T depth) const {
+        return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_));
+    }
     float near() const { return near_; }
     const ImageFloat& nearness() const { return nearness_; }
-    /// The greatest nearness in the pixel's block of 2^level × 2^level, or in a larger one.
+    /// Returns the greatest reversed depth in the pixel's block of 2^level × 2^level, or in a larger one.
     float greatest_nearness(int x, int y, int level) const { return nearest_.of_block(x, y, level); }
 
-    /// Shading normals on the viewer's side, unit, once they are there; any where nothing is seen.
-    /// Given as colours, as Shading::kNormal shows them.
+    /// Sets the unit shading normals on the viewer's side, encoded as colors like Shading::kNormal. The background's
+    /// normals are arbitrary.
     void set_normals(const ImageRgb& colors);
     const std::array<ImageFloat, 3>& normals() const { return normals_; }
     Vec3 normal(int x, int y) const { return {normals_[0](x, y), normals_[1](x, y), normals_[2](x, y)}; }
 
-    /// By how much the normal turns from each pixel to the next (normal_turn), once that is known.
+    /// Sets the angle between each pixel's normal and its neighbors' (normal_turn).
     void set_turns(ImageFloat turns) { turns_ = std::move(turns); }
     float turn(int x, int y) const { return turns_(x, y); }
-    /// Metres of depth from what each pixel sees to the nearest back face behind it, where that is of a closed object, once
-    /// they are there; else 0.
+    /// Sets the depth in meters from each visible surface to the nearest back face behind it, for closed objects; 0
+    /// for others. thickness() is 0 before this call.
     void set_thickness(ImageFloat thickness) { thickness_ = std::move(thickness); }
     float thickness(int x, int y) const { return thickness_.empty() ? 0.0f : thickness_(x, y); }
 
-    /// How much of the environment each pixel sees, once it is there; else null.
+    /// Sets the ambient occlusion; occlusion() is null before this call.
     void set_occlusion(std::shared_ptr<const OcclusionImage> occlusion) { occlusion_ = std::move(occlusion); }
     const OcclusionImage* occlusion() const { return occlusion_.get(); }
 
-    /// A picture of what is seen, once it is there: how each pixel was shaded at its centre, by a key of what that saw
-    /// (FirstLookPicture::key), or 0 where it would not be the same again; which object that is; whether it is a lamp that
-    /// rays look for (PreparedData::lamps); and the same at all sizes, with those lamps and without them.
+    /// Stores the color prepass, shaded at the pixels' centers. `keys` identifies the surface of each pixel
+    /// (FirstLookPicture::key) and is 0 where the radiance must not be reused. `objects` has object IDs. `lamps`
+    /// marks lights that rays intersect directly (PreparedData::lamps). The pyramids have the radiance with and
+    /// without these lights.
     struct FirstLook {
         Image<std::uint32_t> keys, objects;
         Image<std::uint8_t> lamps;
@@ -115,28 +122,30 @@ public:
     };
     void set_first_look(FirstLook look) { first_look_ = std::move(look); }
     const FirstLook& first_look() const { return first_look_; }
-    /// The same of flat surfaces alone, which go on behind what stands before them, and of what is behind all (flat_look in
-    /// raster/screen/flat_look.h), once it is there; else, and where there is neither, empty.
+    /// Sets the radiance of flat surfaces, which are assumed to continue behind occluders, and of the background
+    /// (flat_look in raster/screen/flat_look.h). It is empty before this call, and if there is neither.
     void set_flat_look(RadiancePyramid look) { flat_look_ = std::move(look); }
     const RadiancePyramid& flat_look() const { return flat_look_; }
 
-    /// The same view where each pixel sees the next object behind its glass, with a first look, in turn with what is behind
-    /// that; and the nearest back faces of glass. Else null.
+    /// Sets the layer behind the glass and the nearest back faces of glass. In the layer each pixel shows the next
+    /// object behind its glass; it has a color prepass and may have its own layer behind it. Both are null without
+    /// glass.
     void set_glass(std::shared_ptr<const Screen> behind, std::shared_ptr<const Screen> backs) {
         behind_ = std::move(behind), backs_ = std::move(backs);
     }
     const Screen* behind() const { return behind_.get(); }
     const Screen* backs() const { return backs_.get(); }
-    /// What the view sees at once, where this is behind that; else this.
+    /// Sets the front layer of the view; front() is this screen if it is not set.
     void set_front(const Screen& front) { front_ = &front; }
     const Screen& front() const { return front_ != nullptr ? *front_ : *this; }
 
-    /// Of this, the nearest back faces, and what is behind.
+    /// Returns the memory of this screen, its back faces, and the layers behind it.
     std::size_t memory_bytes() const;
 
 private:
     Vec3d eye_;
-    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as Pinhole's, from pixel (0, 0)
+    /// As in Pinhole, relative to pixel (0, 0).
+    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_;
     std::array<Vec4, 4> to_pixel_;
     float near_;
     bool perspective_;

@@ -1,4 +1,4 @@
-// What metal and glass see of the scene, as far as the picture shows it.
+// This header declares the screen-space tracer for reflections on metal and refraction in glass.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -10,23 +10,27 @@
 
 namespace duet::raster {
 
-/// What an object sees of a picture: the picture, but where it is itself in the way what is behind it.
+/// This is a reflection source: the image, with the layer behind the object itself where the object would be in the
+/// way.
 struct Scenery {
-    const Screen& all;                 ///< with a first look
-    const Screen* without = nullptr;   ///< the same view with the first surface of each pixel gone; null: nothing sees through
-    std::uint32_t object = kNoObject;  ///< that looks
+    const Screen& all; ///< has a color prepass
+    /// The same view without the front surface of each pixel; null if nothing is transparent.
+    const Screen* without = nullptr;
+    std::uint32_t object = kNoObject; ///< the object that reflects or refracts
 
     bool is_own(int x, int y) const { return all.first_look().objects(x, y) == object; }
     const Screen& at(int x, int y) const { return without != nullptr && is_own(x, y) ? *without : all; }
-    /// Of a look at `width` pixels about a place how many see its object alone, one at least.
+    /// Returns the greatest lookup width, in pixels, up to `width`, that covers a single object; at least 1.
     float width_within(float x, float y, float width) const;
-    /// Whether a place's pixel and four about it, so far along each axis, show one object.
+    /// Returns whether the pixel at a position and four pixels at the offset `reach` along each axis show one object.
     bool one_object(float x, float y, float reach) const;
-    /// Whether a look so far about a place sees, in a mirror, the mirror itself: the first look does not know what that shows.
+    /// Returns whether a lookup of this reach includes the mirror itself, whose reflections are missing in the color
+    /// prepass.
     bool own_within(float x, float y, float reach) const;
-    /// Of a look at `width` pixels about a place how many do not, one at least; all where the place itself is on it.
+    /// Returns the greatest lookup width, in pixels, up to `width`, that excludes the object itself; at least 1. It
+    /// is `width` if the position is on the object.
     float width_beside_own(float x, float y, float width) const;
-    /// The one for a look at some pixels about a place, in which it must not see itself.
+    /// Returns the layer for a lookup of `width` pixels, so that it excludes the object itself.
     const Screen& about(float x, float y, float width) const {
         const float reach = std::max(1.0f, 0.5f * width);
         for (const float dx : {-reach, 0.0f, reach})
@@ -38,41 +42,47 @@ struct Scenery {
     }
 };
 
-/// Where a ray from a point of the picture meets what the picture shows.
+/// This is the intersection of a ray with the visible scene.
 struct ScreenHit {
     float x, y;     ///< in pixels
-    float distance; ///< from the point, metres
-    float gap = 0;  ///< metres from what that pixel sees to what is met, where that is but guessed to be alike; of the hidden more
-    bool hidden = false; ///< what is met is no part of what is seen there, but of a flat surface about it (flat_look)
+    float distance; ///< from the ray's origin, in meters
+    /// Meters between the pixel's surface and the hit if the color is a guess; scaled up for hidden hits.
+    float gap = 0;
+    bool hidden = false; ///< the hit is on an extrapolated flat surface (flat_look) rather than on the visible surface
 };
 
-/// A ray to be followed through the picture.
+/// This is a ray to trace in screen space.
 struct ScreenRay {
-    Vec3 p;                   ///< relative to the eye, in the picture or beside it
-    Vec3 n, way;              ///< unit: its surface's normal; its direction
-    bool from_picture = true; ///< p is on what the picture shows there, which the ray cannot meet at once
-    bool past_lamps = false;  ///< lamps that rays look for (Screen::FirstLook::lamps) are not met: it is known that none is on the way
+    Vec3 p; ///< relative to the eye, inside or outside the image
+    Vec3 n, way; ///< unit: normal of its surface; direction
+    bool from_picture = true; ///< p is on a visible surface, which the ray cannot hit at once
+    /// Ignore lights that rays intersect directly (Screen::FirstLook::lamps), as none is on the ray.
+    bool past_lamps = false;
 };
 
-/// Follows a ray through the picture, pixel by pixel (McGuire and Mara 2014, «Efficient GPU Screen-Space Ray Tracing»),
-/// until it goes behind what is seen there. A closed thing is met from behind, too: it is as thick as its nearest back face says
-/// (Screen::thickness), and what it shows of itself stands for its far side. Of another the picture does not say how
-/// thick it is: one that the ray passes farther behind than it is itself deep over two pixels, or kThickness of its depth, is
-/// taken to be passed.
+/// Traces a ray through the image, pixel by pixel (McGuire and Mara 2014, "Efficient GPU Screen-Space Ray Tracing"),
+/// until it is behind the visible surface. A closed object has the thickness to its nearest back face
+/// (Screen::thickness), so it is also hit from behind; its visible side then gives the color. The thickness of other
+/// objects is unknown. A ray passes behind such an object if it is farther behind than twice its own depth change
+/// over a pixel, and than kThickness of the object's depth.
 ///
-/// What the picture does not show it may still tell of. A flat surface that the ray, when it comes out from behind
-/// something, has already crossed by its plane is what it has met there; one that it was last seen before goes on behind
-/// what hides the ray. Hidden up to its own end, where no edge of the picture cuts it off, it goes on past that to the
-/// first flat surface whose plane it crosses, or to what is behind all; else the picture's edge stands for what it meets.
-/// Flat surfaces go on beyond the edge, up to the bounds of the scene (relative to the eye): what the edge shows where the ray
-/// leaves, or, where that is the mirror itself or is not met, what is seen along the edge and has not ended where it would
-/// be met. Where that is behind something round it is looked up at its own place, which the flat look fills from all sides.
-/// Lamps do not go on. Glass that the ray comes through towards the viewer is not met: what that shows the viewer it does not
-/// show the ray. Empty where the ray meets nothing so.
+/// Hidden surfaces are extrapolated:
+/// - If the ray emerges from behind an occluder and has already crossed the plane of the flat surface there, it hits
+/// that plane. A flat surface that was behind the ray before it became hidden continues behind the occluder.
+/// - A ray hidden up to its end, inside the image, hits the first flat surface beyond the occluder whose plane it
+/// crosses, or the background. Otherwise the pixel at the image's edge gives the color.
+/// - Flat surfaces continue beyond the image's edge up to the bounds of the scene (relative to the eye). This applies
+/// to the surface where the ray leaves. If that is the mirror itself, or is not hit, it applies to the surfaces along
+/// the edge that extend to the hit.
+/// - A hit behind a curved object is looked up at its own projection in the flat-surface pyramid, which is filled
+/// from all sides.
+/// - Lights do not continue. Glass that the ray approaches from behind is ignored, since its color is valid for the
+/// viewer only.
+/// The result is empty if the ray hits nothing by these rules.
 std::optional<ScreenHit> trace_screen(const Scenery& scenery, const Box3& scene, const ScreenRay& ray);
 
-inline constexpr float kThickness = 0.02f; ///< of the depth: of what is not closed, as thick it is taken to be at least
-/// What is guessed is seen no sharper than the guess is good: blurred by as much of ScreenHit::gap.
+inline constexpr float kThickness = 0.02f; ///< relative to the depth: least thickness of an object that is not closed
+/// A guessed color is blurred by this fraction of ScreenHit::gap.
 inline constexpr float kGuessBlur = 0.25f;
 
 } // namespace duet::raster

@@ -1,14 +1,14 @@
-// What occlusion leaves of the light from all around.
+// This header declares the result of ambient occlusion.
 #pragma once
 
 #include "common/vec/vec.h"
 
 namespace duet::raster {
 
-/// What a point sees of the directions over it, each weighed by its cosine to the normal.
+/// Stores the unoccluded part of the hemisphere over a point, cosine-weighted.
 template <typename T> struct SkySeenT {
-    T visible = T(1); ///< the part that nothing hides, in [0, 1]
-    Vec3T<T> hidden;  ///< ∫ w cos dw / π over the others: of all of them, 2/3 of the normal
+    T visible = T(1); ///< unoccluded fraction, in [0, 1]
+    Vec3T<T> hidden; ///< ∫ w cos dw / π over the occluded directions; 2/3 of the normal if all are occluded
 };
 using SkySeen = SkySeenT<float>;
 

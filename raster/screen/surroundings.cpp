@@ -10,12 +10,13 @@
 namespace duet::raster {
 namespace {
 
-/// Where a ray meets a lamp, and how much of a look about it that fills.
+/// Stores the distance to a light and the fraction of the lookup's footprint that it covers.
 struct Met {
     float distance = kInfinity, part = 0;
 };
 
-/// Of a stretch of some length, looked at over `width` metres about the fraction x of it.
+/// Returns the covered fraction of a footprint of `width` meters, centered at the fraction x of a segment of this
+/// length.
 float part_within(float x, float length, float width) {
     const auto side = [&](float to_edge) { return clamp(to_edge * length / width + 0.5f, 0.0f, 1.0f); };
     return side(x) * side(1 - x);
@@ -31,7 +32,7 @@ struct LampFinder {
         const float wide = max(look.size(distance), 1e-6f * distance);
         return {distance, part_within(a, length(quad.u), wide) * part_within(b, length(quad.v), wide)};
     }
-    /// Others may go on beyond its edges.
+    /// A triangle may be part of a larger light, so its edges are not blurred.
     Met operator()(const SurfaceLight::Triangle& t) const {
         float distance, a, b;
         if (!meet(t.a, t.b - t.a, t.c - t.a, distance, a, b) || a < 0 || b < 0 || a + b > 1) return {};
@@ -47,7 +48,7 @@ struct LampFinder {
     }
 
 private:
-    /// Where the ray meets the plane through `corner`, and there a and b of corner + a·u + b·v.
+    /// Intersects the ray with the plane through `corner`, and returns a and b of the point corner + a·u + b·v.
     bool meet(Vec3 corner, Vec3 u, Vec3 v, float& distance, float& a, float& b) const {
         const Vec3 n = cross(u, v), to = corner - p;
         const float towards = dot(n, way);
@@ -66,11 +67,11 @@ private:
 Surroundings::Surroundings(const PreparedData& data, const Settings& settings, const Scenery& scenery)
     : data_(data), settings_(settings), scenery_(scenery),
       bounds_{scenery.all.relative(data.scene.bounds.low), scenery.all.relative(data.scene.bounds.high)} {
-    const Vec3 slack = bounds_.diagonal() * 1e-4f; // of what lies in its faces
+    const Vec3 slack = bounds_.diagonal() * 1e-4f; // for surfaces in the faces of the bounds
     bounds_ = {bounds_.low - slack, bounds_.high + slack};
 }
 
-/// The nearest lamp that a look sees something of, whatever stands before it; part 0: none.
+/// Returns the nearest light in the lookup's footprint, regardless of occluders; fraction 0: none.
 Surroundings::LampSeen Surroundings::nearest_lamp(const Look& look) const {
     const LampFinder finder{scenery_.all.absolute(look.p), look.way, look};
     LampSeen nearest;
@@ -89,8 +90,9 @@ Rgb Surroundings::seen(const Look& look) const {
     if (lamp.part == 0 || distance < lamp.distance) return behind;
     const auto& light = std::get<SurfaceLight>(data_.scene.lights[lamp.light]);
     const Vec3 p = scenery_.all.absolute(look.p);
-    if (!emits_towards(light, p)) return behind * (1 - lamp.part); // its back is black
-    if (look.point != nullptr && settings_.shadows) lamp.part *= Visibility{data_.shadows.get(), {}}(lamp.light, *look.point);
+    if (!emits_towards(light, p)) return behind * (1 - lamp.part); // the back of a light is black
+    if (look.point != nullptr && settings_.shadows)
+        lamp.part *= Visibility{data_.shadows.get(), {}}(lamp.light, *look.point);
     const Rgb shown = data_.scene.needs.lamp_textures ? radiance_towards(data_.scene, light, p, look.way, lamp.distance)
                                                       : light.radiance;
     return lerp(behind, shown, lamp.part);
@@ -108,8 +110,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, bool past_lamps, floa
     return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
 }
 
-/// What a sheet of metal mirrors that is met from behind: the lamps and the sky that its front shows the viewer are none of
-/// that. Of what is mirrored again the picture stands for itself. Empty where something else is met.
+/// Returns the reflection of a metal sheet that is hit from behind. The visible front shows lights and sky that its back
+/// does not reflect. For a second reflection the image's color is used. The result is empty for other surfaces.
 std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit& hit) const {
     if (look.mirrored_again || hit.hidden) return std::nullopt;
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
@@ -131,24 +133,28 @@ std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit&
 
 Rgb Surroundings::picture(const Look& look, const ScreenHit& hit, float& distance) const {
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});
-    const float shown_depth = scenery_.at(x, y).depth(x, y); // of what is met nearer than the picture shows it
+    const float shown_depth = scenery_.at(x, y).depth(x, y); // the depth of a hit closer than the visible surface
     const float least = shown_depth < kInfinity ? shown_depth : scenery_.all.near();
     const float there = max(scenery_.all.homogeneous(look.p + look.way * hit.distance)[2], least);
-    const float pixel = scenery_.all.pixel_size(there), size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
-    // What is met is of one object: no look at it is as wide as to see another beside it. But no narrower than a rough surface
-    // blurs: what that sees beside is not a guess, but for the mirror itself.
+    const float pixel = scenery_.all.pixel_size(there),
+                size = max(look.size(hit.distance), kGuessBlur * hit.gap) / pixel;
+    // The lookup must not be wider than the object that was hit. It must not be narrower than the blur of a rough
+    // surface, which really includes adjacent objects, except for the mirror itself.
     const float blur = hit.distance * look.spread / pixel;
-    const float wide = hit.hidden ? size : max(scenery_.width_within(hit.x, hit.y, size), scenery_.width_beside_own(hit.x, hit.y, blur));
+    const float wide = hit.hidden ? size
+                                  : max(scenery_.width_within(hit.x, hit.y, size),
+                                        scenery_.width_beside_own(hit.x, hit.y, blur));
     const Screen& screen = scenery_.about(hit.x, hit.y, wide);
     const Screen::FirstLook& shown = screen.first_look();
-    // Beside a lamp it is put in by its own edge (seen): blurred out of the picture it would have a halo, which breaks off
-    // wherever what is met is guessed.
+    // Next to a light, the light is composited with its exact edge (seen). Blurring it in the image would add a halo,
+    // which would end abruptly where the hit is a guess.
     const bool is_lamp = shown.lamps(x, y) != 0;
-    if (is_lamp) // it hides none
+    if (is_lamp) // the light does not occlude itself
         distance = kInfinity;
-    else // what is met within the pixel may be as much farther than its middle: beside a lamp, the lamp
+    else // the hit may be up to a pixel farther than its center; next to a light, it is the light
         distance = hit.distance + pixel;
-    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty()) return flat.at(hit.x, hit.y, wide);
+    if (const RadiancePyramid& flat = screen.flat_look(); hit.hidden && !flat.empty())
+        return flat.at(hit.x, hit.y, wide);
     const bool lamps = look.lamps && hit.gap == 0 && (is_lamp || data_.unmirrored_lamps > 0);
     const RadiancePyramid& radiance_seen = lamps ? shown.radiance : shown.without_lamps;
     const bool sees_another = wide <= 1 && !scenery_.one_object(hit.x, hit.y, 0.5f); // between pixels

@@ -1,4 +1,4 @@
-// What a ray sees that leaves a point of the picture: of mirrors and of glass.
+// This header declares the radiance along reflected and refracted rays that leave a point of the image.
 #pragma once
 
 #include "common/vec/box.h"
@@ -10,52 +10,56 @@
 
 namespace duet::raster {
 
-/// A ray from a surface, and how wide a look it stands for.
+/// A look is a ray from a surface with the footprint of its lookup.
 struct Look {
-    Vec3 p;                   ///< where it begins, relative to the eye
-    Vec3 n, way;              ///< unit: the surface's normal on the ray's side; the ray's direction
-    float width = 0, turn = 0; ///< of the look where it begins, metres; by how much its two sides part, radians, which a
-                               ///< lens may have meet: either may be negative
-    float spread = 0;         ///< by which its blur grows, radians
-    float alpha = 0;          ///< GGX alpha by which an environment is blurred
-    bool lamps = true;        ///< whether it sees what shines: to rough surfaces lamps are direct light
-    const ShadingPoint* point = nullptr; ///< that it leaves, where shadow maps tell which lamps that sees
-    bool from_picture = true; ///< whether it begins at what the screen shows
-    bool mirrored_again = false; ///< by a sheet of metal that it has met from behind
+    Vec3 p; ///< ray origin, relative to the eye
+    Vec3 n, way; ///< unit: the surface's normal on the ray's side; the ray's direction
+    /// Width of the footprint at the origin, in meters; divergence in radians; a lens may make either negative.
+    float width = 0, turn = 0;
+    float spread = 0; ///< angle by which its blur grows, in radians
+    float alpha = 0; ///< GGX alpha of the environment lookup
+    bool lamps = true; ///< whether it sees emitters; for rough surfaces lights are direct light
+    const ShadingPoint* point = nullptr; ///< the point that it leaves, where shadow maps are sampled for visible lights
+    bool from_picture = true; ///< whether it starts on a visible surface
+    bool mirrored_again = false; ///< by a metal sheet that it hit from behind
 
-    /// Of the look, metres.
+    /// Returns the width of the footprint at a distance, in meters.
     float size(float distance) const { return std::abs(width + distance * turn) + distance * spread; }
 };
 
-/// GGX alpha up to which metal mirrors what the picture shows (roughness 0.54): of rougher metal the few rays are so far apart
-/// that each shows on a smooth surface where it goes from one thing to the next.
+/// This is the greatest GGX alpha with screen-space reflections (roughness 0.54). The few rays of rougher metal are
+/// so far apart that each would show object boundaries on a smooth surface.
 inline constexpr float kRoughestMirror = 0.3f;
 
-/// By how much GGX alpha spreads a mirrored look, radians: slopes turn it by 2, to each side. And the other way round.
+/// Returns the blur angle of a reflection in radians for GGX alpha: a slope deflects the ray by twice its angle, to
+/// each side. alpha_as_wide is the inverse.
 constexpr float blur_mirrored(float alpha) { return 4 * alpha; }
 constexpr float alpha_as_wide(float spread) { return 0.25f * spread; }
 
-/// What a picture and the scene's lists know without tracing a ray through its surfaces: what the picture shows
-/// (raster/screen/screen_reflection.h); lamps, which are few, wherever they stand; the environment behind all.
+/// Computes the radiance along a ray from the image and the scene's lists, without ray tracing. Its sources are the
+/// visible surfaces (raster/screen/screen_reflection.h), the few lights at any position, and the environment as
+/// background.
 class Surroundings {
 public:
-    /// Refers to all, but the scenery.
+    /// All arguments except `scenery` must outlive this object.
     Surroundings(const PreparedData& data, const Settings& settings, const Scenery& scenery);
 
     Rgb seen(const Look& look) const;
 
-    static constexpr std::size_t kMostLamps = 256; ///< PreparedData::lamps: of more, the others are seen in the picture alone
+    /// Limit of PreparedData::lamps; further lights are only visible in the image.
+    static constexpr std::size_t kMostLamps = 256;
 
 private:
-    /// A lamp that a ray meets: how far off, how much of its look that fills, and which of Scene::lights.
+    /// A light on a ray has a distance, the covered fraction of the footprint, and an index in Scene::lights.
     struct LampSeen {
         float distance = kInfinity, part = 0;
         std::size_t light = 0;
     };
     LampSeen nearest_lamp(const Look& look) const;
-    /// `past_lamps`: no lamp is on the way, whatever the picture's pixels show of one.
+    /// `past_lamps` says that no light is on the ray, whatever the image's pixels show.
     Rgb picture_or_environment(const Look& look, bool past_lamps, float& distance) const;
-    Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const; ///< What it shows where it is met.
+    /// Color of the visible surface at the hit.
+    Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const;
     std::optional<Rgb> behind_metal(const Look& look, const ScreenHit& hit) const;
 
     const PreparedData& data_;

@@ -1,4 +1,5 @@
-// Where blockers are between a receiver and a light: how close at most, and in the mean.
+// This file finds the blockers between a receiver and a light: an upper bound of their distance from the receiver,
+// and their mean.
 #include "raster/shadow/light_cone.h"
 
 #include <algorithm>
@@ -9,22 +10,24 @@
 namespace duet::raster {
 namespace {
 
-/// The middle of cell (x, y) of n × n on a face, unit.
+/// Returns the unit direction through the center of cell (x, y) of n × n on a cube face.
 Vec3 cell_way(std::size_t face, int x, int y, int n) {
     const float step = 2.0f / static_cast<float>(n);
-    return normalize(from_face(face, {-1 + (static_cast<float>(x) + 0.5f) * step, 1 - (static_cast<float>(y) + 0.5f) * step, 1}));
+    return normalize(from_face(face,
+            {-1 + (static_cast<float>(x) + 0.5f) * step, 1 - (static_cast<float>(y) + 0.5f) * step, 1}));
 }
 
 } // namespace
 
-/// Of each cell of directions, the distance of what is closest that may be in the cone of a receiver there. All of a
-/// cone is within the light's radius of the line from the centre to the receiver: what is seen at the distance d and the
-/// angle ψ beside the receiver is so only if d sin ψ ≤ r.
+/// For each cell of directions, stores the least distance of any surface that may lie in the cone of a receiver in
+/// that cell. Every point of a cone is within the light's radius r of the line from the light's center to the
+/// receiver. So a surface at distance d and angle ψ from the receiver's direction can lie in the cone only if d sin ψ
+/// ≤ r.
 void SoftLight::find_closest() {
     constexpr int kSeen = 2 * kWays;
     struct Seen {
         Vec3 way;
-        float distance; ///< at least
+        float distance; ///< lower bound
     };
     std::vector<Seen> seen;
     const int side = 2 * static_cast<int>(cube_.middle);
@@ -38,7 +41,8 @@ void SoftLight::find_closest() {
                 if (nearness > 0) seen.push_back({way, cube_.near / nearness * 0.9999f});
             }
     }
-    // Half the diagonals of a cell of each kind, at most, and the texels of the guard that a cell may reach over.
+    // The angular slack is at most half the diagonal of a cell of each kind, plus the guard texels that a cell may
+    // overlap.
     const float slack = std::sqrt(2.0f) / kWays + std::sqrt(2.0f) / kSeen + 0.1f;
     const float cosine = std::cos(slack), sine = std::sin(slack);
     for (std::size_t face = 0; face < 6; ++face)
@@ -50,7 +54,7 @@ void SoftLight::find_closest() {
                     if (s.distance >= closest) continue;
                     const float c = dot(way, s.way);
                     const float beside = c >= cosine  ? 0.0f
-                                         : c < -sine ? 1.0f // behind: only as close as the light itself
+                                         : c < -sine ? 1.0f // behind the light: only as close as the light's own radius
                                                      : std::sqrt(1 - c * c) * cosine - c * sine; // sin(ψ − slack)
                     if (s.distance * beside <= radius_) closest = s.distance;
                 }
@@ -58,18 +62,20 @@ void SoftLight::find_closest() {
             }
 }
 
-/// As bound(), of all that is around the receiver's direction.
+/// Returns the bound of bound(), taken from the precomputed cells around the receiver's direction.
 float SoftLight::first_reach(Vec3 p, std::size_t face, float farthest) const {
     const Vec3 along = to_face(face, p);
     const auto cell = [&](float at) {
-        return static_cast<std::size_t>(std::clamp(static_cast<int>((at / along.z + 1) * (0.5f * kWays)), 0, kWays - 1));
+        return static_cast<std::size_t>(std::clamp(static_cast<int>((at / along.z + 1) * (0.5f * kWays)), 0, kWays -
+                                                   1));
     };
     const float distance = length(p), closest = closest_[(face * kWays + cell(-along.y)) * kWays + cell(along.x)];
     if (closest >= std::max(distance, farthest)) return 0;
     return distance > farthest ? std::min((distance - closest) / (distance - farthest), 1.0f) : 1.0f;
 }
 
-/// How far from the receiver, as a fraction of the way, anything in the parts of the map can stand.
+/// Returns an upper bound of the distance from the receiver at which a blocker in these windows can stand, as a
+/// fraction of the way to the light.
 float SoftLight::bound(const Faces& faces, float farthest) const {
     float bound = 0;
     for (std::size_t i = 0; i < faces.count; ++i) {
@@ -77,8 +83,8 @@ float SoftLight::bound(const Faces& faces, float farthest) const {
         const float nearness = nearest_[face]->greatest(window.x0, window.y0, window.x1, window.y1);
         if (!(nearness > 0)) continue;
         const float depth = cube_.near / nearness * 0.9999f, distance = length(cone.p);
-        // What is at the fraction f of the way is no farther from the centre than |p| (1 − f) + r f; and, where one
-        // face sees all, no deeper than p.z (1 − f) + z f.
+        // A point at the fraction f of the way is at most |p| (1 − f) + r f away from the center. If one face covers
+        // the whole cone, its depth is also at most p.z (1 − f) + z f.
         if (distance > farthest) bound = std::max(bound, (distance - depth) / (distance - farthest));
         else bound = 1;
         if (faces.count > 1) continue;
@@ -88,11 +94,12 @@ float SoftLight::bound(const Faces& faces, float farthest) const {
     return bound;
 }
 
-/// What of a row of texels, or of the nearest in blocks of them, hides a part of the light, and how much of it.
+/// For a row of texels, or of the nearest depths of texel blocks, stores which of them block the light and at which
+/// fraction of the way.
 struct SoftLight::Found {
     Floats::batch_bool_type blocks;
-    Floats fraction; ///< of the way
-    Floats margin;   ///< half a texel, or a block, there, as a part of the light's edges
+    Floats fraction; ///< of the way from receiver to light
+    Floats margin; ///< half a texel or block at that depth, in units of the light's edges
 };
 
 SoftLight::Blockers SoftLight::search(const Faces& faces) const {
@@ -102,24 +109,26 @@ SoftLight::Blockers SoftLight::search(const Faces& faces) const {
     return blockers;
 }
 
-/// The same, not of some texels all over the windows, but of those around which blockers may be.
+/// Searches the texel blocks that may contain a blocker, instead of a sparse subset of each window's texels.
 SoftLight::Blockers SoftLight::search_closely(const Faces& faces) const {
     Blockers blockers;
-    for (std::size_t i = 0; i < faces.count; ++i) add_blocks(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
+    for (std::size_t i = 0; i < faces.count; ++i)
+        add_blocks(faces.parts[i]->cone, faces.parts[i]->face, faces.parts[i]->window, blockers);
     return blockers;
 }
 
-/// Adds up at which fraction of the way blockers in a window stand. Each counts by how much of the light it hides: its
-/// size as seen from the receiver.
+/// Accumulates the fraction of the way at which the blockers in a window stand. Each blocker is weighted by its size
+/// as seen from the receiver, which is how much of the light it hides.
 void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
     const int rows = std::min(window.rows(), kSearchedRows);
     const float down = static_cast<float>(window.rows()) / static_cast<float>(rows),
                 across = static_cast<float>(window.columns()) / kSearchedSide;
-    // As in dark_taps: a texel's point is over the receiver's plane where height + over · nearness > 0.
+    // A texel's point is above the receiver's plane where height + over · nearness > 0, as in dark_taps. `nearness`
+    // is reversed depth.
     const float per_texel = cube_.near / cube_.scale;
     const Floats over(-dot(cone.n, cone.p) - cone.slack), n_x(cone.n.x * per_texel);
     const int width = 2 * static_cast<int>(cube_.middle);
-    // Of a narrow window whole rows are loaded, wherever they begin.
+    // In a narrow window whole rows are loaded, at any alignment.
     const bool narrow = window.columns() <= kSearchedSide;
     const int left = narrow ? std::min(window.x0, width - kSearchedSide) : window.x0;
     for (int first = 0; first < kSearchedSide; first += static_cast<int>(Floats::size)) {
@@ -145,7 +154,7 @@ void SoftLight::add_blockers(const Cone& cone, std::size_t face, const Window& w
     }
 }
 
-/// Looks for blocks of texels the nearest of which may hide a part of the light, and then for blockers in them.
+/// Finds the blocks of texels whose nearest depth may hide a part of the light, and searches those for blockers.
 void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const {
     int level = 0;
     Window blocks = window;
@@ -156,14 +165,16 @@ void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& win
     const ImageFloat& image = nearest_[face]->level(level);
     const int texels = 1 << level;
     const float block = static_cast<float>(texels), per_texel = cube_.near / cube_.scale;
-    // Wherever in its block the nearest is, it is over the plane.
+    // The test must not miss a block whose nearest surface is above the plane anywhere in the block.
     const float rim = 0.5f * (block - 1) * (std::abs(cone.n.x) + std::abs(cone.n.y)) * per_texel;
     const Floats over(-dot(cone.n, cone.p) - cone.slack), n_x(cone.n.x * per_texel);
-    const bool rows = image.width() >= kSearchedSide; // then whole ones are loaded, wherever they begin
+    const bool rows = image.width() >= kSearchedSide; // whole rows are loaded then, at any alignment
     const int start = rows ? std::min(blocks.x0, image.width() - kSearchedSide) : 0;
     for (int first = start; first <= blocks.x1; first += static_cast<int>(Floats::size)) {
-        const Floats x = min(load(kLanesAsFloats, 0) + Floats(static_cast<float>(first)), Floats(static_cast<float>(image.width() - 1)));
-        const Floats from_middle = (x + Floats(0.5f)) * Floats(block) - Floats(cube_.middle), height_x = n_x * from_middle;
+        const Floats x = min(load(kLanesAsFloats, 0) + Floats(static_cast<float>(first)),
+                             Floats(static_cast<float>(image.width() - 1)));
+        const Floats from_middle = (x + Floats(0.5f)) * Floats(block) - Floats(cube_.middle), height_x = n_x *
+            from_middle;
         const Ints places = truncated(x);
         for (int y = blocks.y0; y <= blocks.y1; ++y) {
             const float up = cube_.middle - (static_cast<float>(y) + 0.5f) * block;
@@ -177,24 +188,28 @@ void SoftLight::add_blocks(const Cone& cone, std::size_t face, const Window& win
                 const int i = first + std::countr_zero(left);
                 if (i < blocks.x0 || i > blocks.x1) continue;
                 const int x0 = i * texels, y0 = y * texels;
-                add_blockers(cone, face, {std::max(x0, window.x0), std::max(y0, window.y0), std::min(x0 + texels - 1, window.x1),
+                add_blockers(cone, face,
+                             {std::max(x0, window.x0), std::max(y0, window.y0), std::min(x0 + texels - 1, window.x1),
                                           std::min(y0 + texels - 1, window.y1)}, blockers);
             }
         }
     }
 }
 
-SoftLight::Found SoftLight::found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right,
+SoftLight::Found SoftLight::found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness,
+                                  const Floats& right,
                                   float up, float block) const {
     const Floats depth = Floats(cube_.near) / nearness, per_scale = depth * Floats(1 / cube_.scale);
     const Vec3T<Floats> to{right * per_scale - Floats(cone.p.x), Floats(up) * per_scale - Floats(cone.p.y),
                            depth - Floats(cone.p.z)};
     const Floats fraction = dot(spread<Floats>(cone.o.axis), to) * Floats(cone.per_height);
-    // Where the cone is narrower than a texel, half a texel beside it still belongs to what the filter sees: but not the
-    // next facet of a concave surface (kConcave).
+    // Where the cone is narrower than a texel, half a texel on each side still belongs to the filter's footprint. The
+    // next facet of a concave surface is excluded (kConcave).
     const Floats none(0.0f), margin = per_scale * Floats(0.5f * block * cone.per_metre);
-    const auto steps_up = block > 1 ? above : dot(spread<Floats>(cone.n), to) > per_scale * Floats(static_cast<float>(kConcave));
-    return {above & (fraction > none) & (fraction < Floats(1.0f)) & cone.meets(to, fraction, xsimd::select(steps_up, margin, none)),
+    const auto steps_up = block > 1 ? above : dot(spread<Floats>(cone.n), to) >
+                                              per_scale * Floats(static_cast<float>(kConcave));
+    return {above & (fraction > none) & (fraction < Floats(1.0f)) &
+            cone.meets(to, fraction, xsimd::select(steps_up, margin, none)),
             fraction, margin};
 }
 

@@ -1,4 +1,4 @@
-// Shadow maps all around a point.
+// This header declares a cube of shadow maps around a point.
 #pragma once
 
 #include "common/vec/frame.h"
@@ -9,18 +9,19 @@
 
 namespace duet::raster {
 
-/// The face of a cube about the origin that sees w: ±x, ±y, ±z in this order.
+/// Returns the face of a cube about the origin that contains the direction w; the order is +x, −x, +y, −y, +z,
+/// −z.
 inline std::size_t cube_face(Vec3 w) {
     const std::size_t axis = longest_axis(abs(w));
     return 2 * axis + (w[axis] < 0 ? 1 : 0);
 }
-/// A vector as a face sees it: to its right, up, and away from the middle. Up is the axis after the face's own.
+/// Returns a vector in a face's coordinates: to the right, up, and outward. "Up" is the axis after the face's own.
 inline Vec3 to_face(std::size_t face, Vec3 w) {
     const std::size_t axis = face / 2;
     const float sign = face % 2 == 0 ? 1.0f : -1.0f;
     return {w[(axis + 2) % 3] * sign, w[(axis + 1) % 3], w[axis] * sign};
 }
-/// The way back.
+/// Inverts to_face().
 inline Vec3 from_face(std::size_t face, Vec3 seen) {
     const std::size_t axis = face / 2;
     const float sign = face % 2 == 0 ? 1.0f : -1.0f;
@@ -29,15 +30,16 @@ inline Vec3 from_face(std::size_t face, Vec3 seen) {
     return w;
 }
 
-/// Six maps about a point, of cube_views (raster/shadow/light_views.h). A face that no light leaves through is null.
+/// A cube map holds six shadow maps about a point, rendered by cube_views (raster/shadow/light_views.h). A face
+/// through which no light leaves is null.
 struct CubeMap {
-    static constexpr double kGuard = 4; ///< texels of the neighbours around each face
+    static constexpr double kGuard = 4; ///< guard texels of the neighboring faces around each face
 
-    FrameT<double> frame; ///< its axes
+    FrameT<double> frame; ///< the cube's axes
     Vec3d center;
-    float near = 0;          ///< depth at which nearness is 1
-    float middle = 0;        ///< texels from a face's edge to its middle
-    float scale = 0;         ///< texels from the middle to 45° beside it
+    float near = 0; ///< depth at which reversed depth is 1
+    float middle = 0; ///< texels from a face's edge to its center
+    float scale = 0; ///< texels from the center to 45° off the axis
     std::array<std::unique_ptr<ShadowMap>, 6> faces;
 };
 

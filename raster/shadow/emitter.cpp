@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-constexpr double kFlat = 1e-4; ///< of a group's size: how far it may be off one plane
+constexpr double kFlat = 1e-4; ///< relative to a group's size: the largest distance from a common plane
 
 Emitter ball_around(std::span<const Vec3d> points) {
     Box3d box;
@@ -72,7 +72,8 @@ Emitter Emitter::of(std::span<const SurfaceLight> lights) {
         if (area >= least) continue;
         least = area;
         best = {Kind::kParallelogram,
-                s * ((low.x + high.x) / 2) + t * ((low.y + high.y) / 2) + first.normal * dot(first.normal, points.front()),
+                s * ((low.x + high.x) / 2) + t * ((low.y + high.y) / 2) + first.normal *
+                    dot(first.normal, points.front()),
                 s * (high.x - low.x), t * (high.y - low.y), first.normal, 0};
     }
     return best;

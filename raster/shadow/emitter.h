@@ -1,4 +1,4 @@
-// What a light with an area looks like to its shadows.
+// This header declares the shape of an area light as shadows approximate it.
 #pragma once
 
 #include "common/light/light.h"
@@ -7,20 +7,20 @@
 
 namespace duet::raster {
 
-/// A light's outline as its shadows know it: a parallelogram, a triangle, or a ball, which to each receiver is the disk
-/// that faces it.
+/// Shadows approximate a light's shape by a parallelogram, a triangle, or a sphere. A receiver sees the sphere as a
+/// disk facing it.
 struct Emitter {
     enum class Kind { kParallelogram, kTriangle, kBall };
     Kind kind = Kind::kBall;
-    Vec3d center; ///< from which its maps are drawn
-    Vec3d u, v;   ///< edges (not of a ball)
-    Vec3d normal; ///< of its plane, on the side that emits (not of a ball)
+    Vec3d center; ///< the point from which its shadow maps are rendered
+    Vec3d u, v; ///< edges; unused for a sphere
+    Vec3d normal; ///< of its plane, on the emitting side; unused for a sphere
     double radius = 0;
 
-    /// Of one surface light.
+    /// Returns the shape of one surface light.
     static Emitter of(const SurfaceLight& light);
-    /// Of one, or of several triangles and quads at once: the smallest rectangle around them along one of the first one's
-    /// edges where they lie in one plane and face the same way; else a ball around them.
+    /// Returns the shape of one light, or of a group of triangles and quads. For a coplanar group that faces one way
+    /// this is the smallest bounding rectangle along an edge of the first light. Otherwise it is a bounding sphere.
     static Emitter of(std::span<const SurfaceLight> lights);
 };
 

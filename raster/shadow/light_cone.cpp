@@ -5,8 +5,10 @@
 namespace duet::raster {
 namespace {
 
-/// What is seen, in a face, of the part before it of the hull of a point and a quadrangle.
-void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes<Quads>& z, float clip, float& left, float& right,
+/// Computes the bounds, in a face's image plane, of the convex hull of a point and a quadrilateral, clipped to z ≥
+/// clip.
+void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes<Quads>& z, float clip, float& left,
+               float& right,
                float& bottom, float& top) {
     left = bottom = kInfinity, right = top = -kInfinity;
     const auto cover = [&](Vec3 q) {
@@ -32,10 +34,10 @@ void clip_hull(Vec3 p, const Lanes<Quads>& x, const Lanes<Quads>& y, const Lanes
 
 } // namespace
 
-/// The part of a face that the cone, up to a fraction of the way, covers; none if it misses the face. `whole`: set to
-/// false where the cone goes on beyond the face.
+/// Returns the window of a face that the cone covers up to the fraction `reach` of the way, or none if the cone
+/// misses the face. Sets `whole` to false where the cone extends beyond the face.
 std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach, bool& whole) const {
-    const float clip = 1e-4f * (length(cone.p) + radius_); // before the light's plane all of the map is covered
+    const float clip = 1e-4f * (length(cone.p) + radius_); // the projection is unbounded at the light's plane
     const Quads t(reach), one(1.0f);
     const Quads qx = Quads(cone.p.x) + (cone.corners_x - Quads(cone.p.x)) * t,
                 qy = Quads(cone.p.y) + (cone.corners_y - Quads(cone.p.y)) * t,
@@ -53,14 +55,15 @@ std::optional<SoftLight::Window> SoftLight::window(const Cone& cone, float reach
     if (!before || left < -1 || right > 1 || bottom < -1 || top > 1) whole = false;
     if (left > 1 || right < -1 || bottom > 1 || top < -1 || !(left <= right)) return std::nullopt;
     const int last = 2 * static_cast<int>(cube_.middle) - 1;
-    const auto place = [&](float at, float margin) { // with every texel of which the filter would take a part
+    const auto place = [&](float at, float margin) { // includes every texel that the filter would weight
         return std::clamp(static_cast<int>(cube_.middle + std::clamp(at, -1.0f, 1.0f) * cube_.scale + margin), 0, last);
     };
     return Window{place(left, -0.5f), place(-top, -0.5f), place(right, 0.5f), place(-bottom, 0.5f)};
 }
 
-/// What the cone covers up to a fraction of the way: parts of one face or of several.
-SoftLight::Faces SoftLight::faces(const Cone& cone, std::size_t main_face, const Outline& outline, Vec3 p, Vec3 n, float reach) const {
+/// Returns the windows, on one or more faces, that the cone covers up to the fraction `reach` of the way.
+SoftLight::Faces SoftLight::faces(const Cone& cone, std::size_t main_face, const Outline& outline, Vec3 p, Vec3 n,
+                                  float reach) const {
     Faces result;
     bool whole = true;
     if (const auto window = this->window(cone, reach, whole)) result.add(main_face, cone, *window);

@@ -1,4 +1,5 @@
-// What a soft shadow's receiver sees of a light, and what of the light's maps that is.
+// This header declares the cone between a receiver and a light, and the windows of the light's shadow maps that the
+// cone covers.
 #pragma once
 
 #include "raster/shadow/soft_shadow.h"
@@ -14,7 +15,7 @@ inline Quads four(float a, float b, float c, float d) {
     return Quads::load_aligned(numbers.data());
 }
 
-/// Texels x0 to x1, y0 to y1 of a face.
+/// A window holds texels x0 to x1 and y0 to y1 of a face, inclusive.
 struct SoftLight::Window {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -23,8 +24,8 @@ struct SoftLight::Window {
     bool small() const { return columns() <= kSearchedSide && rows() <= kSearchedSide; }
 };
 
-/// The light from one receiver, in the light's own frame, or a face's: the light's centre is the origin. Floats do here,
-/// for all is near the origin by the light's own measure.
+/// This is the cone from one receiver to the light, in the light's frame or a face's; the origin is the light's
+/// center. Single precision suffices because all coordinates are near the origin relative to the light's size.
 class SoftLight::Cone {
 public:
     Cone(Emitter::Kind kind, const Outline& outline, Vec3 receiver, Vec3 normal, float lift)
@@ -33,34 +34,37 @@ public:
         p_u_ = dot(p - o.corner, o.dual_u), p_v_ = dot(p - o.corner, o.dual_v);
         per_metre = std::sqrt(max(dot(o.dual_u, o.dual_u), dot(o.dual_v, o.dual_v)));
         const bool ball = kind_ == Emitter::Kind::kBall, triangle = kind_ == Emitter::Kind::kTriangle;
-        const Vec3 first = ball ? o.corner - o.u - o.v : o.corner, u = ball ? o.u * 2.0f : o.u, v = ball ? o.v * 2.0f : o.v;
+        const Vec3 first = ball ? o.corner - o.u - o.v : o.corner, u = ball ? o.u * 2.0f : o.u, v = ball ? o.v * 2.0f
+            : o.v;
         const Vec3 a = first + u, b = triangle ? first + v : first + u + v, c = first + v;
-        corners_x = four(first.x, a.x, b.x, c.x), corners_y = four(first.y, a.y, b.y, c.y), corners_z = four(first.z, a.z, b.z, c.z);
+        corners_x = four(first.x, a.x, b.x, c.x), corners_y = four(first.y, a.y, b.y, c.y), corners_z =
+            four(first.z, a.z, b.z, c.z);
     }
 
-    /// Whether the line from the receiver through `to` from there, at the fraction f of the way, goes on to the light, or
-    /// passes beside that by up to `margin`, as a part of its edges.
+    /// Tests whether the line from the receiver p through p + `to`, which lies at the fraction f of the way, hits the
+    /// light. A miss by up to `margin`, in units of the light's edges, also counts.
     Floats::batch_bool_type meets(const Vec3T<Floats>& to, const Floats& f, const Floats& margin) const {
-        // The line goes on to corner + a·u + b·v; both sides times the fraction save the division.
-        const Floats a = Floats(p_u_) * f + dot(to, spread<Floats>(o.dual_u)), b = Floats(p_v_) * f + dot(to, spread<Floats>(o.dual_v));
+        // The line meets the light's plane at corner + a·u + b·v. Multiplying both sides by f avoids the division.
+        const Floats a = Floats(p_u_) * f + dot(to, spread<Floats>(o.dual_u)), b = Floats(p_v_) * f +
+            dot(to, spread<Floats>(o.dual_v));
         if (kind_ == Emitter::Kind::kBall) return a * a + b * b <= (f + margin) * (f + margin);
         const Floats most = kind_ == Emitter::Kind::kParallelogram ? max(a, b) : a + b;
         return (min(a, b) > -margin) & (most <= f + margin);
     }
 
-    Vec3 p, n;        ///< the receiver
-    float slack;      ///< height over its plane that rounding accounts for
+    Vec3 p, n; ///< the receiver's position and normal
+    float slack; ///< height above its plane that rounding errors can cause
     Outline o;
-    float per_height; ///< the fraction of the way that a metre along the axis is
-    float per_metre;  ///< the part of the light's shorter edge that a metre is
-    Quads corners_x, corners_y, corners_z; ///< of a parallelogram, or a triangle, around the light
+    float per_height; ///< fraction of the way per meter along the axis
+    float per_metre; ///< units of the light's shorter edge per meter
+    Quads corners_x, corners_y, corners_z; ///< corners of a parallelogram or triangle that bounds the light
 
 private:
     Emitter::Kind kind_;
     float p_u_, p_v_;
 };
 
-/// Parts of faces, and the cone as each sees it.
+/// Stores the windows on each face, with the cone in that face's coordinates.
 struct SoftLight::Faces {
     struct Part {
         std::size_t face;
@@ -71,9 +75,11 @@ struct SoftLight::Faces {
     std::size_t count = 0;
 
     bool small() const { return count == 1 && parts[0]->window.small(); }
-    /// Whether search() looks at every texel.
+    /// Returns whether search() tests every texel.
     bool searched_wholly() const { return small() && parts[0]->window.rows() <= kSearchedRows; }
-    void add(std::size_t face, const Cone& cone, const Window& window) { parts[count++].emplace(Part{face, cone, window}); }
+    void add(std::size_t face, const Cone& cone, const Window& window) {
+        parts[count++].emplace(Part{face, cone, window});
+    }
 };
 
 } // namespace duet::raster

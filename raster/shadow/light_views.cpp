@@ -7,32 +7,33 @@
 namespace duet::raster {
 namespace {
 
-constexpr double kWidestSpot = 60; ///< degrees from the axis: beyond it one picture's texels grow too unequal
-constexpr double kStep = 4;        ///< from one of the sun's views to the next, at most
-constexpr std::size_t kMostSteps = 4; ///< beside the view of all, and those of ranges
-constexpr std::size_t kRanges = 3;  ///< of distance, that have views of their own
-constexpr double kFiner = 1.3;      ///< what a view must be, at least, to be worth its map
+constexpr double kWidestSpot = 60; ///< degrees from the axis; beyond it the texel sizes of one map differ too much
+constexpr double kStep = 4; ///< largest ratio of widths between successive views of a sun
+constexpr std::size_t kMostSteps = 4; ///< besides the view of the whole scene and those of distance ranges
+constexpr std::size_t kRanges = 3; ///< distance ranges that have their own views
+constexpr double kFiner = 1.3; ///< a view must be this much finer than the next to get its own map
 
-/// About how wide the camera's picture is where it looks at.
+/// Returns the approximate width of the camera's view at its target, in meters.
 double seen_width(const Camera& camera) {
     const double distance = length(camera.look_at - camera.eye);
-    return camera.projection == Camera::Projection::kOrthographic ? camera.height
-                                                                  : 2 * distance * std::tan(radians(camera.fov_degrees) / 2);
+    return camera.projection == Camera::Projection::kOrthographic
+               ? camera.height
+               : 2 * distance * std::tan(radians(camera.fov_degrees) / 2);
 }
 
 Camera from_point(Vec3d eye, Vec3d way, Vec3d up, double half_angle_tangent, double scene_size) {
     Camera camera;
     camera.eye = eye;
-    camera.look_at = eye + way * scene_size; // the near plane is a millionth of that away
+    camera.look_at = eye + way * scene_size; // the near plane is a millionth of this distance away
     camera.up = up;
     camera.fov_degrees = degrees(2 * std::atan(half_angle_tangent));
     return camera;
 }
 
-/// By how much a picture grows that keeps `guard` texels on each side.
+/// Returns the factor by which a view widens to leave `guard` texels on each side.
 double with_guard(int side, double guard) { return side / (side - 2 * guard); }
 
-/// A rectangle across the light.
+/// This is a rectangle perpendicular to the sun's direction.
 struct Patch {
     Vec2d least{1e300, 1e300}, most{-1e300, -1e300};
 
@@ -45,7 +46,8 @@ struct Patch {
     double width() const { return max(most.x - least.x, most.y - least.y); }
 };
 
-/// Up to the end of each range of distance, what is seen that `casters` may shade; widest first.
+/// Returns, for each distance range, the bounds of the visible points up to its end that `casters` may shadow; widest
+/// first.
 std::array<Patch, kRanges> patches(std::span<const SeenPoint> seen, const FrameT<double>& frame, const Patch& casters) {
     double nearest = 1e300, farthest = 0;
     for (const SeenPoint& s : seen)
@@ -64,19 +66,22 @@ std::array<Patch, kRanges> patches(std::span<const SeenPoint> seen, const FrameT
 
 } // namespace
 
-std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera, std::span<const SeenPoint> seen,
+std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera,
+                              std::span<const SeenPoint> seen,
                               int side, double guard) {
     const Vec3d way = normalize(Vec3d(sun.direction)), low(casters.low), high(casters.high);
     const FrameT<double> frame = frame_from_normal(way);
     Patch whole;
     double first = 1e300, last = -1e300;
     for (unsigned corner = 0; corner < 8; ++corner) {
-        const Vec3d p = frame.to_local({corner & 1u ? high.x : low.x, corner & 2u ? high.y : low.y, corner & 4u ? high.z : low.z});
+        const Vec3d p = frame.to_local({corner & 1u ? high.x : low.x, corner & 2u ? high.y : low.y, corner & 4u
+                                        ? high.z : low.z});
         whole.extend({p.x, p.y}, 0);
         first = min(first, p.z), last = max(last, p.z);
     }
     const double depth = last - first;
-    const double slack = 0.01 * (length(Vec3d(whole.most.x - whole.least.x, whole.most.y - whole.least.y, depth)) + 1e-30);
+    const double slack = 0.01 *
+        (length(Vec3d(whole.most.x - whole.least.x, whole.most.y - whole.least.y, depth)) + 1e-30);
     const auto view = [&](Vec2d middle, double width) {
         Camera result;
         result.projection = Camera::Projection::kOrthographic;

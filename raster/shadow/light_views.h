@@ -1,4 +1,4 @@
-// The cameras through which lights see the scene.
+// This header declares the cameras that render the shadow maps of lights.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -11,26 +11,31 @@
 
 namespace duet::raster {
 
-/// Where the scene's camera looks: a point that it sees, and how wide there a pixel of the picture is that found it, metres.
+/// A visible point is a point that the scene's camera sees, with the width in meters of the pixel there.
 struct SeenPoint {
     Vec3d p;
     double width;
 };
 
-/// A sun's: orthographic, along its light, each with all that lies before and behind it; finest first. The last is of all
-/// casters. Those before it are of the surroundings of what the scene's camera looks at, smaller and smaller down to what
-/// it sees (cascades, after Dimitrov 2007, «Cascaded Shadow Maps», but fixed to the scene, so that they do not crawl as the
-/// camera moves around it). Where they are finer than those there are views no wider than what is `seen`,
-/// of all of it and up to distances each as many times shorter (Lauritzen, Salvi and Lefohn 2011, «Sample Distribution Shadow
-/// Maps»): within a room what is near is not where the camera looks. `guard`: texels of `side` left
-/// around what is seen.
-std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera, std::span<const SeenPoint> seen,
+/// Returns the views of a sun, finest first. They are orthographic along its light, and each covers the full depth of
+/// the scene.
+/// The last view covers all casters. The views before it surround the target of the scene's camera and shrink down to
+/// the camera's own view. They are cascades (after Dimitrov 2007, "Cascaded Shadow Maps"), but fixed to the scene, so
+/// that shadow edges do not crawl as the camera orbits the target.
+/// Where they would be finer, there are also views fitted to the points in `seen`: to all of them, and to those
+/// within successively shorter distances (Lauritzen, Salvi and Lefohn 2011, "Sample Distribution Shadow Maps"). These
+/// help in a room, where the nearest surfaces are not at the camera's target. `guard` is the number of texels, of
+/// `side`, left around the fitted bounds.
+std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera,
+                              std::span<const SeenPoint> seen,
                               int side, double guard);
 
-/// The spot's cone, where it is narrow enough for one picture; else none. `guard`: texels of `side` left around it.
+/// Returns the view of a spot's cone, or none if the cone is too wide for one map. `guard` is the number of texels,
+/// of `side`, left around it.
 std::vector<Camera> spot_views(const SpotLight& spot, double scene_size, int side, double guard);
 
-/// The faces of a cube about a point, ±s, ±t, ±n of `frame` in this order, each with `guard` texels of its neighbours.
+/// Returns the faces of a cube about a point, ±s, ±t, ±n of `frame` in this order, each with `guard` texels of its
+/// neighbors.
 std::vector<Camera> cube_views(Vec3d center, const FrameT<double>& frame, double scene_size, int side, double guard);
 
 } // namespace duet::raster

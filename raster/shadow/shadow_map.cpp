@@ -29,29 +29,31 @@ double ShadowMap::texel(double depth) const {
     return orthographic_ ? length(view_.origin_dx) : length(view_.direction_dx) * depth;
 }
 
-/// The receiver's plane in the map, as a linear function of texels, larger where the plane is nearer to the light; and how
-/// far off it what is seen may be, and is still the receiver's surface.
+/// This is the receiver's plane as a linear function of texel coordinates; its value is larger where the plane is
+/// nearer to the light. It includes the tolerances within which a texel's surface still counts as the receiver's own.
 struct ShadowMap::Plane {
-    double at, dx, dy;     ///< at the receiver's place; its change from texel to texel
-    double rounding;       ///< everywhere
-    double of_depths;      ///< its part of what light meets squarely,
-    double texel;          ///< the width of which is one texel
-    /// More, per texel beside the place: over the plane, and under it; each on the light's side of the receiver, and on the other.
+    double at, dx, dy; ///< value at the receiver's position; change per texel
+    double rounding; ///< rounding error, at every texel
+    double of_depths; ///< rounding error of a surface perpendicular to the light
+    double texel; ///< width of one texel
+    /// Additional tolerance per texel of distance, above (`rising`) and below (`falling`) the plane. The components
+    /// are for the light's side of the receiver and the opposite side.
     Vec2d rising, falling;
 };
 
-/// The plane n·(q − p) = 0 meets the ray o + d·w of a texel at the depth d = n·(p − o)/n·w. Seen from a point o is the
-/// same for all and 1/d is linear in w; seen from infinitely far w is the same, and d is linear in o.
+/// The plane n·(q − p) = 0 meets a texel's ray o + d·w at the depth d = n·(p − o)/n·w. In a perspective view o
+/// is constant and 1/d is linear in w. In an orthographic view w is constant and d is linear in o.
 ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
     const Vec3d n = receiver.n;
     const Vec3d way = view_.direction + view_.direction_dx * place.x + view_.direction_dy * place.y; // at unit depth
     const double towards = max(-dot(n, way), 1e-9), cosine = towards / length(way);
     const double of_depths = 2 * receiver.error + place.z * 0x1p-22, rounding = of_depths / towards;
     const double width = this->texel(place.z), texel = width / towards;
-    // Facets that rise from the receiver's plane, to an angle of the tangent t, have these heights, per distance from the
-    // light's ray through the receiver, at which light of the elevation asin(cosine) meets them, before and behind it.
+    // These are the heights, per unit of distance from the light's ray through the receiver, of facets that rise from
+    // the receiver's plane at the tangent t. The light has the elevation asin(cosine). The components are for the
+    // near and the far side of the ray.
     const double sine = std::sqrt(max(1 - cosine * cosine, 0.0)), elevation = cosine / max(sine, 1e-9);
-    const double scale = orthographic_ ? 1 : view_.near / sqr(place.z); // of 1/d, from depths
+    const double scale = orthographic_ ? 1 : view_.near / sqr(place.z); // derivative of 1/d with respect to depth
     const auto heights = [&](double of_elevation) {
         const double t = min(kSteepest, of_elevation * elevation);
         return Vec2d(t / (cosine - t * sine), kSteepest / (cosine + kSteepest * sine)) * (texel * scale);
@@ -61,15 +63,15 @@ ShadowMap::Plane ShadowMap::plane(const Receiver& receiver, Vec3d place) const {
         return {-place.z, dot(n, view_.origin_dx) / -towards, dot(n, view_.origin_dy) / -towards,
                 rounding, of_depths, width, rising, falling};
     const double at = view_.near / place.z;
-    // 1/d grows by n·dw/(n·w d) for a change dw of w.
+    // 1/d changes by n·dw/(n·w d) for a change dw of w.
     return {at, at * dot(n, view_.direction_dx) / -towards, at * dot(n, view_.direction_dy) / -towards,
             rounding * scale, of_depths * scale, width * scale, rising, falling};
 }
 
 namespace {
 
-/// The quadratic B-spline's weights of four samples, the first at −1.5 + (1 − f) from the middle, f in [0, 1): what
-/// the box of a texel, blurred by a box of a texel twice, leaves of each.
+/// Returns the weights of the quadratic B-spline for four samples. The first is at −1.5 + (1 − f) from the center,
+/// with f in [0, 1). The spline is the box of a texel convolved twice with itself.
 std::array<double, 4> spline(double f) {
     const auto b = [](double x) {
         x = std::abs(x);
@@ -78,7 +80,8 @@ std::array<double, 4> spline(double f) {
     return {b(1 + f), b(f), b(1 - f), b(2 - f)};
 }
 
-/// What a box of 4 texels takes of five, the first of which it has left by f of its width, f in [0, 1).
+/// Returns the weights of a box of 4 texels over five. The box has left the first texel by f of its width, with f in
+/// [0, 1).
 std::array<double, 5> box(double f) { return {(1 - f) / 4, 0.25, 0.25, 0.25, f / 4}; }
 
 } // namespace
@@ -93,18 +96,20 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place) const {
                     : lit_fraction<4>(receiver, place, x0 - 1, y0 - 1, spline(fx), spline(fy));
 }
 
-/// How high over the receiver, on the light's ray through it, is the plane of what texel (x, y) sees, in roundings of that: they
-/// are as large as it is steep, and none of the receiver's own plane, but no larger than that's. Nearness of a surface
-/// that rises more and more from the receiver to the texel and on is a convex function f of the texels' coordinates, of which
-/// f(c) − (f(c + e) − f(c)) |r| is at most f(c − r e): taken away from the receiver, differences never put it into the shade
-/// of its own valley, be creases where they may.
+/// Returns the height above the receiver, on the light's ray through it, of the tangent plane of the surface at texel
+/// (x, y). The unit is that surface's rounding error, which grows with its slope but is limited to that of the
+/// receiver's plane.
+/// The reversed depth of a surface that is convex from the receiver through the texel and beyond is a convex function
+/// f of texel coordinates, for which f(c) − (f(c + e) − f(c)) |r| ≤ f(c − r e). So differences taken away from
+/// the receiver never shade the receiver by its own concave surface, wherever the creases are.
 double ShadowMap::roundings_over_receiver(const Plane& plane, Vec3d place, int x, int y) const {
     const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
-    // Slopes away from the receiver. Of a convex surface three in a row grow; of the middle one in size a single step
-    // from one thing to another is no part.
+    // Slopes are taken in the direction away from the receiver. On a convex surface three successive slopes increase.
+    // Their median ignores a single depth discontinuity.
     const auto slope = [&](int step_x, int step_y) {
         const int last = side() - 1;
-        const auto at = [&](int i) { return seen(std::clamp(x + i * step_x, 0, last), std::clamp(y + i * step_y, 0, last)); };
+        const auto at = [&](int i) { return seen(std::clamp(x + i * step_x, 0, last),
+                                                 std::clamp(y + i * step_y, 0, last)); };
         const double here = at(0), next = at(1), before = here - at(-1), after = next - here, beyond = at(2) - next;
         return max(min(before, after), min(max(before, after), beyond));
     };
@@ -113,23 +118,25 @@ double ShadowMap::roundings_over_receiver(const Plane& plane, Vec3d place, int x
     return height / min(plane.of_depths * std::sqrt(1 + (sqr(across) + sqr(down)) / sqr(plane.texel)), plane.rounding);
 }
 
-/// Whether the four texels about the place all see what is over the receiver: then its ray goes through that, for of what
-/// is convex they are corners of a part. A roof that lies on a steep wall does so where most texels see it under the
-/// wall's plane, as they would see what is beyond a ridge.
+/// Returns whether all four texels around the position see a surface above the receiver. By convexity that surface
+/// then covers the receiver's ray. This detects a roof that touches a steep wall, where most texels see the roof
+/// below the wall's plane, as they would see a surface beyond a ridge.
 bool ShadowMap::is_covered(const Plane& plane, Vec3d place) const {
     const int x = static_cast<int>(std::floor(place.x - 0.5)), y = static_cast<int>(std::floor(place.y - 0.5));
-    const auto over = [&](int column, int row) { return roundings_over_receiver(plane, place, column, row) > kFourDepths; };
+    const auto over = [&](int column,
+                          int row) { return roundings_over_receiver(plane, place, column, row) > kFourDepths; };
     return over(x, y) && over(x + 1, y) && over(x, y + 1) && over(x + 1, y + 1);
 }
 
-/// The texels from x0, y0 on, weighed.
+/// Returns the weighted lit fraction of N × N texels, the first at (x0, y0).
 template <std::size_t N>
-float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0, const std::array<double, N>& across,
+float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int y0,
+                              const std::array<double, N>& across,
                               const std::array<double, N>& down) const {
     const Plane plane = this->plane(receiver, place);
     constexpr int kSide = static_cast<int>(N);
     double dark = 0, contact = 0, known = 0, under = 0;
-    bool touched = false; // also by a texel of no weight
+    bool touched = false; // also by a texel of zero weight
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column) {
             const int x = x0 + column, y = y0 + row;
@@ -137,21 +144,24 @@ float ShadowMap::lit_fraction(const Receiver& receiver, Vec3d place, int x0, int
             const double right = x + 0.5 - place.x, below = y + 0.5 - place.y;
             const double change = plane.dx * right + plane.dy * below, over = seen - (plane.at + change);
             const double beside = max(std::abs(right), std::abs(below));
-            const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) * beside; };
+            const auto slack = [&](Vec2d heights) { return plane.rounding + (change < 0 ? heights.y : heights.x) *
+                beside; };
             if (over < -slack(plane.falling)) continue;
             const bool near = over <= slack(plane.rising);
-            const bool blocks = over > plane.rounding && (!near || roundings_over_receiver(plane, place, x, y) > kDepths);
+            const bool blocks = over > plane.rounding &&
+                (!near || roundings_over_receiver(plane, place, x, y) > kDepths);
             if (blocks && seen <= plane.at) continue;
             const double weight = across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)];
             (over < -plane.rounding ? under : known) += weight;
             if (blocks) (near ? contact : dark) += weight;
             touched |= blocks && near;
         }
-    // Where facets are about as fine as the map's texels, its differences mix the slopes of several, and some seem to rise over
-    // the receiver's plane. Of what lies on the receiver's surface most texels tell; of a veil on it those that it stops.
+    // Where facets are about as small as texels, depth differences mix the slopes of several facets, and some texels
+    // wrongly seem to rise above the receiver's plane. Contact with an opaque surface therefore counts only if most
+    // texels report it. Contact with a dithered alpha-blended layer always counts.
     if (layered_ || dark + contact > kContactsShade * (known + under)) dark += contact;
     if (!layered_ && dark > 0 && known < kUnsure && is_covered(plane, place)) return 0;
-    // Beside what lies on the receiver's surface there may be more of it, under the plane: then that is no ridge.
+    // Next to a contact, a surface below the plane may belong to the contacting object, so it does not prove a ridge.
     if (!touched) known += under;
     return static_cast<float>(1 - dark / max(known, kLeastKnown));
 }

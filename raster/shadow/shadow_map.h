@@ -1,4 +1,4 @@
-// Shadow maps: what a light sees hides the rest from it (Williams 1978, «Casting Curved Shadows on Curved Surfaces»).
+// This header declares shadow maps (Williams 1978, "Casting Curved Shadows on Curved Surfaces").
 #pragma once
 
 #include "common/image/image.h"
@@ -9,71 +9,78 @@
 
 namespace duet::raster {
 
-/// A point that may lie in a shadow.
+/// A receiver is a point that may be in shadow.
 struct Receiver {
     Vec3d p;
-    Vec3d n;          ///< unit normal of its plane, on the side that is seen
-    double error = 0; ///< how far p may be off its plane, metres
+    Vec3d n; ///< unit normal of its plane, on the visible side
+    double error = 0; ///< largest distance of p from its plane, meters
 };
 
-/// The depths that a light sees through one camera, each at the centre of its texel, as exact as any picture's.
+/// A shadow map stores the depths that a light sees through one camera. Each is sampled at its texel's center, as
+/// exactly as in any rendered image.
 class ShadowMap {
 public:
-    /// Draws `casters`, depths alone, onto side × side texels.
+    /// Renders the depths of `casters` into side × side texels.
     ShadowMap(const Prepared& casters, const Camera& camera, int side, int threads);
 
-    /// Where a point is seen: texels from the upper left corner, and depth. Empty where that is nearer than `margin`
-    /// texels to the map's edge, beyond it, or not before the light.
+    /// Projects a point to texels from the upper left corner, and depth. The result is empty where the point is
+    /// within `margin` texels of the map's edge, outside the map, or behind the near plane.
     std::optional<Vec3d> place(Vec3d p, double margin) const;
-    /// The part of a point light's or a sun's light that arrives, in [0, 1]: percentage-closer filtering (Reeves,
-    /// Salesin and Cook 1987) over 4 × 4 texels, weighed by the quadratic B-spline about the point's place: an edge is
-    /// blurred over kFilterRadius texels to both sides. `place` is the receiver's, kMargin or more from the edge.
-    ///
-    /// Where surfaces that let a part of the light through are dithered over 4 × 4 texels (raster/visibility/layered_nearness.h), the
-    /// filter is the box of 4 texels about the point's place instead, over 5 × 5 of them: in each direction it takes
-    /// every rank of the pattern for as much as any other, wherever the place is, so that nothing of the pattern is left,
-    /// and an edge is blurred over kLayeredRadius texels.
-    ///
-    /// Each texel's depth is compared with that of the receiver's *plane* at the texel's centre (Isidoro 2006, «Shadow
-    /// Mapping: GPU-based Tips and Techniques», receiver plane depth bias). On a plane both are the same number but for
-    /// rounding, however steep the light: there is no slope to be guessed. A texel says
-    /// - dark, if it sees something over that, under whose own plane the receiver is: of two points of which each is on the
-    ///   lit side of the other's plane neither shades the other, as on the facets of a valley, however light grazes them and
-    ///   however steeply they meet. The plane is what the map has around the texel. What is on the receiver's own ray has no
-    ///   slack at all, and shades at any contact, as a roof the wall that it lies on. What rises no more than facets of one
-    ///   surface do shades where most texels are dark.
-    /// - nothing, if it sees something behind that, steeper than the facets of a ridge: the receiver's surface ends before,
-    ///   and what light there is beyond its edge does not leak back around it. Nor if what stands over the plane is farther
-    ///   from the light than the receiver.
-    /// - lit, else: it sees the receiver's surface. What is under the plane says so only where nothing lies on the receiver.
+    /// Returns the unshadowed fraction of a point light's or a sun's light, in [0, 1]. This is percentage-closer
+    /// filtering (Reeves, Salesin and Cook 1987) over 4 × 4 texels with the weights of the quadratic B-spline. It
+    /// blurs an edge over kFilterRadius texels to each side. `place` is the receiver's projected position, at least
+    /// kMargin texels from the edge.
+    /// If alpha-blended surfaces are dithered over 4 × 4 texels (raster/visibility/layered_nearness.h), the filter is
+    /// instead a box of 4 texels over 5 × 5 of them. In each direction the box weights every rank of the dither
+    /// matrix equally at any position, so the pattern cancels. An edge is blurred over kLayeredRadius texels.
+    /// Each texel's depth is compared with the depth of the receiver's *plane* at the texel's center (Isidoro 2006,
+    /// "Shadow Mapping: GPU-based Tips and Techniques", receiver plane depth bias). On a plane both are equal up to
+    /// rounding, at any slope, so no slope-scaled bias is needed. A texel counts as
+    /// - dark, if it sees a surface above the receiver's plane, and the receiver is below the tangent plane of that
+    /// surface. If each of two points is on the lit side of the other's plane, neither shades the other. So the
+    /// facets of a concave surface do not shade each other, at any angle of light. The tangent plane is estimated
+    /// from the map around the texel. A surface on the receiver's own ray has no tolerance and shades at any contact,
+    /// as a roof shades the wall that it touches. A surface that rises no more than the facets of one surface shades
+    /// only where most texels are dark.
+    /// - unknown, if it sees a surface below the plane that is steeper than the facets of a ridge. The receiver's
+    /// surface ends before that texel, and light beyond its edge must not leak back. A surface above the plane but
+    /// farther from the light than the receiver is also unknown.
+    /// - lit, otherwise: it sees the receiver's own surface. A texel below the plane counts as lit only if nothing
+    /// touches the receiver.
     float lit_fraction(const Receiver& receiver, Vec3d place) const;
 
     static constexpr double kFilterRadius = 1.5, kLayeredRadius = 2;
-    static constexpr double kMargin = 2.5; ///< texels that a receiver needs about its place, by either filter
-    // Bounds, not measures: the tests of hollows, ridges and contacts pass with any steepness from 0.5 to 5, any part of the
-    // elevation from 0.9 to 0.99, falling from 0 to 0.9, 48 to 200 times the rounding, least known from 0 to 0.25 and unsure
-    // from 0.75 to 1, one at a time.
-    static constexpr double kSteepest = 0.5;    ///< facets of one surface meet at up to 27°,
-    static constexpr double kOfElevation = 0.9; ///< or, on the light's side, at most nearly as steeply as light falls;
-    static constexpr double kFalling = 0.23;    ///< those under the receiver's plane at less of it
-    static constexpr double kDepths = 64; ///< roundings of a texel's own plane (roundings_over_receiver): its depths are solved in float
-    static constexpr double kFourDepths = 5; ///< the same of texels up to one beside the place: of a depth, and two differences of two
-    static constexpr double kUnsure = 0.75; ///< of the filter: where texels of less weight say anything, what covers the receiver counts
-    static constexpr double kContactsShade = 0.75; ///< of the texels that say anything: where less block, contacts do not shade
-    static constexpr double kLeastKnown = 0.25; ///< of the filter: texels of less weight together do not decide alone
+    static constexpr double kMargin = 2.5; ///< texels that a receiver needs around its position, for either filter
+    // These constants are bounds rather than tuned values. The tests of concave surfaces, ridges and contacts pass
+    // with steepness from 0.5 to 5, fraction of the elevation from 0.9 to 0.99, falling from 0 to 0.9, 48 to 200
+    // roundings, least known from 0 to 0.25, and unsure from 0.75 to 1, varied one at a time.
+    static constexpr double kSteepest = 0.5; ///< facets of one surface meet at up to 27° (tangent)
+    /// On the light's side: the largest tangent, as a fraction of the light's elevation.
+    static constexpr double kOfElevation = 0.9;
+    static constexpr double kFalling = 0.23; ///< the same for facets below the receiver's plane
+    /// Unit: rounding of a texel's own plane (roundings_over_receiver); depths are computed in float.
+    static constexpr double kDepths = 64;
+    /// The same for texels up to one away: a depth and two differences of two depths.
+    static constexpr double kFourDepths = 5;
+    /// Filter weight: if the texels with a result weigh less, is_covered() decides.
+    static constexpr double kUnsure = 0.75;
+    /// Fraction of the texels with a result: contacts shade only above it.
+    static constexpr double kContactsShade = 0.75;
+    static constexpr double kLeastKnown = 0.25; ///< filter weight: texels of less total weight do not decide alone
 
     int side() const { return nearness_.width(); }
-    /// near / depth at a texel's centre; 0 where nothing is seen.
+    /// Returns the reversed depth, near / depth, at a texel's center; 0 where nothing is visible.
     float nearness(int x, int y) const { return nearness_(x, y); }
     const ImageFloat& nearness() const { return nearness_; }
     double near() const { return view_.near; }
-    /// The width of a texel at a depth, metres.
+    /// Returns the width of a texel at a depth, in meters.
     double texel(double depth) const;
 
 private:
     struct Plane;
     Plane plane(const Receiver& receiver, Vec3d place) const;
-    /// As Plane::at, what a texel sees; nothing is far away, but no infinity, of which no differences could be taken.
+    /// Returns a texel's value in the units of Plane::at. An empty texel gives a large finite depth, so that
+    /// differences remain finite.
     double seen(int x, int y) const {
         const double nearness = max(static_cast<double>(nearness_(x, y)), 1e-30);
         return orthographic_ ? -view_.near / nearness : nearness;
@@ -85,9 +92,9 @@ private:
                        const std::array<double, N>& down) const;
 
     Pinhole view_;
-    bool orthographic_, layered_; ///< layered: some of what it sees is dithered
-    /// near / depth; 0 where nothing is seen. Of a point's plane it is linear in the texels' coordinates, seen from a
-    /// point; seen from infinitely far depth itself is.
+    bool orthographic_, layered_; ///< layered_: alpha-blended casters are dithered
+    /// Stores near / depth; 0 where nothing is visible. For a plane this is linear in texel coordinates in a
+    /// perspective view; in an orthographic view the depth itself is.
     ImageFloat nearness_;
 };
 

@@ -1,4 +1,4 @@
-// How much of a light is hidden by blockers at a known fraction of the way.
+// This file computes how much of a light is hidden by blockers at a known fraction of the way.
 #include "raster/shadow/light_cone.h"
 
 #include "common/sampling/sobol.h"
@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kTaps = TapRange::kBlocks * TapRange::kBlock;
 
-/// Points of a light of each kind, as parts of its edges: a (0,2)-net, of which each block is a coarser one.
+/// Stores sample points of a light of each kind, in units of its edges. They form a (0,2)-net, and each block of it
+/// is a coarser net.
 struct TapTable {
     alignas(64) std::array<float, kTaps> a, b;
 };
@@ -33,38 +34,43 @@ const TapTable& taps_of(Emitter::Kind kind) {
 
 } // namespace
 
-/// How many of some taps are dark, of those that one face sees. A tap follows the line from the receiver to a point of the
-/// light up to the plane, parallel to the light, in which blockers are taken to be: of the four texels about it there those
-/// are dark, weighed by how near they are, that see something between receiver and light.
-///
-/// What is seen there may stand before or behind that plane, and the line from the receiver to it pass the light by: of a
-/// plate that leans towards the light only the far edge may hide a part of it, and the rest is seen beside that edge. It
-/// hides nothing itself. Whether what it belongs to hides the point is then asked once more, where it stands: the line and
-/// the depths that the map has are brought together as by the first step of an iteration (Policarpo, Oliveira and Comba
-/// 2005, «Real-Time Relief Mapping on Arbitrary Polygonal Surfaces», search a height field so, too).
+/// Returns how many taps of a range are dark, among those that one face sees. A tap follows the line from the
+/// receiver to a point of the light, up to the plane parallel to the light in which the blockers are assumed to lie.
+/// Of the four texels around that position, those that see a surface between receiver and light count as dark, with
+/// bilinear weights.
+/// The surface in such a texel may be in front of or behind the assumed plane, and the line from the receiver to it
+/// may miss the light. On a plate tilted toward the light, for example, only the far edge may hide part of the light,
+/// and the nearer part of the plate is seen beside that edge. A texel whose line misses the light does not count.
+/// Instead, the tap is repeated at the depth of its surface. This is the first step of an iteration that intersects
+/// the line with the depth map (Policarpo, Oliveira and Comba 2005, "Real-Time Relief Mapping on Arbitrary Polygonal
+/// Surfaces", intersect a height field in the same way).
 float SoftLight::dark_taps(float blocker, const Cone& cone, std::size_t face, int first, int count) const {
     const ShadowMap& map = *cube_.faces[face];
     const TapTable& table = taps_of(kind_);
     const float* nearness = map.nearness().pixels().data();
     const Vec3 n = cone.n, axis = cone.o.axis * cone.per_height;
-    // A texel in the direction d = (x, y, 1) stands at q = d · near / nearness: over the plane where n·(q − p) > slack,
-    // between where 0 < axis·(q − p) < 1. All times nearness, so that nothing is divided.
+    // A texel in the direction d = (x, y, 1) has its surface at q = d · near / nearness. It is above the receiver's
+    // plane where n·(q − p) > slack, and between receiver and light where 0 < axis·(q − p) < 1. All terms are
+    // multiplied by the reversed depth to avoid divisions.
     const Floats over(dot(n, cone.p) + cone.slack), before(dot(axis, cone.p)), none(0.0f), one(1.0f), near(cube_.near);
     const float per_texel = cube_.near / cube_.scale;
-    const Floats margin(per_texel * cone.per_metre); // texels of which a tap takes a part are up to one beside it
+    const Floats margin(per_texel * cone.per_metre); // weighted texels are up to one texel away from the tap
     struct Look {
-        Floats dark, beside, fraction; ///< what hides the light; what passes it by, and where that stands, times its weight
+        /// Weights of texels that hide the light, and of those that miss it; weighted fraction of the latter.
+        Floats dark, beside, fraction;
     };
     const auto look = [&](const Floats& a, const Floats& b, const Floats& f) {
         const Floats u = a * f, v = b * f, left = one - f;
-        const Vec3T<Floats> q = spread<Floats>(cone.p) * left + spread<Floats>(cone.o.corner) * f + spread<Floats>(cone.o.u) * u +
+        const Vec3T<Floats> q = spread<Floats>(cone.p) * left + spread<Floats>(cone.o.corner) * f +
+            spread<Floats>(cone.o.u) * u +
                                 spread<Floats>(cone.o.v) * v;
-        // Of what is beyond the face nothing is looked up.
+        // Positions outside the face are not looked up.
         const auto seen_here = (q.z > none) & (xsimd::abs(q.x) <= q.z) & (xsimd::abs(q.y) <= q.z);
         Look result{none, none, none};
         if (!xsimd::any(seen_here)) return result;
         const Floats per_depth = xsimd::select(seen_here, Floats(cube_.scale) / q.z, none);
-        const Floats x = Floats(cube_.middle - 0.5f) + q.x * per_depth, y = Floats(cube_.middle - 0.5f) - q.y * per_depth;
+        const Floats x = Floats(cube_.middle - 0.5f) + q.x * per_depth, y = Floats(cube_.middle - 0.5f) - q.y *
+            per_depth;
         const Floats x0 = xsimd::floor(x), y0 = xsimd::floor(y), fx = x - x0, fy = y - y0, gx = one - fx, gy = one - fy;
         const Ints place = truncated(y0 * Floats(static_cast<float>(map.side())) + x0);
         const Floats right = (x0 + Floats(0.5f - cube_.middle)) * Floats(per_texel);
@@ -74,7 +80,8 @@ float SoftLight::dark_taps(float blocker, const Cone& cone, std::size_t face, in
             const Vec3T<Floats> d{right + Floats(per_texel * static_cast<float>(step_x)),
                                   up - Floats(per_texel * static_cast<float>(step_y)), near};
             const Floats part = dot(spread<Floats>(axis), d) - before * seen;
-            const auto between = seen_here & (dot(spread<Floats>(n), d) - over * seen > none) & (part > none) & (part < seen);
+            const auto between = seen_here & (dot(spread<Floats>(n), d) - over * seen > none) & (part > none) &
+                (part < seen);
             if (!xsimd::any(between)) return;
             const auto hides = cone.meets(d - spread<Floats>(cone.p) * seen, part, margin);
             result.dark += xsimd::select(between & hides, weight, none);
@@ -93,7 +100,8 @@ float SoftLight::dark_taps(float blocker, const Cone& cone, std::size_t face, in
         const auto beside = found.beside > none;
         dark += found.dark;
         if (!xsimd::any(beside)) continue;
-        const Look there = look(a, b, xsimd::select(beside, found.fraction / max(found.beside, Floats(1e-6f)), Floats(blocker)));
+        const Look there = look(a, b,
+                xsimd::select(beside, found.fraction / max(found.beside, Floats(1e-6f)), Floats(blocker)));
         dark += xsimd::select(beside, max(there.dark - found.dark, none), none);
     }
     return xsimd::hadd(dark);

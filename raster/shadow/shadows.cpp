@@ -11,12 +11,12 @@ namespace {
 
 constexpr int kSeenWidth = 256;                      ///< pixels
 constexpr double kGuard = 4;                         ///< texels
-constexpr std::int64_t kCubeTexels = 64 * (1 << 20);  ///< over all cubes, at most
-constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< and over all other maps
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
+constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, at most
 constexpr int kLeastSide = 64;                        ///< texels, of any map
-constexpr double kFloor = 1e-4;                       ///< of the scene's size: how far things may dip into a floor
+constexpr double kFloor = 1e-4; ///< relative to the scene's size: how far objects may penetrate a floor
 
-/// A scene's prepared data, with some of its objects: what a shadow map needs of it.
+/// Returns a scene's prepared data restricted to some of its objects, as a shadow map needs it.
 PreparedData with_objects(const PreparedData& data, const std::vector<bool>& kept) {
     PreparedData result{.scene = data.scene,
                         .objects = data.objects,
@@ -46,15 +46,16 @@ Box3 bounds_of(const PreparedData& data, const std::vector<bool>& kept) {
     return box;
 }
 
-/// Whether the object is a quad that all the scene lies on one side of, and the sun, too: it shades nothing, so that
-/// views need not reach as far as it does.
+/// Returns whether the object is a quad with the whole scene and the sun on one side. Such a quad casts no shadow, so
+/// views need not cover it.
 bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_way) {
     const Object& o = scene.objects[object];
     const auto* list = std::get_if<QuadList>(&scene.shapes[o.shape]);
     if (list == nullptr || list->quads.size() != 1 || o.moving) return false;
     const Quad& quad = list->quads.front();
     const Vec3d p = transform_point(Mat4d(o.to_world), Vec3d(quad.corner));
-    const Vec3d u = transform_vector(Mat4d(o.to_world), Vec3d(quad.u)), v = transform_vector(Mat4d(o.to_world), Vec3d(quad.v));
+    const Vec3d u = transform_vector(Mat4d(o.to_world), Vec3d(quad.u)), v =
+        transform_vector(Mat4d(o.to_world), Vec3d(quad.v));
     Vec3d n = normalize(cross(u, v));
     if (dot(n, Vec3d(sun_way)) > 0) n = -n;
     const Box3& box = scene.bounds;
@@ -73,7 +74,7 @@ bool only_shines(const Scene& scene, std::uint32_t object) {
                        [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
 }
 
-/// What the scene's camera sees, through a picture of few pixels.
+/// Returns the points that the scene's camera sees, from a low-resolution depth image.
 std::vector<SeenPoint> seen_points(const PreparedData& data, int threads) {
     const Scene& scene = data.scene;
     const double aspect = static_cast<double>(scene.height) / scene.width;
@@ -88,7 +89,8 @@ std::vector<SeenPoint> seen_points(const PreparedData& data, int threads) {
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
             if (const std::optional<Vec3> p = screen.seen(x, y))
-                result.push_back({Vec3d(screen.absolute(*p)), static_cast<double>(screen.pixel_size(screen.depth(x, y)))});
+                result.push_back({Vec3d(screen.absolute(*p)),
+                                  static_cast<double>(screen.pixel_size(screen.depth(x, y)))});
     return result;
 }
 
@@ -98,7 +100,7 @@ std::vector<SurfaceLight> surface_lights(const Scene& scene, const std::vector<s
     return result;
 }
 
-/// The light's plane, rounded: what primitives of one object that lie in one plane have in common.
+/// Returns the light's plane, rounded, as a key that groups coplanar primitives of one object.
 std::array<long, 4> plane_key(const SurfaceLight& light, double scene_size) {
     const Emitter e = Emitter::of(light);
     const auto rounded = [](double x) { return std::lround(x * 1e3); };
@@ -106,7 +108,7 @@ std::array<long, 4> plane_key(const SurfaceLight& light, double scene_size) {
             rounded(dot(e.normal, e.center) / scene_size * 10)};
 }
 
-/// A light cut into n × n of its like; a triangle or a ball stays whole.
+/// Splits a parallelogram into n × n equal ones; a triangle or a sphere stays whole.
 std::vector<Emitter> pieces(const Emitter& emitter, int n) {
     if (emitter.kind != Emitter::Kind::kParallelogram || n == 1) return {emitter};
     std::vector<Emitter> result(static_cast<std::size_t>(n * n), emitter);
@@ -125,9 +127,11 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
       side_(settings.shadow_map_side), cube_side_(settings.shadow_map_side / 2) {
     sources_ = find_sources(scene_, settings.shadow_cells);
     const Camera& camera = scene_.camera;
-    const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 && camera.shutter_open != camera.shutter_close;
+    const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 &&
+        camera.shutter_open != camera.shutter_close;
     for (int i = 0; i < (moving ? kMoments : 1); ++i)
-        moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) * (i + 0.5) / kMoments
+        moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) *
+                           (i + 0.5) / kMoments
                                   : camera.shutter_open);
     std::vector<SeenPoint> seen;
     if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
@@ -138,13 +142,15 @@ Shadows::Shadows(const PreparedData& data, const Settings& settings)
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
         sources_[i].moments.resize(moments_.size());
         const std::vector<Camera> views = views_of(data, seen, sources_[i]);
-        for (std::size_t k = 0; k < moments_.size(); ++k) draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
+        for (std::size_t k = 0; k < moments_.size(); ++k)
+            draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
     }
 }
 
-/// Of suns, and of spots that are narrow enough: the cameras of their maps, the same at all moments. Other lights have cubes; a
-/// sun over which nothing stands has no maps.
-std::vector<Camera> Shadows::views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const {
+/// Returns the cameras of the maps of suns and of sufficiently narrow spots, which are the same at all moments. Other
+/// lights use cubes. A sun without casters has no maps.
+std::vector<Camera> Shadows::views_of(const PreparedData& data, const std::vector<SeenPoint>& seen,
+                                      const Source& source) const {
     const Light& light = scene_.lights[source.lights.front()];
     if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuard);
     const auto* sun = std::get_if<SunLight>(&light);
@@ -156,7 +162,7 @@ std::vector<Camera> Shadows::views_of(const PreparedData& data, const std::vecto
     return sun_views(*sun, bounds, scene_.camera, seen, side_, kGuard);
 }
 
-/// Coarser maps where there are so many that they would take more than kViewTexels or kCubeTexels.
+/// Halves the resolution of the maps until they take at most kViewTexels and kCubeTexels.
 void Shadows::fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen) {
     std::size_t views = 0, cubes = 0;
     for (const Source& source : sources_) {
@@ -196,13 +202,15 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
         for (const std::size_t i : source.lights) sum += light_power(scene.lights[i], radius);
         return sum;
     };
-    std::stable_sort(sources.begin(), sources.end(), [&](const Source& a, const Source& b) { return power(a) > power(b); });
+    std::stable_sort(sources.begin(), sources.end(),
+                     [&](const Source& a, const Source& b) { return power(a) > power(b); });
     for (std::size_t i = kMostSources; i < sources.size(); ++i) unshadowed_ += sources[i].lights.size();
     sources.resize(kMostSources);
     return sources;
 }
 
-void Shadows::draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source, double moment,
+void Shadows::draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source,
+                   double moment,
                    Maps& maps) {
     std::vector<bool> kept(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
@@ -220,7 +228,8 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, std::span
     if (surface_light == nullptr) {
         const auto* spot = std::get_if<SpotLight>(&light);
         const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
-        maps.cubes.push_back(draw_cube(caster_scene(data, kept), center, nullptr, true, moment, cube_side_, settings.threads));
+        maps.cubes.push_back(draw_cube(caster_scene(data, kept), center, nullptr, true, moment, cube_side_,
+                                       settings.threads));
         return;
     }
 
@@ -229,7 +238,7 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, std::span
     const Prepared casters = caster_scene(data, kept);
     for (const Emitter& cell : source.cells) {
         const bool flat = cell.kind != Emitter::Kind::kBall;
-        // Beside it or on it there may be other things in its plane: it looks from just before that.
+        // Other objects may lie in the light's plane, so the camera is slightly in front of it.
         const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
         maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
                                           surface.two_sided, moment, cube_side_ / 2, settings.threads),
@@ -241,7 +250,7 @@ void Shadows::draw(const PreparedData& data, const Settings& settings, std::span
 CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment,
                            int side, int threads) {
     CubeMap cube;
-    cube.center = Vec3d(Vec3(center)); // as cameras round it
+    cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
     std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -260,8 +269,9 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
     if (source_of_[light] == sources_.size()) return 1;
     const Source& source = sources_[source_of_[light]];
     const SurfacePoint& surface = point.surface;
-    // Of a smooth mesh it is the surface that the facets stand for, as a path tracer's shadow rays start there: light comes
-    // over its horizon, to facets, too, that are turned away from it, and would be lit whatever is before them.
+    // On a smooth mesh the receiver is on the smooth surface that the facets approximate, where a path tracer's
+    // shadow rays start (`lift` and `horizon` of the shading-terminator fix). Light above its horizon also reaches
+    // facets that are turned away; they would otherwise be lit regardless of blockers.
     const double error = static_cast<double>(dot(abs(point.horizon), surface.p_error));
     Receiver receiver{Vec3d(surface.p) + Vec3d(surface.lift), Vec3d(point.horizon), error};
     std::size_t moment = 0;
@@ -276,7 +286,7 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
             const Mat4d way = Mat4d(then.to_world) * Mat4d(now.to_object);
             receiver.p = transform_point(way, receiver.p);
             receiver.n = normalize(transform_normal(inverse_affine(way), receiver.n));
-            receiver.error *= 4; // the maps' rounding, too
+            receiver.error *= 4; // includes the rounding of the maps
         }
     }
     return visibility(source, source.moments[moment], receiver, taps);
@@ -284,12 +294,14 @@ float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange
 
 float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
     if (!source.cells.empty()) {
-        // The samples of a pixel share the pieces among them, too, where there is one for each.
+        // If the number of cells allows it, the samples of a pixel also divide the cells among themselves.
         const std::size_t count = maps.cells.size();
         const bool share = taps.count == TapRange::kBlock && count % TapRange::kBlocks == 0;
-        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share ? TapRange::kBlocks : 1;
+        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share
+            ? TapRange::kBlocks : 1;
         float sum = 0;
-        for (std::size_t i = first; i < count; i += step) sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
+        for (std::size_t i = first; i < count; i += step)
+            sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
         return sum * static_cast<float>(step) / static_cast<float>(count);
     }
     for (const CubeMap& cube : maps.cubes) {
@@ -299,7 +311,8 @@ float Shadows::visibility(const Source& source, const Maps& maps, const Receiver
         return place ? face.lit_fraction(receiver, *place) : 1;
     }
     for (const ShadowMap& view : maps.views)
-        if (const std::optional<Vec3d> place = view.place(receiver.p, ShadowMap::kMargin)) return view.lit_fraction(receiver, *place);
+        if (const std::optional<Vec3d> place = view.place(receiver.p, ShadowMap::kMargin))
+            return view.lit_fraction(receiver, *place);
     return 1;
 }
 

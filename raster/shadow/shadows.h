@@ -1,4 +1,4 @@
-// What of the lights' light arrives: each light's maps, and how to read them.
+// This header declares the shadow maps of all lights and their lookup.
 #pragma once
 
 #include "raster/light/direct.h"
@@ -12,51 +12,57 @@
 
 namespace duet::raster {
 
-/// All shadow maps of a scene. They do not depend on the view.
-///
-/// A scene that moves has them for several moments of the shutter's interval; a moving receiver is looked up where it
-/// stood at the map's moment, so that nothing shades itself by its own motion.
+/// Holds all shadow maps of a scene; they do not depend on the view.
+/// A scene with motion has maps for several moments of the shutter interval. A moving receiver is looked up at its
+/// position at the map's moment, so that an object does not shade itself by its own motion.
 class Shadows {
 public:
-    /// `data` is all but the shadows of a prepared scene. A sample more than one a pixel asks for several moments.
+    /// `data` is the prepared scene except for its shadows. More than one sample per pixel causes several moments to
+    /// be rendered if the scene moves.
     Shadows(const PreparedData& data, const Settings& settings);
 
-    /// The part of the light of Scene::lights[light] that arrives at the point, in [0, 1]. The same for any number of
-    /// threads. 1 for lights that have no map. `taps`: of each piece of a light with an area.
+    /// Returns the unshadowed fraction of the light Scene::lights[light] at the point, in [0, 1]. It is the same for
+    /// any number of threads, and 1 for lights without maps. `taps` is the range of taps for each cell of an area
+    /// light.
     float visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const;
 
-    std::size_t unshadowed() const { return unshadowed_; } ///< lights left without, weakest first
+    /// Number of lights without maps; the weakest lose them first.
+    std::size_t unshadowed() const { return unshadowed_; }
     std::size_t moments() const { return moments_.size(); }
-    bool coarser() const { return coarser_; } ///< than Settings::shadow_map_side asks for, as so many would not fit in memory
+    /// Whether maps are smaller than Settings::shadow_map_side requests, to limit memory.
+    bool coarser() const { return coarser_; }
     std::int64_t memory_bytes() const { return memory_bytes_; }
 
     static constexpr int kMoments = 8;
     static constexpr std::size_t kMostSources = 64;
-    static constexpr int kMostCells = 8; ///< along a light's side
+    static constexpr int kMostCells = 8; ///< along each side of a light
 
 private:
-    /// A light's maps at one moment; all empty: none. Views are tried in order; a point light has one cube.
+    /// Holds a light's maps at one moment; a light without maps has all vectors empty. Views are tried in order; a
+    /// point light has one cube.
     struct Maps {
         std::vector<ShadowMap> views;
         std::vector<CubeMap> cubes;
         std::vector<SoftLight> cells; ///< of surface lights: parallel to Source::cells
     };
-    /// What shares maps: one point, spot or sun light; or the surface lights of one object that lie in one plane, or
-    /// that are all of a lamp.
+    /// A source shares maps. It is one point, spot or sun light, or the coplanar surface lights of one object, or all
+    /// surface lights of an object that only emits.
     struct Source {
         std::vector<std::size_t> lights;
-        std::vector<Emitter> cells;     ///< of surface lights: its pieces, each with maps of its own; else none
-        bool lamp = false;              ///< its object, which does nothing but shine, is left out of its maps
+        std::vector<Emitter> cells; ///< pieces of a surface light, each with its own maps; else empty
+        bool lamp = false; ///< its object only emits and is excluded from its own maps
         std::vector<Maps> moments;      ///< parallel to moments_
     };
     std::vector<Source> find_sources(const Scene& scene, int cells);
-    /// `seen`: what the scene's camera sees, where there is a sun.
-    std::vector<Camera> views_of(const PreparedData& data, const std::vector<SeenPoint>& seen, const Source& source) const;
+    /// `seen` holds the points visible to the scene's camera if there is a sun.
+    std::vector<Camera> views_of(const PreparedData& data, const std::vector<SeenPoint>& seen,
+                                 const Source& source) const;
     void fit_sides(const PreparedData& data, const std::vector<SeenPoint>& seen);
-    /// `views`: views_of the source.
-    void draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source, double moment,
+    /// `views` is the result of views_of for the source.
+    void draw(const PreparedData& data, const Settings& settings, std::span<const Camera> views, Source& source,
+              double moment,
               Maps& maps);
-    /// `plane`: of an emitter in one plane, which `back` says shines to both sides.
+    /// `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
     CubeMap draw_cube(const Prepared& casters, Vec3d center, const Emitter* plane, bool back, double moment, int side,
                       int threads);
     float visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const;
@@ -65,7 +71,7 @@ private:
     double scene_size_;
     int side_, cube_side_;
     std::vector<Source> sources_;
-    std::vector<std::size_t> source_of_; ///< of each light; sources_.size(): none
+    std::vector<std::size_t> source_of_; ///< for each light; sources_.size() if it has no maps
     std::vector<double> moments_;
     std::size_t unshadowed_ = 0;
     bool coarser_ = false;

@@ -9,8 +9,9 @@ namespace duet::raster {
 namespace {
 
 constexpr int kNarrowings = 4;
-constexpr float kWorthwhile = 0.8f; ///< a narrower cone is worth another look if it is so much narrower
-constexpr double kThinnest = 1e5; ///< length over width: what is thinner has no outline in floats, and counts as a ball
+constexpr float kWorthwhile = 0.8f; ///< the cone is recomputed only if the bound shrinks at least by this factor
+/// Ratio of length to width; a thinner light is degenerate in float and is treated as a sphere.
+constexpr double kThinnest = 1e5;
 
 } // namespace
 
@@ -22,7 +23,7 @@ SoftLight::SoftLight(CubeMap cube, const Emitter& emitter) : cube_(std::move(cub
         u_ = Vec3(cube_.frame.to_local(emitter.u)), v_ = Vec3(cube_.frame.to_local(emitter.v));
         corner_ = (u_ + v_) * -part;
         radius_ = std::max({length(corner_), length(corner_ + u_), length(corner_ + v_), length(corner_ + u_ + v_)});
-        // In doubles: the difference of products is all of a sliver's area.
+        // Double precision is needed: a sliver's area is a difference of nearly equal products.
         const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
         const double over = 1 / dot(n, n);
         const Vec3d dual_u = cross(v, n) * over, dual_v = cross(n, u) * over;
@@ -37,14 +38,15 @@ SoftLight::SoftLight(CubeMap cube, const Emitter& emitter) : cube_(std::move(cub
     find_closest();
 }
 
-/// What a face sees, but for what stands behind a flat light that shines to one side: a ceiling around it would be nearest
-/// to all.
+/// Returns a face's reversed depths without surfaces behind a flat one-sided light. A ceiling around the light would
+/// otherwise be nearest everywhere.
 ImageFloat SoftLight::before_light(std::size_t face) const {
     ImageFloat image = cube_.faces[face]->nearness();
     if (kind_ == Emitter::Kind::kBall || cube_.faces[5] != nullptr) return image;
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
-            const float right = static_cast<float>(x) + 0.5f - cube_.middle, up = cube_.middle - static_cast<float>(y) - 0.5f;
+            const float right = static_cast<float>(x) + 0.5f - cube_.middle, up = cube_.middle -
+                static_cast<float>(y) - 0.5f;
             if (from_face(face, {right, up, cube_.scale}).z < 0) image(x, y) = 0;
         }
     return image;
@@ -64,14 +66,14 @@ SoftLight::Outline SoftLight::turned(const Outline& outline, std::size_t face) c
 
 std::optional<SoftLight::Outline> SoftLight::outline_from(Vec3 p) const {
     if (kind_ != Emitter::Kind::kBall) {
-        if (p.z == 0) return std::nullopt; // nothing is before a receiver in the light's own plane
+        if (p.z == 0) return std::nullopt; // a receiver in the light's plane has no blockers
         return Outline{{0, 0, p.z < 0 ? 1.0f : -1.0f}, corner_, u_, v_, dual_u_, dual_v_};
     }
     const float distance = length(p);
-    if (!(distance > radius_)) return std::nullopt; // nor within its ball
+    if (!(distance > radius_)) return std::nullopt; // a receiver inside the sphere has none either
     const Vec3 axis = -p / distance;
     const Frame disk = frame_from_normal(axis);
-    // The disk through the centre that fills the cone of the lines that touch the ball.
+    // The disk through the center that fills the cone tangent to the sphere replaces the sphere.
     const float radius = radius_ / safe_sqrt(1 - sqr(radius_ / distance));
     return Outline{axis, {}, disk.s * radius, disk.t * radius, disk.s / radius, disk.t / radius};
 }
@@ -97,12 +99,13 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
         searched = faces(main, main_face, *outline, p, n, reach);
     }
     Blockers blockers = search(searched);
-    bool again = searched.count > 1; // other faces may see what is close to the light
+    bool again = searched.count > 1; // other faces may see blockers close to the light
     if (!(blockers.weights > 0) && !searched.searched_wholly()) {
-        // What is close to the receiver may lie between the texels that were looked at: is it on the line to the centre?
-        bool whole = true; // the main face sees the receiver itself
+        // A blocker close to the receiver may lie between the searched texels, so the texels around the line to the
+        // center are tested.
+        bool whole = true; // the main face contains the receiver itself
         if (const auto window = this->window(main, 0, whole)) add_blockers(main, main_face, *window, blockers);
-        // And at a shadow's edge what is seen of a blocker is smaller than their steps.
+        // At a shadow's edge the visible part of a blocker may be smaller than the search step.
         if (!(blockers.weights > 0)) blockers = search_closely(searched);
         again = true;
     }
@@ -111,16 +114,18 @@ float SoftLight::visibility(const Receiver& receiver, TapRange taps) const {
     const Faces seen = again ? faces(main, main_face, *outline, p, n, blocker) : searched;
     const auto dark = [&](int first, int count) {
         float sum = 0;
-        for (std::size_t i = 0; i < seen.count; ++i) sum += dark_taps(blocker, seen.parts[i]->cone, seen.parts[i]->face, first, count);
+        for (std::size_t i = 0; i < seen.count; ++i)
+            sum += dark_taps(blocker, seen.parts[i]->cone, seen.parts[i]->face, first, count);
         return sum;
     };
     const float few = dark(taps.first, TapRange::kBlock);
-    // Where all of these are dark so are the rest; where none is, blockers were found all the same: it is the shadow's rim,
-    // and others see them.
+    // If all taps of the block are dark, the rest are assumed dark. If none is dark, a blocker was still found, so
+    // the receiver is at the edge of the penumbra and the remaining taps are needed.
     const bool agree = few >= TapRange::kBlock;
     const int rest = taps.count - TapRange::kBlock;
     const float part = agree || rest == 0 ? few / TapRange::kBlock
-                                          : (few + dark(taps.first + TapRange::kBlock, rest)) / static_cast<float>(taps.count);
+                                          : (few + dark(taps.first + TapRange::kBlock,
+                                                        rest)) / static_cast<float>(taps.count);
     return clamp(1 - part, 0.0f, 1.0f);
 }
 

@@ -1,4 +1,4 @@
-// Soft shadows of lights that have an area, from the depths that their centre sees.
+// This header declares soft shadows of area lights, from depth maps rendered at the light's center.
 #pragma once
 
 #include "raster/lanes.h"
@@ -12,28 +12,27 @@
 
 namespace duet::raster {
 
-/// A light of an area, or a piece of one, and the depths seen from its centre.
+/// A soft light is an area light, or a cell of one, with the depths seen from its center.
 class SoftLight {
 public:
     SoftLight(CubeMap cube, const Emitter& emitter);
 
-    /// The part of the light's irradiance that arrives, in [0, 1], estimated from the depths its centre sees:
-    /// percentage-closer soft shadows (Fernando 2005). Blockers are searched in the cone between the receiver and the
-    /// light; their mean place, as a fraction of the way, says how wide the penumbra is; the part of as wide a piece of
-    /// the map that the light sees past them is the answer.
-    ///
-    /// Departures from Fernando's, so that nothing need be guessed, and nothing be grainy:
-    /// - Taps lie where lines from the receiver to points of the light meet the plane, parallel to the light, in which
-    ///   blockers are taken to be, so that the filter has the light's own shape whatever its direction. The points are
-    ///   the same for every receiver.
-    /// - What a tap finds counts where it stands over the receiver's plane, before the light, so that a flat surface does
-    ///   not shade itself, however steep; and, as in the search, only where the line to it from the receiver goes
-    ///   on to the light, so that the walls of a corner are no blockers.
-    /// - How far from the receiver blockers can be is known from the nearest depth in the part of the map that the cone
-    ///   covers; that bounds the cone, and so the part, again and again. What is left is searched texel by texel, up to
-    ///   kSearchedSide × kSearchedRows of them: no blocker is missed at a contact. Where they find none, those blocks of
-    ///   texels are searched again of which the nearest depth may be a blocker's: a shadow's faint rim is no saw of
-    ///   receivers that happened to find what throws it and receivers that did not.
+    /// Returns the unshadowed fraction of the light's irradiance, in [0, 1], estimated from the depths seen from its
+    /// center. The method is percentage-closer soft shadows (Fernando 2005). Blockers are searched in the cone
+    /// between receiver and light. Their mean position, as a fraction of the way to the light, gives the penumbra's
+    /// width. The result is the lit fraction of taps over that width.
+    /// The method differs from Fernando's in order to avoid biases and noise:
+    /// - Taps are placed where lines from the receiver to points of the light meet the assumed plane of the blockers,
+    /// which is parallel to the light. So the filter has the light's own shape in every direction. The points are the
+    /// same for every receiver.
+    /// - A tap counts as dark if its surface is above the receiver's plane and in front of the light, so a flat
+    /// surface never shades itself, at any slope. In the taps and in the search, the line from the receiver to that
+    /// surface must also hit the light, so the walls of a corner are not blockers.
+    /// - The nearest depth in the window that the cone covers bounds the distance of blockers from the receiver. This
+    /// bound shortens the cone and so the window, repeatedly. The final window is searched texel by texel, up to
+    /// kSearchedSide × kSearchedRows texels, so no blocker is missed at a contact. If no blocker is found, the blocks
+    /// of texels whose nearest depth may be a blocker's are searched. Otherwise the faint edge of a penumbra would be
+    /// jagged, since only some receivers would find the blocker.
     float visibility(const Receiver& receiver, TapRange taps) const;
 
     std::int64_t memory_bytes() const;
@@ -42,7 +41,7 @@ public:
     static constexpr double kConcave = 0.25; ///< facets that meet at up to 14° do not shade each other
 
 private:
-    /// The light as a receiver sees it: points corner + a·u + b·v, and what takes them back to a and b.
+    /// The light as seen from a receiver: its points are corner + a·u + b·v, and the dual vectors recover a and b.
     struct Outline {
         Vec3 axis, corner, u, v, dual_u, dual_v;
         Outline turned(std::size_t face) const;
@@ -67,15 +66,16 @@ private:
     void add_blockers(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const;
     void add_blocks(const Cone& cone, std::size_t face, const Window& window, Blockers& blockers) const;
     struct Found;
-    Found found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right, float up,
+    Found found(const Cone& cone, const Floats::batch_bool_type& above, const Floats& nearness, const Floats& right,
+                float up,
                 float block) const;
     float dark_taps(float blocker, const Cone& cone, std::size_t face, int first, int count) const;
 
     CubeMap cube_;
     Emitter::Kind kind_;
-    float radius_ = 0;     ///< of the light about its centre
-    Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< of a flat one, in the cube's frame
-    std::array<Outline, 6> flat_;           ///< the same as each face sees it
+    float radius_ = 0; ///< of the light about its center
+    Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< of a flat light, in the cube's frame
+    std::array<Outline, 6> flat_; ///< the same in each face's coordinates
     std::array<std::unique_ptr<NearestPyramid>, 6> nearest_;
     static constexpr int kWays = 8; ///< cells of directions along a face's side
     std::array<float, 6 * kWays * kWays> closest_{};

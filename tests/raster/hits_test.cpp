@@ -201,7 +201,7 @@ TEST_SUITE("unit") {
             add_instance(scene, 0, stretch);
             finish_scene(scene);
             Camera camera = look(Vec3d(random.vector(2.5)), Vec3d(random.vector(0.5)), 75);
-            if (i % 3 == 0) camera.near = 0.8; // cuts spheres
+            if (i % 3 == 0) camera.near = 0.8; // the near plane cuts spheres
             check_hits(scene, {camera, 64, 48}, 0.02);
         }
     }

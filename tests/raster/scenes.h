@@ -89,8 +89,7 @@ inline raster::Settings hits_only() {
     return settings;
 }
 
-// The oracle follows.
-
+// Holds a hit that the oracle finds, in double precision.
 struct ExactHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double u = 0, v = 0, t = std::numeric_limits<double>::infinity();

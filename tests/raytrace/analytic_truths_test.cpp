@@ -1,6 +1,6 @@
 // These tests compare estimates with exact values, both of parts of the estimators and of whole renders. Each
-// estimate has a million independent samples, so the standard error of the mean follows from their variance. Chance
-// exceeds three standard errors once in 370 times, and once in 260 for a mean over 64 seeds. One of these 55
+// estimate has a million independent samples, so the standard error of the mean follows from their variance. Three
+// standard errors are exceeded by chance once in 370 times, and once in 260 for a mean over 64 seeds. One of these 55
 // comparisons therefore fails by chance once in 5 times. The seeds are fixed. If a change of the random numbers makes
 // one comparison fail, a different seed shows whether that was chance.
 #include "common/light/environment.h"

@@ -157,7 +157,7 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // The bound is six standard errors over ten seeds. Chance exceeds it once in 5,000 times, and one of 16
+    // The bound is six standard errors over ten seeds. It is exceeded by chance once in 5,000 times, and in one of 16
     // comparisons once in 300. The seeds are fixed.
     TEST_CASE("irradiance from quads, triangles and spheres is that of the closed forms") {
         for (int kind = 0; kind < 4; ++kind)

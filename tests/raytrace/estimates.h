@@ -38,8 +38,8 @@ inline Estimate estimate(const Scene& scene, int size, Settings settings, int se
 }
 
 /// Returns the number of standard errors between two estimates, or between an estimate and a value. With ten seeds
-/// each, the distribution is Student's with about 18 and 9 degrees of freedom: chance exceeds 6 once in 90,000 and
-/// once in 5,000 times.
+/// each, the distribution is Student's with about 18 and 9 degrees of freedom: 6 is exceeded by chance once in 90,000
+/// and once in 5,000 times.
 inline double deviations(const Estimate& a, const Estimate& b) {
     return std::abs(a.mean - b.mean) / std::sqrt(a.error * a.error + b.error * b.error);
 }

@@ -94,8 +94,8 @@ TEST_SUITE("unit") {
 }
 
 TEST_SUITE("statistical") {
-    // The bound is six standard errors of the difference over ten seeds each, which chance exceeds once in 90,000
-    // times.
+    // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
+    // 90,000 times.
     TEST_CASE("light samples of many lamps, and of an environment's peaks, give what chance finds") {
         const std::pair<Scene, int> scenes[] = {{many_lamps(), 128}, {under_a_picture(), 256}};
         for (const auto& [scene, naive_samples] : scenes) {

@@ -149,7 +149,7 @@ TEST_SUITE("statistical") {
         }
     }
 
-    // The bound is six standard errors over ten seeds, which chance exceeds once in 5,000 times.
+    // The bound is six standard errors over ten seeds, which is exceeded by chance once in 5,000 times.
     TEST_CASE("in a glowing cavity light sampling adds up to the same sums") {
         const Scene scene = glowing_cavity(0.5f);
         struct Sum {

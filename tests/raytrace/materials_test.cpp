@@ -25,7 +25,8 @@ Scene ball(const Material& material) {
 
 TEST_SUITE("statistical") {
 
-    // The bound is 6 standard errors over ten seeds each, which chance exceeds once in 90,000 times per material.
+    // The bound is 6 standard errors over ten seeds each, which is exceeded by chance once in 90,000 times per
+    // material.
     TEST_CASE("naive path tracing and light samples agree on each material") {
         Diffuse clay{{Rgb(0.7f)}};
         clay.roughness = 1;

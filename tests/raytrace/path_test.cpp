@@ -102,8 +102,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // The bound is six standard errors of the difference over ten seeds each, which chance exceeds once in 90,000
-    // times.
+    // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
+    // 90,000 times.
     TEST_CASE("path tracing with light samples gives what it gives without, moving lamps included") {
         for (const bool moving : {false, true}) {
             CAPTURE(moving);

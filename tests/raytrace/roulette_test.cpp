@@ -72,8 +72,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Each bound is five standard errors, which chance exceeds once in 1.7 million times. A bias of 1 % is at least
-    // five standard errors.
+    // Each bound is five standard errors, which is exceeded by chance once in 1.7 million times. A bias of 1 % is at
+    // least five standard errors.
     TEST_CASE("whatever worth is learned, the mean is the integrating sphere's") {
         const Scene scene = integrating_sphere();
         Settings settings;

@@ -198,8 +198,8 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // Each bound is six standard errors over ten seeds each, which chance exceeds once in 90,000 times. The other
-    // estimator chooses its lights differently or has no components.
+    // Each bound is six standard errors over ten seeds each, which is exceeded by chance once in 90,000 times. The
+    // other estimator chooses its lights differently or has no components.
     TEST_CASE("emission and unshadowed light are what the unshadowed integrator finds, emission and direct light what "
               "the lights integrator finds, by diffuse surfaces and rough metal") {
         const Scene scene = corner(Objects::kDiffuseAndBrushed);

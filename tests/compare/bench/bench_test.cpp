@@ -179,7 +179,7 @@ TEST_SUITE("unit") {
         const auto table = at_equal_times(rows, {0.2, 0.3, 9}, "p");
         REQUIRE(table.size() == 6);
         REQUIRE(table[0].mse);
-        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // that of 2 samples
+        CHECK(table[0].mse->value == doctest::Approx(0.005).epsilon(0.05)); // the error of 2 samples
         CHECK(table[0].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->value == doctest::Approx(0.5).epsilon(0.1));
         CHECK(table[2].to_peer->low() < 0.5);
@@ -217,7 +217,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(worse.rows[0].slower);
         CHECK(worse.unmatched.size() == 2);
 
-        // A busy CPU explains a factor of two in time, but not of three.
+        // On a busy CPU a factor of two in time is accepted, but not a factor of three.
         for (const auto& [seconds, expected] : {std::pair(0.02, false), std::pair(0.03, true)}) {
             SceneResult busy = result_of(measured({synthetic("a", 0, seconds)}));
             busy.processor_share = 0.5;

@@ -288,8 +288,8 @@ TEST_SUITE("unit") {
                         CHECK(found.wrong_shadows == 0);
                         CHECK(found.hits > 150);
                         CHECK(found.twins > 0);
-                        // Rays so close to a silhouette that rounding decides prove nothing. They are few unless the
-                        // rays aim at vertices.
+                        // Rays that pass so close to a silhouette that rounding decides are no evidence. They are few
+                        // unless the rays aim at vertices.
                         const double share = shift < 100 ? 0.02 : instances ? 0.4 : 0.25;
                         if (kind != Kind::kParallelToVertices) CHECK(found.edges < share * found.hits);
                         // Ties are rare except among duplicates.
