@@ -14,7 +14,7 @@ namespace {
 constexpr double kPi = kPiDouble;
 constexpr double kHalfNave = 5, kHalfWidth = 9; // in x: the columns' axes, the outer walls
 constexpr double kEnd = 18, kBay = 6; // in z: the end walls; from column to column
-// Heights of the arches' springing, of the nave's walls, and of the aisles' roofs.
+// These are the heights of the arches' springing, of the nave's walls, and of the aisles' roofs.
 constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6;
 constexpr double kThick = 0.5; // wall thickness
 constexpr int kBays = 6;
@@ -109,7 +109,7 @@ void add_column(MeshBuilder& mesh, double x, double z) {
     constexpr std::array kProfile =
         {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
                                      Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55),
-                                         Vec2d(0.5, 3.9),
+                                     Vec2d(0.5, 3.9),
                                      // Below all of the arches' springing points, whose corners are at 0.65.
                                      Vec2d(0.66, 4.0), Vec2d(0.66, kSpring)};
     constexpr int kRows = 32, kFlutes = 16;
@@ -130,7 +130,7 @@ void add_vault(MeshBuilder& mesh) {
         Sheet sheet{.columns = kVaultColumns, .rows = 240, .point = {}};
         sheet.point = [side](double s, double t) {
             const double z = lerp(-kEnd, kEnd, t);
-            // Fraction of the angle, on each side of the crown.
+            // The gap is a fraction of the angle, on each side of the crown.
             const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z));
             const double angle = kPi / 2 * (side > 0 ? s * (1 - gap) : 1 - (1 - s) * (1 - gap));
             const double coffer = std::max(std::sin(12 * angle) * std::sin(2 * kPi * z / kBay * 3), 0.0);

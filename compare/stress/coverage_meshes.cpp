@@ -146,7 +146,8 @@ std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window) 
 std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window) {
     const Border border = around(random, window);
     const std::size_t columns = 2 + random.below(40);
-    // X coordinates along the upper or lower border: most above or below the window, many close together.
+    // Returns x coordinates along the upper or lower border: most are above or below the window, and many are
+    // close together.
     const auto edge = [&] {
         std::vector<std::int32_t> xs{border.left, border.right};
         while (xs.size() < columns)

@@ -10,9 +10,9 @@
 namespace duet::raster {
 namespace {
 
-/// Relative to the distance between two points: a smaller height above the plane is rounding error.
+/// A height above the plane below this fraction of the distance between two points is rounding error.
 constexpr float kSlack = 1e-3f;
-/// Relative to the distance from the eye: the direction to a nearer point is dominated by rounding.
+/// The direction to a point nearer than this fraction of the distance from the eye is dominated by rounding.
 constexpr float kClosest = 3e-4f;
 constexpr float kFadeFrom = 0.75f; ///< fraction of the radius at which horizons begin to fade
 constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated shading normals may face away
@@ -214,7 +214,7 @@ SkySeenT<Floats> horizon_occlusion(const Screen& screen, const OcclusionPoints& 
         const Floats turned = arc_cosine(cos_gamma), gamma = xsimd::select(sin_gamma < none, -turned, turned);
         all += size * (cos_gamma + gamma * sin_gamma);
         for (const float side : {1.0f, -1.0f}) {
-            // Cosine of the tangent plane's horizon, π/2 from the normal.
+            // `lowest` is the cosine of the tangent plane's horizon, π/2 from the normal.
             const Floats s = Floats(side) * sin_gamma, lowest = -s;
             const Floats highest = search(t * Floats(side), lowest, side > 0 ? jitter : other_jitter);
             const Arc open = arc(Floats(kPi / 2) + Floats(side) * gamma, lowest, cos_gamma, cos_gamma, s);

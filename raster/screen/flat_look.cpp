@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-/// Confidence that the background continues behind a foreground object; see RadiancePyramid.
+/// This is the confidence that the background continues behind a foreground object; see RadiancePyramid.
 constexpr float kNothing = 0.95f;
 
 } // namespace

@@ -8,9 +8,9 @@
 
 namespace duet::raster {
 
-/// Relative to the depth: largest difference between neighboring pixels of one surface.
+/// Neighboring pixels of one surface differ in depth by at most this fraction of the depth.
 inline constexpr float kSameSurface = 0.05f;
-/// Radians: a larger turn is an edge rather than curvature; also the value for an isolated pixel.
+/// In radians: a larger turn is an edge rather than curvature. An isolated pixel also has this value.
 inline constexpr float kSmallTurn = 0.5f;
 
 /// Returns the largest angle in radians between the normal of pixel (x, y) and those of adjacent pixels on the same

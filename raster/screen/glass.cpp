@@ -15,7 +15,7 @@ std::optional<Vec3> refract_out(Vec3 way, Vec3 n, float eta) {
 }
 
 constexpr float kTouching = 1e-3f; ///< relative to the depth: a surface within this distance touches the glass
-/// Heuristic angle in radians by which neighboring rays diverge if their paths through glass differ.
+/// This is a heuristic angle in radians by which neighboring rays diverge if their paths through glass differ.
 constexpr float kParting = 0.3f;
 
 /// Returns whether the surface at a pixel is convex, according to its neighbors' normals.

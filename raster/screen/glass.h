@@ -7,7 +7,7 @@
 
 namespace duet::raster {
 
-/// Maximum number of glass objects along a pixel's ray that are visible through each other.
+/// This is the maximum number of glass objects along a pixel's ray that are visible through each other.
 inline constexpr int kGlassDeep = 4;
 
 /// Computes the light that glass reflects and transmits at a point of the image. Both are looked up along their rays
@@ -39,7 +39,7 @@ private:
         Vec3 p, way;
         Vec3 n; ///< outward, where the ray leaves
         float inside = 0; ///< distance through glass, in meters
-        /// Number of events that make neighboring rays diverge: total internal reflection, or an uncertain exit.
+        /// Counts the events that make neighboring rays diverge: total internal reflection, or an uncertain exit.
         int lost = 0;
     };
 
@@ -58,7 +58,8 @@ private:
     Scenery scenery_;
     Surroundings around_;
     Vec3 p_; ///< relative to the eye
-    /// Width of a pixel here, in meters; angle between neighboring normals, in radians: negative if concave.
+    /// Stores the width of a pixel here, in meters, and the angle between neighboring normals, in radians:
+    /// negative if concave.
     float width_ = 0, turn_ = 0;
     float size_; ///< of the object, in meters
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kPixels = 2; ///< largest distance of neighbors from a point's plane, in pixel widths
 constexpr float kLeastLike = 0.7f; ///< least cosine between normals of one surface
-/// Shorter image side, in pixels, at which a filter of 8 pixels is wide, and narrow.
+/// At these shorter image sides, in pixels, a filter of 8 pixels is wide, and narrow.
 constexpr float kCoarse = 160, kFine = 400;
 /// These are filter weights by distance from the center: a box of 4 pixels, and a box of 8 convolved with one of 4,
 /// which avoids abrupt changes. Both weight each pixel of a 4 × 4 block equally; the second also weights each pattern

@@ -144,7 +144,7 @@ public:
 
 private:
     Vec3d eye_;
-    /// As in Pinhole, relative to pixel (0, 0).
+    /// These vectors are as in Pinhole, but relative to pixel (0, 0).
     Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_;
     std::array<Vec4, 4> to_pixel_;
     float near_;

@@ -8,10 +8,10 @@
 namespace duet::raster {
 namespace {
 
-/// Relative to the distance between two points: a smaller height above the plane is rounding error.
+/// A height above the plane below this fraction of the distance between two points is rounding error.
 constexpr float kSlack = 2e-3f;
-/// ScreenHit::gap per meter behind the nearer side of an occluder; large, since deep behind an occluder only mean
-/// colors are known.
+/// This is ScreenHit::gap per meter behind the nearer side of an occluder. It is large, since deep behind an
+/// occluder only mean colors are known.
 constexpr float kHiddenBlur = 12;
 constexpr int kBesideFirst = 4; ///< pixels along the edge to search beyond twice the offset of the first intersection
 constexpr int kLeastLevel = 3, kMostLevel = 8; ///< blocks of 2^level pixels that lie behind the ray are skipped at once
@@ -344,7 +344,7 @@ private:
     static float in_pixel(float at, int pixel) {
         return clamp(at, static_cast<float>(pixel), static_cast<float>(pixel) + 0.99f);
     }
-    /// Infinity for a zero step, so it is bounded.
+    /// The inverse of a zero step is infinity, so it is bounded.
     static float per(float step) { return std::min(1 / std::abs(step), 1e9f); }
     static float middle(int pixel) { return static_cast<float>(pixel) + 0.5f; }
 
@@ -353,7 +353,8 @@ private:
     ScreenRay ray_;
     Crossing line_;
     float per_step_x_, per_step_y_; ///< steps per pixel
-    /// Pyramid level of the next block; step at which to test it after the last block was not skipped.
+    /// Stores the pyramid level of the next block, and the step at which to test it after the last block was not
+    /// skipped.
     int level_ = kLeastLevel, look_again_ = 3;
     int in_front_ = 0; ///< last step in front of the visible surface
     float hidden_from_ = -1; ///< distance at which the ray became hidden; negative: it did not
@@ -386,7 +387,7 @@ float Scenery::width_beside_own(float x, float y, float width) const {
 }
 
 float Scenery::width_within(float x, float y, float width) const {
-    // Of the coarser mip level, between its pixels.
+    // The reach is that of the coarser mip level, between its pixels.
     return widest(width, [&](float wide) { return one_object(x, y, 2 * wide); });
 }
 

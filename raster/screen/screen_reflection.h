@@ -14,7 +14,7 @@ namespace duet::raster {
 /// way.
 struct Scenery {
     const Screen& all; ///< has a color prepass
-    /// The same view without the front surface of each pixel; null if nothing is transparent.
+    /// This is the same view without the front surface of each pixel, or null if nothing is transparent.
     const Screen* without = nullptr;
     std::uint32_t object = kNoObject; ///< the object that reflects or refracts
 
@@ -46,7 +46,8 @@ struct Scenery {
 struct ScreenHit {
     float x, y;     ///< in pixels
     float distance; ///< from the ray's origin, in meters
-    /// Meters between the pixel's surface and the hit if the color is a guess; scaled up for hidden hits.
+    /// The distance between the pixel's surface and the hit if the color is a guess, in meters, is scaled up for
+    /// hidden hits.
     float gap = 0;
     bool hidden = false; ///< the hit is on an extrapolated flat surface (flat_look) rather than on the visible surface
 };
@@ -56,7 +57,7 @@ struct ScreenRay {
     Vec3 p; ///< relative to the eye, inside or outside the image
     Vec3 n, way; ///< unit: normal of its surface; direction
     bool from_picture = true; ///< p is on a visible surface, which the ray cannot hit at once
-    /// Ignore lights that rays intersect directly (Screen::FirstLook::lamps), as none is on the ray.
+    /// Lights that rays intersect directly (Screen::FirstLook::lamps) are ignored, as none is on the ray.
     bool past_lamps = false;
 };
 

@@ -110,8 +110,8 @@ Rgb Surroundings::picture_or_environment(const Look& look, bool past_lamps, floa
     return blurred ? data_.prefiltered->at(environment, look.way, look.alpha) : radiance(environment, look.way);
 }
 
-/// Returns the reflection of a metal sheet that is hit from behind. The visible front shows lights and sky that its back
-/// does not reflect. For a second reflection the image's color is used. The result is empty for other surfaces.
+/// Returns the reflection of a metal sheet that is hit from behind. The visible front shows lights and sky that its
+/// back does not reflect. For a second reflection the image's color is used. The result is empty for other surfaces.
 std::optional<Rgb> Surroundings::behind_metal(const Look& look, const ScreenHit& hit) const {
     if (look.mirrored_again || hit.hidden) return std::nullopt;
     const auto [x, y] = scenery_.all.pixel_at({hit.x, hit.y, 0});

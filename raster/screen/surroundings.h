@@ -46,7 +46,7 @@ public:
 
     Rgb seen(const Look& look) const;
 
-    /// Limit of PreparedData::lamps; further lights are only visible in the image.
+    /// PreparedData::lamps has at most this many lights; further ones are only visible in the image.
     static constexpr std::size_t kMostLamps = 256;
 
 private:
@@ -58,7 +58,7 @@ private:
     LampSeen nearest_lamp(const Look& look) const;
     /// `past_lamps` says that no light is on the ray, whatever the image's pixels show.
     Rgb picture_or_environment(const Look& look, bool past_lamps, float& distance) const;
-    /// Color of the visible surface at the hit.
+    /// Returns the color of the visible surface at the hit.
     Rgb picture(const Look& look, const ScreenHit& hit, float& distance) const;
     std::optional<Rgb> behind_metal(const Look& look, const ScreenHit& hit) const;
 

@@ -55,16 +55,17 @@ public:
     // with steepness from 0.5 to 5, fraction of the elevation from 0.9 to 0.99, falling from 0 to 0.9, 48 to 200
     // roundings, least known from 0 to 0.25, and unsure from 0.75 to 1, varied one at a time.
     static constexpr double kSteepest = 0.5; ///< facets of one surface meet at up to 27° (tangent)
-    /// On the light's side: the largest tangent, as a fraction of the light's elevation.
+    /// On the light's side the largest tangent is this fraction of the light's elevation.
     static constexpr double kOfElevation = 0.9;
     static constexpr double kFalling = 0.23; ///< the same for facets below the receiver's plane
     /// Unit: rounding of a texel's own plane (roundings_over_receiver); depths are computed in float.
     static constexpr double kDepths = 64;
-    /// The same for texels up to one away: a depth and two differences of two depths.
+    /// This is the same limit for texels up to one away, where a depth and two differences of two depths
+    /// contribute.
     static constexpr double kFourDepths = 5;
     /// Filter weight: if the texels with a result weigh less, is_covered() decides.
     static constexpr double kUnsure = 0.75;
-    /// Fraction of the texels with a result: contacts shade only above it.
+    /// Contacts shade only above this fraction of the texels with a result.
     static constexpr double kContactsShade = 0.75;
     static constexpr double kLeastKnown = 0.25; ///< filter weight: texels of less total weight do not decide alone
 

@@ -56,7 +56,8 @@ float SoftLight::dark_taps(float blocker, const Cone& cone, std::size_t face, in
     const float per_texel = cube_.near / cube_.scale;
     const Floats margin(per_texel * cone.per_metre); // weighted texels are up to one texel away from the tap
     struct Look {
-        /// Weights of texels that hide the light, and of those that miss it; weighted fraction of the latter.
+        /// Stores the weights of texels that hide the light and of those that miss it, and the weighted fraction
+        /// of the way of the latter.
         Floats dark, beside, fraction;
     };
     const auto look = [&](const Floats& a, const Floats& b, const Floats& f) {

@@ -26,7 +26,7 @@ public:
     /// light.
     float visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const;
 
-    /// Number of lights without maps; the weakest lose them first.
+    /// Returns the number of lights without maps; the weakest lights have none.
     std::size_t unshadowed() const { return unshadowed_; }
     std::size_t moments() const { return moments_.size(); }
     /// Whether maps are smaller than Settings::shadow_map_side requests, to limit memory.
