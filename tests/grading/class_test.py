@@ -87,6 +87,8 @@ def test_gradebooks(build, scratch, failures):
     result = json.loads(done.stdout)
     gradescope = json.loads((scratch / "results.json").read_text())
     autolab = json.loads((scratch / "autolab.json").read_text())
+    last = run(build, LAB, wrong, "--autolab", "-").stdout.splitlines()[-1]
+    failures.check(json.loads(last) == autolab, f"--autolab - prints as its last line: {last}")
     tests = gradescope["tests"]
     failures.check(gradescope["score"] == result["earned"] == sum(test["score"] for test in tests) ==
                    sum(autolab["scores"].values()), "the three files differ in the points")

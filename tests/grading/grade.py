@@ -102,6 +102,8 @@ def grade_one(arguments):
     print(report.as_text(result))
     if folder:
         print(f"The page: {folder / 'index.html'} (open it in a browser)")
+    if arguments.autolab == "-":
+        print(json.dumps(report.as_autolab(result), ensure_ascii=False))
 
 
 def grade_all(arguments):
@@ -131,7 +133,7 @@ def parse_arguments():
     parser.add_argument("--images", metavar="FOLDER", type=pathlib.Path,
                         help="write the images of that page as PNG files, named by what they show")
     parser.add_argument("--gradescope", metavar="FILE", help="write the result as Gradescope's results.json")
-    parser.add_argument("--autolab", metavar="FILE", help="write the points as the line of JSON that Autolab reads")
+    parser.add_argument("--autolab", metavar="FILE", help="write the points as the line of JSON that Autolab reads (-: print it as the last line)")
     parser.add_argument("--build", metavar="FOLDER", type=lambda path: pathlib.Path(path).resolve(), default=DEFAULT_BUILD,
                         help="the build folder (default: build/release)")
     arguments = parser.parse_args()

@@ -22,6 +22,7 @@ struct Arguments {
     std::string worker, out;
     std::string until; ///< ends the examination with the item that fails with this text; items of 0 points are left out
     std::uint64_t seed = 1;
+    bool shown = false; ///< examines items of 0 points alone, which show images
     double seconds = 0; ///< the time that a call may take, where the item doesn't say it; 0 for the usual time
     bool trusted = false;
 };
@@ -32,6 +33,8 @@ Arguments read_arguments(int count, char** values) {
         const std::string option = values[i];
         if (option == "--trusted")
             arguments.trusted = true;
+        else if (option == "--shown")
+            arguments.shown = true;
         else if (i + 1 == count)
             throw duet::Error("judge: " + option + " needs a value");
         else if (option == "--worker")
@@ -46,11 +49,11 @@ Arguments read_arguments(int count, char** values) {
             arguments.seconds = std::stod(values[++i]);
         else
             throw duet::Error("judge: unknown option " + option +
-                              "; expected --worker, --out, --seed, --until, --seconds or --trusted");
+                              "; expected --worker, --out, --seed, --until, --seconds, --shown or --trusted");
     }
     if (arguments.out.empty())
         throw duet::Error("usage: judge --out FOLDER [--worker PROGRAM] [--seed N] [--until TEXT] [--seconds N] "
-                          "[--trusted]");
+                          "[--shown] [--trusted]");
     return arguments;
 }
 
@@ -160,7 +163,8 @@ int judge(const Arguments& arguments) {
     int earned = 0, points = 0, index = 0;
     bool done = arguments.worker.empty();
     for (const ItemDefinition& definition : items()) {
-        const bool skipped = done || (definition.points == 0 && !arguments.until.empty());
+        const bool skipped =
+            done || (definition.points == 0 && !arguments.until.empty()) || (definition.points > 0 && arguments.shown);
         Json result =
             skipped ? failed_result(definition, "Not examined.") : run_item_apart(arguments, index, definition);
         ++index;

@@ -9,7 +9,7 @@ import report
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
 section{border-left:6px solid #0a7d4f;padding:.2rem 1rem;margin:1rem 0;background:#f6f7f8}
 section.failed{border-color:#c0392b}section.not_attempted{border-color:#999}
-h2{font-size:1.1rem}pre{overflow:auto;line-height:1.1}figure{display:inline-block;margin:.5rem 1rem .5rem 0}
+h2{font-size:1.1rem}pre{overflow:auto hidden;line-height:1.1}figure{display:inline-block;margin:.5rem 1rem .5rem 0}
 img{image-rendering:pixelated;width:20rem;max-width:100%}figcaption{font-size:.85rem}td{padding:0 1rem 0 0}"""
 
 

@@ -10,9 +10,12 @@ import shutil
 import sys
 import tempfile
 
+import compiling
 import grade
 import labs
+import page
 import selftest
+import variants
 
 sys.path.insert(0, str(labs.SOURCE / "compare" / "lessons"))
 import figures  # noqa: E402
@@ -31,42 +34,46 @@ def read_list(path):
     return makers
 
 
-def draw(lab_id, maker, build, folder):
-    """Grades the answer, or a mistake, and leaves the images in the folder."""
+def text_of(lab_id, maker):
+    """The source of the answer, or of a mistake."""
     answers = selftest.ANSWERS / lab_id
     text = (answers / "answer.cpp").read_text(encoding="utf-8")
-    if maker != "answer":
-        mistakes = {mistake["name"]: mistake for mistake in selftest.read_mistakes(answers / "mistakes.txt")}
-        if maker not in mistakes:
-            raise labs.Unusable(f"figures.txt: {maker} is no mistake of {lab_id}; expected one of {', '.join(mistakes)}")
-        text = selftest.apply(text, mistakes[maker])
-    submission = folder / "lab.cpp"
-    submission.write_text(text, encoding="utf-8")
-    result = grade.grade(lab_id, submission, build, images_folder=folder)
-    if "error" in result:
-        raise labs.Unusable(f"{maker}: {result['error']}")
+    if maker == "answer":
+        return text
+    mistakes = {mistake["name"]: mistake for mistake in selftest.read_mistakes(answers / "mistakes.txt")}
+    if maker not in mistakes:
+        raise labs.Unusable(f"figures.txt: {maker} is no mistake of {lab_id}; expected one of {', '.join(mistakes)}")
+    return selftest.apply(text, mistakes[maker])
+
+
+def draw(lab_id, worker, build, folder):
+    """Leaves the images that the grader shows of a worker in the folder."""
+    folder.mkdir()
+    page.write_images(grade.examine(grade.judge_of(lab_id, build), folder, "--worker", worker, "--shown"), folder, folder)
 
 
 def faults_of(lab_id, build, write):
     """Figures that are not those of the page, a line each; where `write`, makes them so."""
-    page = labs.folder_of(lab_id) / "figures"
+    committed = labs.folder_of(lab_id) / "figures"
     makers = read_list(selftest.ANSWERS / lab_id / "figures.txt")
     listed = [figure for made in makers.values() for figure, _ in made]
-    faults = [f"figures/{path.name} is not in figures.txt" for path in sorted(page.glob("*")) if path.name not in listed]
-    for maker, made in makers.items():
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            draw(lab_id, maker, build, folder)
+    faults = [f"figures/{path.name} is not in figures.txt" for path in sorted(committed.glob("*")) if path.name not in listed]
+    with tempfile.TemporaryDirectory() as name:
+        scratch = pathlib.Path(name)
+        workers = variants.build_workers(lab_id, [text_of(lab_id, maker) for maker in makers], build, scratch)
+        for (maker, made), worker in zip(makers.items(), workers):
+            folder = scratch / maker
+            draw(lab_id, worker, build, folder)
             for figure, image in made:
                 if not (folder / image).exists():
                     faults.append(f"{figure}: {maker} shows no {image}; it shows "
                                   f"{', '.join(sorted(path.name for path in folder.glob('*.png')))}")
                 elif write:
-                    page.mkdir(exist_ok=True)
-                    shutil.copyfile(folder / image, page / figure)
-                elif not (page / figure).exists():
+                    committed.mkdir(exist_ok=True)
+                    shutil.copyfile(folder / image, committed / figure)
+                elif not (committed / figure).exists():
                     faults.append(f"{figure} is not in figures/")
-                elif difference := figures.difference(folder / image, page / figure, build / "bin" / "compare"):
+                elif difference := figures.difference(folder / image, committed / figure, build / "bin" / "compare"):
                     faults.append(f"{figure} differs from the committed one: {difference}")
     return faults
 
@@ -79,7 +86,7 @@ def main():
     arguments = parser.parse_args()
     try:
         faults = faults_of(arguments.id, arguments.build.resolve(), arguments.write)
-    except labs.Unusable as error:
+    except (labs.Unusable, compiling.Refused) as error:
         print(f"page_figures: {error}", file=sys.stderr)
         sys.exit(2)
     print("\n".join(faults) or f"{arguments.id}: the figures are those of its page")

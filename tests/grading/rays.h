@@ -14,12 +14,15 @@ namespace duet::grading {
 
 /// The t at which a ray meets a triangle; infinite where it doesn't. (Möller and Trumbore 1997)
 template <typename Point> double hit_triangle(Point a, Point b, Point c, Vec3d origin, Vec3d direction) {
+    constexpr double kMiss = std::numeric_limits<double>::infinity();
     const Vec3d from(a), ab = Vec3d(b) - from, ac = Vec3d(c) - from, p = cross(direction, ac), o = origin - from;
     const double determinant = dot(ab, p);
-    if (determinant == 0) return std::numeric_limits<double>::infinity();
+    if (determinant == 0) return kMiss;
+    const double inverse = 1 / determinant, u = dot(o, p) * inverse;
+    if (u < 0 || u > 1) return kMiss; // most triangles are missed here
     const Vec3d q = cross(o, ab);
-    const double u = dot(o, p) / determinant, v = dot(direction, q) / determinant;
-    return u < 0 || v < 0 || u + v > 1 ? std::numeric_limits<double>::infinity() : dot(ac, q) / determinant;
+    const double v = dot(direction, q) * inverse;
+    return v < 0 || u + v > 1 ? kMiss : dot(ac, q) * inverse;
 }
 
 /// Planes n · p = w, seen from the side of n, and spheres with the radius w.

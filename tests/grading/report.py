@@ -62,7 +62,7 @@ def as_gradescope(result):
 
 
 def as_autolab(result):
-    """The last line that an Autolab autograder prints: points by problem. Problems are named as the items are."""
+    """The last line that an Autolab autograder prints: points by problem. Autolab's problems must be named as the items."""
     return {"scores": {item["title"]: item["earned"] for item in result["items"] if item["points"] > 0}}
 
 
@@ -85,5 +85,5 @@ def write_files(result, arguments):
         write_json(arguments.json, result)
     if arguments.gradescope:
         write_json(arguments.gradescope, as_gradescope(result))
-    if arguments.autolab:
+    if arguments.autolab and arguments.autolab != "-":
         write_json(arguments.autolab, as_autolab(result), indent=None)

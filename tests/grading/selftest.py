@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Tests a lab itself: its starter gets few points and helpful messages, the answer and the library's version get all,
-and each typical mistake is caught by a message that names it.
+with other seeds, too, and each typical mistake is caught by a message that names it.
 
 usage: selftest.py [--build FOLDER] ID…
 """
@@ -16,6 +16,8 @@ import variants
 
 ANSWERS = labs.SOURCE / "tests" / "grading" / "answers"
 MOST_STARTER_POINTS = 20
+OTHER_SEEDS = (2, 3)  # beside 1, with which all else is examined
+NEVER = "no message has these words"
 
 
 def read_mistakes(path):
@@ -66,9 +68,10 @@ def check_starter(lab_id, build):
 
 
 def check_full(lab_id, path, build, trusted):
+    """All items are passed, also those of 0 points, which show an image."""
     result = grade.grade(lab_id, path, build, trusted=trusted)
     faults = [f"{path.name}: {result['error']}"] if "error" in result else []
-    for item in failures(result):
+    for item in (item for item in result["items"] if item["status"] != "passed"):
         faults.append(f"{path.name} fails '{item['title']}': {item.get('message')} expected {item.get('expected')}, "
                       f"found {item.get('found')}\n{item.get('map', '')}")
     return faults
@@ -85,17 +88,26 @@ def faults_of_mistake(mistake, result):
     return []
 
 
+def check_seeds(lab_id, worker, build, scratch):
+    """The answer has all points whatever the random values are."""
+    faults = []
+    for seed in OTHER_SEEDS:
+        result = grade.examine(grade.judge_of(lab_id, build), scratch, "--worker", worker, "--seed", str(seed), "--until", NEVER)
+        faults += [f"with seed {seed} answer.cpp fails '{item['title']}': {item.get('message')}" for item in failures(result)]
+    return faults
+
+
 def check_mistakes(lab_id, mistakes, build, scratch):
     """Each is examined until an item fails with the message that names it. They are compiled together, which takes a
     tenth of the time; where that fails, one by one, which says whose fault it is."""
     answer = (ANSWERS / lab_id / "answer.cpp").read_text(encoding="utf-8")
     texts = [apply(answer, mistake) for mistake in mistakes]
     try:
-        workers = variants.build_workers(lab_id, texts, build, scratch)
+        answer_worker, *workers = variants.build_workers(lab_id, [answer, *texts], build, scratch)
+        faults = check_seeds(lab_id, answer_worker, build, scratch)
     except compiling.Refused as refused:
-        print(f"{lab_id}: the mistakes are compiled one by one, since together they can't be: {refused}", file=sys.stderr)
         workers = [None] * len(texts)
-    faults = []
+        faults = [f"answer and mistakes can't be compiled together: {refused}"]
     for mistake, text, worker in zip(mistakes, texts, workers):
         if worker is None:
             path = scratch / f"{mistake['name']}.cpp"

@@ -1,33 +1,42 @@
-"""Several submissions of one lab as one program. Most of the time of a compilation goes into headers and linking, and
-here both happen once. Only for the repository's own texts: a submission of a student's is compiled alone."""
+"""Several submissions of one lab as one program. Most of the time of a compilation goes into headers, templates and
+linking, and here these happen once. Only for the repository's own texts: a submission of a student's is compiled alone."""
 import os
 import re
 
 import compiling
 import labs
 
-INCLUDE = re.compile(r'^\s*#\s*include.*$', re.MULTILINE)
-ONCE = re.compile(r'^\s*#\s*pragma once.*$', re.MULTILINE)
+INCLUDE = re.compile(r"^\s*#\s*include.*$", re.MULTILINE)
+FUNCTIONS = re.compile(r"^DUET_LAB\(([^)]*)\)", re.MULTILINE)
 
 
-def without_includes(text):
-    return ONCE.sub("", INCLUDE.sub("", text))
+def variant(number, text, functions):
+    """A submission in a namespace of its own below duet::lab, where the types of the contract are. Its functions have
+    other names there: f becomes f_3, so that a call with a type of the contract finds this one and not lab::f."""
+    space = f"duet::lab::variant_{number}"
+    declared = [f"decltype(lab::{name}) {name}_{number};" for name in functions]
+    cases = [f'if (name == "{name}") return answer(&{space}::{name}_{number}, in, out), true;' for name in functions]
+    return "\n".join([
+        f"namespace {space} {{\nusing namespace duet::lab;", *declared, "}",
+        *(f"#define {name} {name}_{number}" for name in functions), f"#define lab lab::variant_{number}",
+        INCLUDE.sub("", text),
+        "#undef lab", *(f"#undef {name}" for name in functions),
+        f"static bool table_{number}(std::string_view name, duet::grading::Reader& in, duet::grading::Writer& out) {{",
+        *cases, "return false;\n}"])
 
 
-def joined(contract_path, texts):
-    """The source of all submissions: their includes, then for each its own copy of the contract, and its text."""
-    contract = (labs.SOURCE / contract_path).read_text(encoding="utf-8")
-    includes = {line.strip() for text in (contract, *texts) for line in INCLUDE.findall(text)}
-    parts = ['#include "tests/grading/variants.h"', *sorted(line for line in includes if contract_path not in line)]
-    for i, text in enumerate(texts):
-        parts += [f"#define lab lab_{i}", f"#define DUET_TABLE table_{i}",
-                  "namespace duet::lab { inline void not_attempted() { grading::submission_not_attempted(); } }",
-                  without_includes(contract), without_includes(text), "#undef lab", "#undef DUET_TABLE"]
+def joined(contract, texts):
+    """The source of all submissions."""
+    declared = FUNCTIONS.search((labs.SOURCE / contract).read_text(encoding="utf-8"))[1]
+    functions = [name.strip() for name in declared.split(",")]
+    includes = {line.strip() for text in texts for line in INCLUDE.findall(text)}
     tables = ", ".join(f"table_{i}" for i in range(len(texts)))
-    parts.append("bool duet::grading::call_by_name(std::string_view name, Reader& in, Writer& out) {\n"
-                 f"    static constexpr Table tables[] = {{{tables}}};\n"
-                 "    return tables[number_of_variant()](name, in, out);\n}")
-    return "\n".join(parts) + "\n"
+    return "\n".join([
+        '#include "tests/grading/variants.h"', f'#include "{contract}"', *sorted(includes),
+        *(variant(i, text, functions) for i, text in enumerate(texts)),
+        "bool duet::grading::call_by_name(std::string_view name, Reader& in, Writer& out) {",
+        f"static constexpr Table tables[] = {{{tables}}};",
+        "return tables[number_of_variant()](name, in, out);\n}\n"])
 
 
 def build_workers(lab_id, texts, build, folder):

@@ -350,7 +350,7 @@ LAB_ITEM(15, "draw: the amphora from three places") {
 }
 
 LAB_ITEM(10, "the time budget: a large picture of the amphora") {
-    constexpr int kWidth = 480, kHeight = 600;
+    constexpr int kWidth = 240, kHeight = 300;
     const Camera camera{{0.5f, 0.8f, 1.5f}, {0, 0.45f, 0}, {0, 1, 0}, 0.65f, 0.1f};
     const Rgb background(0.02f, 0.03f, 0.06f);
     item.limit(60);

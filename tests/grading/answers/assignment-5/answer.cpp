@@ -84,7 +84,7 @@ void for_each_texel(const ShadowMap& map, const Light& light, Vec3 p, Vec3 n, co
                 light.spot ? place.distance / std::max(1 - more / place.distance, 0.1f) : place.distance + more;
             const bool outside = x < 0 || y < 0 || x >= side || y >= side;
             visit(surface - bias, outside ? kInfinity : distance_of(map.view, light, map.depth(x, y)),
-                  std::hypot(right, up));
+                  std::sqrt(right * right + up * up));
         }
     }
 }
