@@ -57,7 +57,7 @@ TEST_SUITE("lesson") {
     TEST_CASE("compare-12: a pixel where the two ways see different triangles has its center at an edge") {
         constexpr int kWidth = 80, kHeight = 60;
         Numbers random;
-        const lesson::Mesh world = lesson::read_obj(DUET_MODELS "meshes/amphora.obj");
+        const lesson::Mesh world = lesson::read_obj(DUET_SOURCE_DIR "/models/meshes/amphora.obj");
         std::vector<lesson::Object> objects;
         for (std::size_t i = 0; i < world.size(); i += 3)
             objects.push_back(lesson::triangle_object(world[i].p, world[i + 1].p, world[i + 2].p, i / 3));
