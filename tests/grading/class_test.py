@@ -31,11 +31,12 @@ def run(build, *arguments):
 
 
 def make_class(folder):
-    """Six students: full points, a mistake, not begun, not compiled, two files, nothing."""
+    """Seven students: full points, a mistake, not begun, not compiled, two files, nothing."""
     for name in ("dora", "empty"):
         (folder / name).mkdir(parents=True)
     answer = ANSWER.read_text()
     (folder / "anna.cpp").write_text(answer)
+    (folder / "Zoë, $1%.cpp").write_text(answer)
     (folder / "bert.cpp").write_text(answer.replace("(p - center) / radius", "p - center").replace("(n.x + 1) / 2", "n.x"))
     (folder / "=cmd.cpp").write_text(STARTER.read_text())
     (folder / "carl.cpp").write_text("int main( {\n")
@@ -51,9 +52,9 @@ def test_class(build, scratch, failures):
     failures.check(done.returncode == 0, f"--class ends with {done.returncode}: {done.stderr}")
     with open(out / "grades.csv", encoding="utf-8", newline="") as file:
         rows = {row["student"]: row for row in csv.DictReader(file)}
-    failures.check(list(rows) == ["'=cmd", "anna", "bert", "carl", "dora", "empty"], f"the students are {list(rows)}")
+    failures.check(list(rows) == ["'=cmd", "Zoë, $1%", "anna", "bert", "carl", "dora", "empty"], f"the students are {list(rows)}")
     points = {student: row["points"] for student, row in rows.items()}
-    failures.check(points["anna"] == points["dora"] == "100", f"the answers get {points['anna']} and {points['dora']}")
+    failures.check(points["anna"] == points["dora"] == points["Zoë, $1%"] == "100", f"the points are {points}")
     failures.check(0 < int(points["bert"]) < 100, f"a mistake gets {points['bert']} points")
     failures.check(points["carl"] == points["'=cmd"] == "0", f"carl gets {points['carl']}, the starter {points[chr(39) + '=cmd']}")
     failures.check("doesn't compile" in rows["carl"]["note"], f"of carl's file it says '{rows['carl']['note']}'")
@@ -66,7 +67,7 @@ def test_class(build, scratch, failures):
         failures.check((out / student / "index.html").exists() and f"{student}/index.html" in page, f"{student} has no page")
     failures.check("<svg" in page and (out / "histogram.svg").exists(), "there is no histogram")
     last = next(line for line in done.stdout.splitlines() if line.startswith("90 to 100"))
-    failures.check(last.endswith(" 2"), f"two students have full points, but the histogram says: {last}")
+    failures.check(last.endswith(" 3"), f"three students have full points, but the histogram says: {last}")
 
 
 def test_class_refusals(build, scratch, failures):

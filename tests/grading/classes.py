@@ -134,7 +134,7 @@ def as_page(title, results, svg):
             f'<td class="n">{"by hand" if result.get("ungraded") else result["earned"]}'
             f'<td>{html.escape(result.get("error", "").split(chr(10))[0])}' for student, result in results.items()]
     items = [f'<tr><td>{html.escape(name)}<td class="n">{count} of {len(results)}' for name, count in hardest_items(results)]
-    return (f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title><style>{STYLE}</style>"
+    return (f"{page.HEAD}<title>{html.escape(title)}</title><style>{STYLE}</style>"
             f"<h1>{html.escape(title)}</h1>{svg}<h2>Items, the hardest first</h2><table><tr><th>item<th>students with its points"
             f"{''.join(items)}</table><h2>Students</h2><table><tr><th>student<th>points<th>note{''.join(rows)}</table></html>\n")
 

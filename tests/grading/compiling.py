@@ -25,7 +25,7 @@ LARGEST_OUTPUT = 256 << 20
 MOST_SAID = 1 << 18
 FLAGS = ["-std=c++20", "-O1", "-ffp-contract=off", "-w"]
 WORKER = "tests/grading/worker.cpp"
-FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
+FILE_NAME = re.compile(r"\w[\w., ()+-]*")
 TEXT_DATA = re.compile(r'\s*\.(?:string|ascii|asciz)\s+"(?:[^"\\]|\\.)*"\s*')
 FILE_DIRECTIVES = re.compile(r"\.(?:incbin|include|macro|irpc?|rept|altmacro)\b", re.IGNORECASE)
 ERROR = re.compile(r"^(?:\./)?([^:\n]+):(\d+):(?:(\d+):)? (?:fatal )?error: ")
@@ -75,15 +75,13 @@ def undefined_names(text):
     names = dict.fromkeys(re.findall(r"undefined reference to `(.+?)'$", text, re.MULTILINE))
     of_the_lab = [match[1] for name in names if (match := re.match(r"duet::lab::(\w+)", name))]
     if of_the_lab:
-        return (f"Your file doesn't define {', '.join(of_the_lab)} as lab.h declares it: the same name and arguments, "
-                "inside namespace duet::lab.")
+        return (f"The submission doesn't define {', '.join(of_the_lab)} as lab.h declares {'it' if len(of_the_lab) == 1 else 'them'}: "
+                "with the same name, arguments and result, inside namespace duet::lab.")
     return f"{next(iter(names))} is declared and called, but nowhere defined." if names else ""
 
 
 def plain_error(text, folder):
     """The compiler's first error, as short as it is useful, with a hint where the cause is a common one."""
-    if missing := undefined_names(text):
-        return missing
     lines = [line.replace(f"{folder}/", "") for line in text.splitlines()]
     first = next((line for line in lines if re.search(r"error:|multiple definition", line)), lines[0] if lines else "")
     first = re.sub(r"^.*/ld: (?:\S+: in function [^:]*: ?)?", "", first).removeprefix("./")[:300]
@@ -120,6 +118,8 @@ def run_compiler(build, arguments, what, folder):
     if code is None or re.search(r"signal terminated program|memory exhausted|out of memory", said):
         raise Refused(f"{what} can't be compiled within {COMPILE_SECONDS} s, {COMPILE_MEMORY >> 30} GiB of memory and "
                       f"{LARGEST_OUTPUT >> 20} MiB of program. Is there a template without end, or a huge array?")
+    if undefined := undefined_names(said):
+        raise Refused(undefined)
     missing = re.search(r"^(?:\./)?(\S+?):(\d+):\d+: fatal error: (.*): (?:No such file|Permission|Is a dir)", said, re.MULTILINE)
     if missing:
         raise Refused(f"{missing[1]}, line {missing[2]}, includes {missing[3]}, which a submission may not. {ALLOWED}")
@@ -131,16 +131,21 @@ ALLOWED = "Allowed are: the lab's lab.h and what it includes, common/vec, common
 
 
 def copy_submission(files, folder):
-    """Copies the submitted files, so that nothing beside them can be included by a relative path or a link."""
+    """Copies the submitted files, so that nothing beside them can be included by a relative path or a link. A file that is
+    alone may have any name: who collects submissions names it. Returns the copies."""
     folder.mkdir()
+    copies = []
     for file in files:
         if file.is_symlink() or file.parent.is_symlink() or not file.is_file():
             raise Refused(f"{file.name} is no plain file; a submission may hold no links or devices")
-        if not FILE_NAME.fullmatch(file.name):
+        name = "lab.cpp" if len(files) == 1 and not FILE_NAME.fullmatch(file.name) else file.name
+        if not FILE_NAME.fullmatch(name):
             raise Refused(f"{file.name!r} is no name for a file of a submission; expected letters, digits, '.', '_' and '-'")
         if file.stat().st_size > LARGEST_SOURCE:
             raise Refused(f"{file.name} has {file.stat().st_size} bytes; at most {LARGEST_SOURCE} are compiled")
-        shutil.copyfile(file, folder / file.name)
+        shutil.copyfile(file, folder / name)
+        copies.append(folder / name)
+    return copies
 
 
 def check_files_read(listing, allowed):
@@ -211,10 +216,10 @@ def build_worker(lab_id, path, build, out):
     contract = labs.stage(lab_id, shared / "include")
     files = labs.submitted_files(path)
     own = out / "submission"
-    copy_submission(files, own)
+    copies = copy_submission(files, own)
     allowed = [own.resolve(), (shared / "include").resolve(), *system_folders(build_settings(build)["compiler"])]
     include = ["-I", str(shared / "include"), "-iquote", str(own)]
-    assembled = [compile_source(build, own / file.name, include, allowed) for file in files if file.suffix == ".cpp"]
+    assembled = [compile_source(build, file, include, allowed) for file in copies if file.suffix == ".cpp"]
     worker = worker_object(lab_id, build, shared, contract)
     # -fno-lto: sections of a linker plugin, which a submission could write itself, would start another compiler
     run_compiler(build, ["-static", "-fno-lto", str(worker), *map(str, assembled), "-o", str(out / "worker")], path.name, own)

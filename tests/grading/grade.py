@@ -74,6 +74,8 @@ def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_fo
             page.write(result, out, pathlib.Path(page_folder))
         if images_folder is not None:
             page.write_images(result, out, pathlib.Path(images_folder))
+    for item in result["items"]:  # their files are gone
+        item["images"] = [image["name"] for image in item.get("images", [])]
     return result
 
 

@@ -81,6 +81,10 @@ public:
     /// The processor time of the last call. Compare it with processor time (std::clock), not with a clock on the wall.
     double seconds() const { return session().last_seconds(); }
 
+    /// What the following calls are about, in a sentence: it ends the message where one of them crashes or hangs.
+    void about(const std::string& text) { about_ = text; }
+    const std::string& about() const { return about_; }
+
     void require(bool ok, const std::string& text) {
         if (!ok) throw ItemFailed{text, "", "", ""};
     }
@@ -133,7 +137,7 @@ private:
                          ""};
     }
     Rng rng_;
-    std::string out_;
+    std::string out_, about_;
     int index_;
     std::vector<ShownImage> images_;
 };

@@ -105,7 +105,7 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
              {std::pair{"expected", &failed.expected}, {"found", &failed.found}, {"map", &failed.map}})
             if (!text->empty()) result[key] = clean(*text);
     } catch (const CallFailed& failed) {
-        result = failed_result(definition, clean(failed.text));
+        result = failed_result(definition, clean(failed.text + (item.about().empty() ? "" : " " + item.about())));
     }
     tell_not_attempted(result, session.not_attempted());
     if (result["status"] != "passed") result["earned"] = 0;

@@ -6,6 +6,7 @@ import shutil
 
 import report
 
+HEAD = "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
 section{border-left:6px solid #0a7d4f;padding:.2rem 1rem;margin:1rem 0;background:#f6f7f8}
 section.failed{border-color:#c0392b}section.not_attempted{border-color:#999}
@@ -48,7 +49,7 @@ def write(result, images_folder, folder):
     """Writes folder/index.html, with all pictures in it."""
     folder.mkdir(parents=True, exist_ok=True)
     title = html.escape(f"{result['lab']} · {result['title']}")
-    body = [f"<!doctype html><html lang=en><meta charset=utf-8><title>{title}</title><style>{STYLE}</style>",
+    body = [f"{HEAD}<title>{title}</title><style>{STYLE}</style>",
             f"<h1>{title}</h1><p><b>{result['earned']} of {result['points']} points</b>, seed {result['seed']}</p>"]
     if "error" in result:
         body.append(f"<pre>{html.escape(result['error'])}</pre>")

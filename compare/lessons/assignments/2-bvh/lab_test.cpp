@@ -294,7 +294,7 @@ LAB_ITEM(15, "rays and boxes") {
                  "A ray that leaves the slab of one axis before it enters another's must miss.");
     item.require(!hits({0, 0, 5}, {0, 0, -1}, 3), "The box begins at t = 4, behind t_max = 3: this is no hit.");
     item.require(STUDENT(hit_box)(Box{{-1, 0, -1}, {1, 0, 1}}, Ray{{0, 3, 0}, {0, -1, 0}}),
-                 "A flat box (a floor) can be hit.");
+                 "A flat box (a floor) can be hit. The ray enters and leaves it at the same t: compare with <=.");
     for (int i = 0; i < 300; ++i) { // a ray that is aimed at a point of the box hits
         Rng& rng = item.random();
         const Vec3 low(Vec3d(rng.uniform(-2, 0), rng.uniform(-2, 0), rng.uniform(-2, 0))),
@@ -326,6 +326,7 @@ LAB_ITEM(20, "the nearest hit is the one that testing every triangle finds") {
         const auto rays = random_rays(item.random(), 1500);
         require_hits(item, STUDENT(trace)(STUDENT(build)(triangles), triangles, rays), triangles, rays);
     }
+    item.about("There are no triangles here, so the tree has no nodes: no root either.");
     const auto none = STUDENT(trace)(Tree{}, std::vector<Triangle>{}, std::vector<Ray>{Ray{{0, 0, 0}, {0, 0, -1}}});
     item.require(none.size() == 1 && none[0].triangle == -1,
                  "Without triangles a ray hits nothing: expected triangle -1.");

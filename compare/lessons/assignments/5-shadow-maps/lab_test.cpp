@@ -193,6 +193,12 @@ LAB_ITEM(15, "depth_map: the nearest triangle at the center of each texel") {
                              const double t = stored(x, y), slack = 1e-6 * far * far / std::max(near, 0.05);
                              return t == most || (t > least - slack && t < most + slack) ? t : at(x, y);
                          });
+        const bool below = light.position == below_roof.position; // it alone has triangles behind it
+        const std::string name = message("the map of ", name_of(light), below ? " below the roof" : "");
+        if (std::ranges::equal(found, expected, [](float a, float b) { return std::abs(a - b) <= 2e-3f; })) {
+            item.show(name, found);
+            continue; // what mistakes would give takes a while
+        }
         const auto mode = [&](Mode m) {
             return image(
                 [&](double x, double y) { return seen_by(kGarden, map_ray(light, view, kSide, x, y), view, m); });
@@ -210,10 +216,8 @@ LAB_ITEM(15, "depth_map: the nearest triangle at the center of each texel") {
             {mode(kLast), "The triangle that is drawn last is kept: compare depths."},
             {mode(kDropped), "Triangles that cross the near plane are missing: clip them, and draw the part in front."},
             {mode(kUnclipped), "What lies between the light and near is in the map: clip at z = 0."}};
-        const bool below = light.position == below_roof.position; // it alone has triangles behind it
         if (below) mistakes.push_back({found, "Are triangles clipped at z = 0, before the division by w?"});
-        item.image(message("the map of ", name_of(light), below ? " below the roof" : ""), found, expected, 2e-3,
-                   mistakes);
+        item.image(name, found, expected, 2e-3, mistakes);
     }
 }
 
