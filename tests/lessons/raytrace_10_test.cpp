@@ -2,7 +2,7 @@
 // the library's are.
 #include "common/geometry/quad.h"
 #include "raytrace/lessons/10-cornell-box/quads.h"
-#include "tests/lessons/cornell_means.h"
+#include "tests/lessons/cornell_comparison.h"
 
 #include <doctest/doctest.h>
 

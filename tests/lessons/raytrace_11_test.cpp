@@ -4,7 +4,7 @@
 #include "common/sampling/warp.h"
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/lessons/11-monte-carlo/light_sampling.h"
-#include "tests/lessons/cornell_means.h"
+#include "tests/lessons/cornell_comparison.h"
 
 #include <doctest/doctest.h>
 

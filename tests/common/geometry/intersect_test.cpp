@@ -236,7 +236,7 @@ TEST_SUITE("unit") {
         CHECK(intersect_sphere({{0, 1e-7f, 0}, normalize(Vec3(1, -1e-3f, 0))}, ground).has_value());
     }
 
-    TEST_CASE("the places on a sphere and in a lat-long sky, and their inverses") {
+    TEST_CASE("texture coordinates on a sphere and in a lat-long sky, and their inverses") {
         CHECK(sphere_uv({0, 0, 1}).x == doctest::Approx(0.5f));
         CHECK(sphere_uv({1, 0, 0}).x == doctest::Approx(0.75f));
         CHECK(latlong_uv({0, 0, -1}).x == doctest::Approx(0.5f));
@@ -276,7 +276,7 @@ TEST_SUITE("unit") {
             // Finite differences of the position must agree with the derivatives.
             const Vec2 uv = point.uv;
             const float h = 1e-3f;
-            const auto at = [&](Vec2 place) { return sphere.center + sphere_direction(place) * sphere.radius; };
+            const auto at = [&](Vec2 at_uv) { return sphere.center + sphere_direction(at_uv) * sphere.radius; };
             CHECK(length((at({uv.x + h, uv.y}) - at({uv.x - h, uv.y})) / (2 * h) - point.dpdu) < 0.02f);
             CHECK(length((at({uv.x, uv.y + h}) - at({uv.x, uv.y - h})) / (2 * h) - point.dpdv) < 0.02f);
         }
