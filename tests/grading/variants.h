@@ -2,10 +2,12 @@
 #pragma once
 
 #include "tests/grading/lab.h"
+#include "tests/grading/wire.h"
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 namespace duet::grading {
 
