@@ -13,6 +13,8 @@ COMMON = {"apt-get", "cat", "cd", "chromium", "clang-format", "cp", "diff", "ech
           "ls", "mkdir", "mv", "node", "open", "perf", "pip", "rm", "tail", "time", "unzip", "xdg-open", "zip"}
 PROGRAMS = ("raster", "raytrace", "compare")
 OURS = re.compile(r"(common|raster|raytrace|compare|models|tests)/")
+# The build writes these, so they need not exist.
+BUILT = ("models/generated/",)
 OPTION = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*|-[A-Za-z])(?![\w-])")
 
 
@@ -32,6 +34,7 @@ def targets(source):
     for contract in (source / "compare" / "lessons" / "assignments").glob("*/lab.h"):
         number = contract.parent.name.split("-")[0]
         names.update((f"lab-assignment-{number}", f"judge-assignment-{number}"))
+    names.update(target.stem for target in (source / "tests" / "fuzz").glob("*_fuzz.cpp"))
     return names
 
 
@@ -54,10 +57,12 @@ class Commands:
     """Checks commands against the sources and, where `programs` is the folder of the built programs, their --help."""
 
     def __init__(self, source, programs=None):
-        self.source, self.programs = source, programs
+        self.source, self.programs, self.folders = source, programs, presets(source)
 
     def faults(self, text):
-        """(line, what) of a page's fenced sh blocks and of commands between backticks."""
+        """(line, what) of a page's fenced sh blocks and of commands between backticks. Build folders are those of the
+        presets, and those that the page itself configures (cmake -B build/fuzz)."""
+        self.folders = presets(self.source) | set(re.findall(r"-B build/([\w-]+)", text))
         blocks, rest = markdown.blocks(markdown.without_comments(text))
         lines = []
         for start, language, body in blocks:
@@ -107,8 +112,9 @@ class Commands:
         faults = []
         for option, value in zip(words, words[1:]):
             preset = value if option == "--preset" else re.sub(r"^build/", "", value) if option == "--build" else None
-            if preset is not None and preset not in presets(self.source) and preset != "--preset":
-                faults.append(f"'{option} {value}': no such preset, expected one of {', '.join(sorted(presets(self.source)))}")
+            known = self.folders if option == "--build" else presets(self.source)
+            if preset is not None and preset not in known and preset != "--preset":
+                faults.append(f"'{option} {value}': no such preset, expected one of {', '.join(sorted(known))}")
         if "--target" in words:
             for target in words[words.index("--target") + 1:]:
                 if target.startswith("-"):
@@ -130,7 +136,7 @@ class Commands:
         return faults
 
     def of_program(self, program, name, words):
-        if program and program.group(1) not in presets(self.source):
+        if program and program.group(1) not in self.folders:
             return [f"'{name}': no such preset"]
         short = program.group(2) if program else name
         if short not in targets(self.source):
@@ -152,4 +158,4 @@ class Commands:
     def of_files(self, words):
         """The project's own files among arguments exist. A student makes lab.cpp."""
         return [f"'{word}': no such file" for word in words if OURS.match(word)
-                and not (self.source / word).exists() and not word.endswith("/lab.cpp")]
+                and not word.startswith(BUILT) and not (self.source / word).exists() and not word.endswith("/lab.cpp")]

@@ -1,4 +1,4 @@
-"""What the course consists of: its rooms, its lessons and their files, read from the folders."""
+"""What the course consists of: its rooms, its lessons and their files, read from the folders. Also the other pages."""
 import pathlib
 import re
 
@@ -45,12 +45,15 @@ def lessons(source=SOURCE):
     return [lesson for lesson in found if (lesson.folder / "lesson.cpp").exists() and lesson.page.exists()]
 
 
+HOUSE = ("common", "raster", "raytrace", "compare", "models", "tests", "gallery")
+
+
 def other_pages(source=SOURCE):
-    """The course's Markdown pages beside those of its lessons."""
+    """All Markdown pages of the repository except those of lessons: the first page and the pages of each room."""
     of_lessons = {lesson.page for lesson in lessons(source)}
-    pages = [*(source / "compare" / "lessons").rglob("*.md"), *(source / "tests" / "grading").rglob("*.md"),
-             *(source / "raster" / "lessons").glob("*.md"), *(source / "raytrace" / "lessons").glob("*.md")]
-    return sorted(page for page in pages if page not in of_lessons)
+    drafts = {page for room in ROOMS for page in (source / room / "lessons").glob("[0-9][0-9]-*/*.md")}
+    pages = [source / "README.md", *(page for room in HOUSE for page in (source / room).rglob("*.md"))]
+    return sorted(page for page in pages if page.exists() and page not in of_lessons | drafts)
 
 
 def pick(ids, source=SOURCE):

@@ -1,7 +1,8 @@
-"""Checks the course's pages, and fills in the source files that they quote (quotes.py says how).
+"""Checks all Markdown pages of the repository, and fills in the source files that lessons quote (quotes.py says how).
 
-Every check that a page can fail is here: quotes equal their sources, the whole program is quoted and short enough, the
-sections are there, figures and links exist, commands name what exists, formulas parse, words are spelled right.
+Every check that a page can fail is here. On each page, links lead somewhere, images have an alternative text, commands
+name what exists, formulas parse, and words are spelled right. On the page of a lesson, quotes equal their sources, the
+whole program is quoted and short enough, and the sections and figures are there.
 """
 import argparse
 import os
@@ -139,7 +140,7 @@ def table(lessons):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Checks the pages of the course's lessons.")
+    parser = argparse.ArgumentParser(description="Checks the pages of the repository: those of lessons, and all others.")
     parser.add_argument("ids", nargs="*", metavar="ID", help="lessons such as raytrace-02 (default: all, and the other pages)")
     parser.add_argument("--write", action="store_true", help="fill in the quotes first")
     parser.add_argument("--strict", action="store_true", default=os.environ.get("CI") == "1",

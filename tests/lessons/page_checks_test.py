@@ -79,6 +79,14 @@ A book.
 
 Next: [the same](README.md)
 """
+FIRST_PAGE = """# A house
+
+Its [lesson](raytrace/lessons/02-sphere/README.md) is about [spheres](#a-house).
+
+```sh
+cmake --build build/release --target lessons
+```
+"""
 PRESETS = {"buildPresets": [{"name": "release"}]}
 
 
@@ -92,6 +100,7 @@ class Repository:
         (self.lesson / "lesson.cpp").write_text(PROGRAM)
         (self.lesson / "lab.h").write_text("#pragma once\n")
         (self.lesson / "README.md").write_text(PAGE)
+        (self.folder / "README.md").write_text(FIRST_PAGE)
         for name in ("evidence", "above"):
             (self.lesson / "figures" / f"{name}.png").write_bytes(b"png")
 
@@ -137,6 +146,13 @@ FAULTS = [
     ("lesson.cpp", "return count() - 1;", "return count() - 1; //" + " long" * 30, "columns, at most 120"),
     ("lesson.cpp", "spheres = 1", "spheres = 2", "a quote differs from its source"),
 ]
+# The same of the repository's first page, which no lesson owns.
+FIRST_PAGE_FAULTS = [
+    ("raytrace/lessons/02-sphere/README.md", "raytrace/README.md", "the link raytrace/README.md leads nowhere"),
+    ("(#a-house)", "(#the-house)", "has no heading #the-house"),
+    ("build/release --target", "build/fast --target", "no such preset"),
+    ("is about", "is abuot", "'abuot' is in no dictionary"),
+]
 
 
 def main():
@@ -152,20 +168,21 @@ def main():
         if repository.pages("--write", "raytrace-02") and (repository.lesson / "README.md").read_text() != page:
             failures.append("filling in quotes twice changes the page")
         quotable = subprocess.run(["sh", "-c", "command -v hunspell && command -v node"], capture_output=True, check=False)
-        for file, old, new, expected in FAULTS:
+        all_faults = [(repository.lesson / file, ["raytrace-02"], *fault) for file, *fault in FAULTS]
+        all_faults += [(repository.folder / "README.md", [], *fault) for fault in FIRST_PAGE_FAULTS]
+        for path, arguments, old, new, expected in all_faults:
             needs_programs = any(word in expected for word in ("dictionary", "British", "KaTeX", "Undefined"))
             if quotable.returncode != 0 and needs_programs:
                 continue
-            path = repository.lesson / file
             good = path.read_text()
             if old not in good:
-                failures.append(f"{file} has no '{old}' to change")
+                failures.append(f"{path.name} has no '{old}' to change")
             path.write_text(good.replace(old, new, 1))
-            status, said = repository.pages("raytrace-02")
+            status, said = repository.pages(*arguments)
             path.write_text(good)
             if status != 1 or expected not in said:
-                failures.append(f"{file} with '{new}' for '{old}': expected '{expected}', found\n{said}")
-    print("\n\n".join(failures) or f"{len(FAULTS)} faults found, each by its check")
+                failures.append(f"{path.name} with '{new}' for '{old}': expected '{expected}', found\n{said}")
+    print("\n\n".join(failures) or f"{len(all_faults)} faults found, each by its check")
     sys.exit(1 if failures else 0)
 
 
