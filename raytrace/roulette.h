@@ -20,8 +20,8 @@ inline constexpr float kPlainWorth = 4;
 /// A path that continues costs its rays. A path that may end adds variance, because survivors are weighted up: the
 /// squares of their light count. Both are summed over a few paths of the image, which are traced beforehand almost
 /// without roulette and leave a record of each step. (Bolin and Meyer 1997, Vorba and Křivánek 2016 and Rath et al.
-/// 2022 weigh the same two; here one number serves the whole image, and README.md says what more would gain.) A few
-/// paths are a noisy estimate: another factor than kPlainWorth must be better by two standard errors.
+/// 2022 weigh the same two; here one number serves the whole image, and measurements.md says what more would gain.) A
+/// few paths are a noisy estimate: another factor than kPlainWorth must be better by two standard errors.
 ///
 /// At most 2,048 paths are traced, and at most one for every 8 pixels. Images too small for 512 paths get
 /// kPlainWorth. The paths have a seed of their own and do not depend on samples, threads or skips, so that shards

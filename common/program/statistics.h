@@ -18,7 +18,7 @@ struct RenderContext {
     double load_seconds = 0, prepare_seconds = 0, render_seconds = 0, write_seconds = 0;
 };
 
-/// Returns the statistics as JSON with the keys of the README: program, version, scene, width, height, threads,
+/// Returns the statistics as JSON with the keys of common/README.md: program, version, scene, width, height, threads,
 /// samples_per_pixel, passes, seed, seconds (load, prepare, render, write, total), stages, rays, triangles,
 /// memory_bytes, bvh (quality, nodes, references, or null), estimated_relmse (null where unknown), invalid_samples,
 /// first_invalid (x, y, sample, or null), approximations, skipped, interrupted.

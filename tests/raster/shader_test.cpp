@@ -42,7 +42,7 @@ struct Probe {
     }
 };
 
-/// This shader is the README's example.
+/// This shader is the example of raster/README.md.
 struct Stripes {
     template <typename T> struct Varyings {
         T height;
