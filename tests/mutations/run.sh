@@ -169,13 +169,14 @@ for name; do
     echo "[$done/$#] $name$left" >&2
     command=$(noticed_by "$name")
     log=$work/$name.log
-    git_apply "$tree" "$patches/$name.patch"
+    cp "$patches/$name.patch" "$work/patch" # reverted as applied, though somebody edits it meanwhile
+    git_apply "$tree" "$work/patch"
     result=3
     if build "$log"; then
         result=0
         run_tests "$log" "$command" || result=$?
     fi
-    git_apply "$tree" -R "$patches/$name.patch"
+    git_apply "$tree" -R "$work/patch"
     case $result in
     1) echo "$name noticed by $command$(sed -n 's/^compare: [^:]*\(: .* trials failed\).*/\1/p' "$log" | head -1)" ;;
     0) echo "$name NOT NOTICED by $command" ;;
