@@ -45,10 +45,11 @@ fail() { # MESSAGE: ends the script as for wrong arguments
 all_names() { (cd "$patches" && ls ./*.patch | sed 's|^./||; s|\.patch$||'); }
 header() { sed '/^diff --git /,$d' "$patches/$1.patch"; }                 # NAME: the lines above the diff
 noticed_by() { header "$1" | sed -n 's/^Noticed-by: //p'; }               # NAME: the command of the tests
-git_apply() { # FOLDER ARGUMENTS...: applies a patch in a folder, which may lie within a repository or not
+# Applies a patch in a folder. It starts at /, because below the top of a repository git apply would skip all files.
+git_apply() { # FOLDER ARGUMENTS...
     folder=$1
     shift
-    (cd "$folder" && GIT_CEILING_DIRECTORIES=$(dirname "$folder") git apply "$@")
+    (cd / && git apply --directory="${folder#/}" "$@")
 }
 
 check=false
@@ -89,7 +90,7 @@ check_patch() { # NAME
             "with «compare stress --only TEST» or «ctest -R LABEL:FILE»"
         ;;
     esac
-    git_apply "$root" --check "$patches/$1.patch" 2>&1 | sed "s|^|$1.patch: |"
+    git_apply "$root" --check "$patches/$1.patch" 2>&1 | sed "s|${root#/}/||; s|^|$1.patch: |"
 }
 faults=$(for name; do check_patch "$name"; done)
 if [ -n "$faults" ]; then
