@@ -1,7 +1,5 @@
 #include "common/film/film.h"
 
-#include "common/system/sabotage.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +9,11 @@ Film::Film(int width, int height) : pixels_(width, height) {}
 
 bool Film::add(int x, int y, std::size_t replicate, Rgb sample) {
     Pixel& pixel = pixels_(x, y);
-    if (!valid(sample) && !sabotaged(Guard::kFilmFilter)) {
+    if (!valid(sample)) {
         ++pixel.invalid;
         return false;
     }
-    if (sabotaged(Guard::kFilmDoubles))
-        pixel.sum[replicate] = Rgbd(Rgb(pixel.sum[replicate]) + sample);
-    else
-        pixel.sum[replicate] += Rgbd(sample);
+    pixel.sum[replicate] += Rgbd(sample);
     ++pixel.count[replicate];
     return true;
 }

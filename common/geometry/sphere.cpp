@@ -1,20 +1,12 @@
 #include "common/geometry/sphere.h"
 
-#include "common/system/sabotage.h"
-
 #include <cmath>
 
 namespace duet {
 
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
-    SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), SphereLine<double>(Vec3d(ray.direction)),
-                            static_cast<double>(sphere.radius));
-    if (sabotaged(Guard::kSphereRoots)) { // the usual discriminant b² − a·c, in float
-        const Vec3 g = ray.origin - sphere.center, e = ray.direction;
-        const float half = dot(g, e);
-        test.discriminant =
-            static_cast<double>(half * half - dot(e, e) * (dot(g, g) - sqr(sphere.radius))) / test.a;
-    }
+    const SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), SphereLine<double>(Vec3d(ray.direction)),
+                                  static_cast<double>(sphere.radius));
     if (!(test.discriminant >= 0)) return std::nullopt;
     const auto [near, far] = test.roots();
     const float t_near = static_cast<float>(near), t_far = static_cast<float>(far);

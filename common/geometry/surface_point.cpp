@@ -2,7 +2,6 @@
 
 #include "common/geometry/smooth_lift.h"
 #include "common/geometry/sphere.h"
-#include "common/system/sabotage.h"
 #include "common/vec/robust.h"
 
 #include <cmath>
@@ -160,7 +159,6 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
                                 absolute_transform(to_object, from_place, 0) * static_cast<double>(gamma_bound(5));
         point.p_error = Vec3(abs(p) * kRounding + absolute_transform(to_world, in_object, 0) +
                              absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
-        if (sabotaged(Guard::kInstanceError)) point.p_error = Vec3(abs(p) * kRounding);
         point.ng = unit(transform_normal(inverse, local.ng));
         point.ns = unit(transform_normal(inverse, local.ns));
         point.dpdu = Vec3(transform_vector(m, local.dpdu));

@@ -39,7 +39,6 @@ Vec3 offset_origin(const SurfacePoint& point, Vec3 w);
 
 /// Moves a point beyond its error bound to the side to which the unit normal n points. T is float or a batch of floats.
 template <typename T> Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
-    if (sabotaged(Guard::kOffsetOrigin)) return p;
     const Vec3T<T> offset = n * dot(abs(n), p_error);
     return rounded_away(p + offset, offset);
 }

@@ -1,6 +1,5 @@
 #include "common/geometry/triangle.h"
 
-#include "common/system/sabotage.h"
 #include "common/vec/box.h"
 
 #include <array>
@@ -72,7 +71,7 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     // If |t| is within its error bound (or is NaN), t cannot tell whether the triangle is the surface that the ray
     // leaves or another one that touches it. The more exact distance to the plane decides.
     const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det, ray.shear.speed));
-    if (uncertain && !sabotaged(Guard::kPlaneDistance)) {
+    if (uncertain) {
         const float plane = plane_distance(ray, a, b, c);
         if (!(plane > ray.t_min)) return std::nullopt;
         // For a needle, keep the previous t: a ray that misses it by a rounding error can intersect its plane far away.

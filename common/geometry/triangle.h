@@ -1,7 +1,6 @@
 // This file defines the intersection of a ray and a triangle.
 #pragma once
 
-#include "common/system/sabotage.h"
 #include "common/vec/box.h"
 #include "common/vec/ray.h"
 #include "common/vec/robust.h"
@@ -10,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 namespace duet {
@@ -84,11 +82,7 @@ template <typename T> struct TriangleTest {
     }
     /// Returns the edge function of the edge from p to q. In both triangles that share an edge, it has exactly the same
     /// magnitude and opposite signs, so no ray passes between them. Fused multiply-add would break this symmetry.
-    [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) {
-        using std::fma;
-        if (sabotaged(Guard::kUnfusedEdges)) return fma(p.x, q.y, -(p.y * q.x));
-        return p.x * q.y - p.y * q.x;
-    }
+    [[gnu::always_inline]] static T edge(const Vec3T<T>& p, const Vec3T<T>& q) { return p.x * q.y - p.y * q.x; }
 
     /// Returns the sum of the edge functions: twice the signed area of the sheared triangle.
     T det() const { return e0 + e1 + e2; }
@@ -116,8 +110,7 @@ template <typename T> struct TriangleTest {
     /// resulting error is no larger than the rounding of z, except where the triangle is much thinner than it is deep.
     template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& speed) const {
         const T spread = farthest() - nearest();
-        const float limit = sabotaged(Guard::kNeedles) ? std::numeric_limits<float>::infinity() : 8.0f;
-        return width() * abs(inv_det) * (spread * T(speed)) > T(limit);
+        return width() * abs(inv_det) * (spread * T(speed)) > T(8.0f);
     }
 
 private:

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/image/rgb.h"
-#include "common/system/sabotage.h"
 
 namespace duet {
 
@@ -12,7 +11,6 @@ namespace duet {
 /// ((η − 1)(η + 1) + cos²θ)/η² is exact for η = 1 and precise near the critical angle, where
 /// 1 − sin²θ/η² suffers from cancellation.
 template <typename T> T cos2_refracted(T cos_i, T eta) {
-    if (sabotaged(Guard::kCriticalAngle)) return T(1) - (T(1) - cos_i * cos_i) / (eta * eta);
     return ((eta - T(1)) * (eta + T(1)) + cos_i * cos_i) / (eta * eta);
 }
 

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "common/sampling/warp_batch.h"
-#include "common/system/sabotage.h"
 #include "common/vec/vec.h"
 
 #include <cmath>
@@ -81,7 +80,7 @@ template <typename T> Vec3T<T> ggx_sample_visible_normal(Vec3T<T> wo, T alpha, V
     const T gap = u.y * (T(1) + w.z);
     const T r = safe_sqrt(gap * (T(2) - gap));
     const Vec2T<T> circle = unit_circle(u.x);
-    const T z = sabotaged(Guard::kVisibleNormals) ? T(1) - u.y : (T(1) - u.y) * (T(1) + w.z);
+    const T z = (T(1) - u.y) * (T(1) + w.z);
     return normalize(Vec3T<T>(alpha * (r * circle.x + w.x), alpha * (r * circle.y + w.y), z));
 }
 

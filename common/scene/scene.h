@@ -9,7 +9,6 @@
 #include "common/light/light.h"
 #include "common/material/material.h"
 #include "common/material/surface_maps.h"
-#include "common/system/sabotage.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -89,8 +88,7 @@ ObjectTransform object_transform(const Object& object, float time);
 /// both spaces.
 inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_object) {
     Ray local = ray;
-    local.origin = sabotaged(Guard::kPlaceDifference) ? transform_point(to_object, ray.origin)
-                                                      : transform_point_back(to_world, to_object, ray.origin);
+    local.origin = transform_point_back(to_world, to_object, ray.origin);
     local.direction = transform_vector(to_object, ray.direction);
     return local;
 }

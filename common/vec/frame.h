@@ -1,7 +1,6 @@
 // This file defines orthonormal frames around a unit normal. BSDFs are evaluated in such a local frame, with n = +z.
 #pragma once
 
-#include "common/system/sabotage.h"
 #include "common/vec/vec.h"
 
 namespace duet {
@@ -17,7 +16,7 @@ using Frame = FrameT<float>;
 /// Returns a right-handed orthonormal frame around the unit vector n. The method has no branch and no singularity, not
 /// even at n = −z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited", listing 3).
 template <typename T> FrameT<T> frame_from_normal(Vec3T<T> n) {
-    const T sign = select(n.z < T(0), T(sabotaged(Guard::kFrameSign) ? 1 : -1), T(1));
+    const T sign = select(n.z < T(0), T(-1), T(1));
     const T a = T(-1) / (sign + n.z);
     const T b = n.x * n.y * a;
     return {{T(1) + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};

@@ -2,7 +2,6 @@
 // adjacent floats.
 #pragma once
 
-#include "common/system/sabotage.h"
 #include "common/vec/vec.h"
 
 #include <bit>
@@ -16,7 +15,6 @@ namespace duet {
 /// proof: Jeannerod, Louvet and Muller 2013). Exchanging the two products does not always give exactly the negated
 /// result.
 inline float difference_of_products(float a, float b, float c, float d) {
-    if (sabotaged(Guard::kDifferenceOfProducts)) return a * b - c * d;
     const float cd = c * d;
     const float difference = std::fma(a, b, -cd);
     const float error = std::fma(-c, d, cd);

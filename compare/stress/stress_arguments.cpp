@@ -1,6 +1,5 @@
 // This file declares the arguments of `compare stress`.
 #include "common/program/option_checks.h"
-#include "common/system/sabotage.h"
 #include "compare/arguments.h"
 #include "compare/stress/suite.h"
 
@@ -23,9 +22,6 @@ Subcommand add_stress(CLI::App& app) {
     stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(whole_number());
     stress->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     stress->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
-    if constexpr (kSabotageBuild)
-        stress->add_option("--sabotage", options.sabotage,
-                           "Take a guard of the numerics away: the test that --list names with it must fail");
     stress->add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");
     stress->footer(std::string("Example:\n  compare stress --only intersection --trials 10") + kExitCodes);
     return {stress, [all] { return compare::stress(*all); }};

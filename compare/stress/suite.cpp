@@ -4,7 +4,6 @@
 #include "common/program/statistics.h"
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
-#include "compare/stress/sabotage.h"
 #include "compare/stress/stress.h"
 
 #include <algorithm>
@@ -110,9 +109,6 @@ void print_list(const std::vector<StressTest>& tests) {
         if (!test.naive.empty()) std::cout << "  the books' way: " << test.naive << '\n';
         std::cout << "  trials: " << test.trials << '\n';
     }
-    if constexpr (kSabotageBuild)
-        for (const Sabotage& sabotage : sabotages())
-            std::cout << "sabotage " << sabotage.name << ' ' << sabotage.test << '\n';
 }
 
 } // namespace
@@ -124,7 +120,6 @@ int stress(const StressOptions& options) {
         return kExitOk;
     }
     check_json_path(options.stats); // fails before a long run rather than after it
-    if (!options.sabotage.empty()) remove_guard(options.sabotage);
     const InterruptFlag interrupt;
     const Stopwatch watch;
     const Table table(tests, !options.quiet && options.stats != "-");
@@ -148,13 +143,11 @@ int stress(const StressOptions& options) {
         rows.push_back(as_json(tests[i], result));
     }
     if (!options.stats.empty()) {
-        json statistics = {{"program", "compare stress"},
-                           {"version", DUET_VERSION},
-                           {"seed", options.seed},
-                           {"factor", options.factor},
-                           {"tests", rows}};
-        // These results are not those of the real numerics.
-        if (!options.sabotage.empty()) statistics["sabotage"] = options.sabotage;
+        const json statistics = {{"program", "compare stress"},
+                                 {"version", DUET_VERSION},
+                                 {"seed", options.seed},
+                                 {"factor", options.factor},
+                                 {"tests", rows}};
         write_json(options.stats, statistics);
     }
     if (!options.quiet)

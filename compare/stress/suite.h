@@ -15,7 +15,6 @@ struct StressOptions {
     int threads = 0;   ///< 0: all
     std::string stats; ///< output file for the rows as JSON; "-": standard output; empty: none
     bool quiet = false;
-    std::string sabotage; ///< guard to remove in a fault-injection build; empty: none
 };
 
 /// Prints one row per test as it finishes. Returns 1 if a test failed, 130 after a signal, else 0. Throws Error for

@@ -102,7 +102,7 @@ void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t co
 
 /// Runs all culling tests for sixteen triangles with SIMD.
 void Assembler::judge(Outlines& out) const {
-    const bool one_sample = plan_->samples.size() == 1 && !sabotaged(Guard::kPerspective);
+    const bool one_sample = plan_->samples.size() == 1;
     const PixelRect& region = plan_->grid.region;
     const Skips& skips = plan_->skips;
     const Ints zero(0), round_up(kSubPixels - 1);

@@ -1,7 +1,5 @@
 #include "raster/geometry/clip.h"
 
-#include "common/system/sabotage.h"
-
 #include <algorithm>
 #include <span>
 
@@ -53,7 +51,6 @@ ClippedPolygon clip(const PixelVertex& a, const PixelVertex& b, const PixelVerte
     };
     ClippedPolygon polygon{{a, b, c}, 3};
     for (const Plane& plane : planes) {
-        if (sabotaged(&plane == planes ? Guard::kNearClip : Guard::kGuardClip)) continue;
         polygon = clip(polygon, plane);
         if (&plane != planes) continue;
         // A corner on the near plane must have exactly that depth. Interpolated between distant ends it could be

@@ -1,7 +1,5 @@
 #include "raster/geometry/cull.h"
 
-#include "common/system/sabotage.h"
-
 namespace duet::raster {
 
 CullCounts& CullCounts::operator+=(const CullCounts& other) {
@@ -25,7 +23,7 @@ bool outside_frustum(const Box3& box, const Pinhole& pinhole, const Viewport& vi
 }
 
 bool may_cull_backfaces(const TransformedObject& object, bool solid) {
-    return solid && ((object.any_outside & kNear) == 0 || sabotaged(Guard::kEyeOutside));
+    return solid && (object.any_outside & kNear) == 0;
 }
 
 std::int64_t doubled_area(FixedPoint a, FixedPoint b, FixedPoint c) {

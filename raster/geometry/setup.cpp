@@ -9,10 +9,7 @@
 namespace duet::raster {
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
-    const auto local = [&](const PixelVertex& v) {
-        const Vec3d p(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w);
-        return sabotaged(Guard::kPerspective) ? p / v.w : p;
-    };
+    const auto local = [&](const PixelVertex& v) { return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w); };
     const Vec3d va = local(a), vb = local(b), vc = local(c);
     e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
     if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
@@ -63,7 +60,6 @@ bool in_other_half(const Interpolated& at, Piece piece) {
     const auto beyond = [](double across, double other1, double other2) {
         return other1 >= 0 && other2 >= 0 && across + other1 >= 0 && across + other2 >= 0;
     };
-    if (sabotaged(Guard::kQuadDiagonal)) return false;
     switch (piece) {
     case Piece::kQuadFirst:
         return beyond(at.b1, at.b0, at.b2);
@@ -81,11 +77,11 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
     Interpolated result{value(0), value(1), value(2), 0, 0};
     const bool outside = result.b0 < 0 || result.b1 < 0 || result.b2 < 0;
-    if (outside && !in_other_half(result, piece) && !sabotaged(Guard::kInsideTriangle)) {
+    if (outside && !in_other_half(result, piece)) {
         const Vec2d sample = p;
         p = mirrored_inside(p);
         const bool still_outside = value(0) < 0 || value(1) < 0 || value(2) < 0;
-        if (still_outside && !sabotaged(Guard::kNearestOutline)) p = nearest_on_outline(sample);
+        if (still_outside) p = nearest_on_outline(sample);
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;
@@ -126,8 +122,7 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
 }
 
 void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near) {
-    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant) &&
-                     !sabotaged(Guard::kPerspective);
+    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant);
     triangle.clipped = clipped;
     if (!clipped) triangle.nearest = static_cast<float>(near / least_depth) * (1 + 0x1p-22f);
     triangle.nearness = plane;

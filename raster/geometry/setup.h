@@ -1,7 +1,6 @@
 // Implements stage 4, triangle setup, which computes once per triangle what coverage and interpolation need.
 #pragma once
 
-#include "common/system/sabotage.h"
 #include "common/vec/scalar.h"
 #include "raster/geometry/cull.h"
 #include "raster/geometry/packed_shape.h"
@@ -36,19 +35,13 @@ struct EdgeFunction {
         // The interior of a positive triangle lies to the right of an edge that runs up, and below one that runs
         // right.
         const bool left_or_top = (dy < 0) | ((dy == 0) & (dx > 0)); // branchless, because branch prediction fails here
-        c -= !left_or_top & !sabotaged(Guard::kTopLeftRule);
+        c -= !left_or_top;
     }
-    std::int64_t at(std::int64_t x, std::int64_t y) const {
-        const std::int64_t value = a * x + b * y + c;
-        return sabotaged(Guard::kWideEdges) ? static_cast<std::int32_t>(value) : value;
-    }
+    std::int64_t at(std::int64_t x, std::int64_t y) const { return a * x + b * y + c; }
 };
 
 /// Converts a reversed depth to the precision in which a tile stores it.
-inline float kept_nearness(double nearness) {
-    const auto n = static_cast<float>(nearness);
-    return sabotaged(Guard::kReversedDepth) ? 1 - (1 - n) : n; // mutation: standard depth, 0 near, 1 far
-}
+inline float kept_nearness(double nearness) { return static_cast<float>(nearness); }
 
 /// Holds barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or in the quad of which it is one
 /// half. A sample outside the triangle is moved to a point inside.

@@ -14,7 +14,7 @@ struct SmallEdge {
         const Ints dx = to_x - from_x, dy = to_y - from_y, zero(0);
         const auto left_or_top = dy < zero || (dy == zero && dx > zero);
         at = dx * (sample_y - from_y) - dy * (sample_x - from_x);
-        if (!sabotaged(Guard::kTopLeftRule)) at = at + xsimd::select(left_or_top, zero, Ints(-1));
+        at = at + xsimd::select(left_or_top, zero, Ints(-1));
         length = abs(dx) + abs(dy);
         step_x = zero - dy * Ints(kSubPixels);
         step_y = dx * Ints(kSubPixels);

@@ -1,7 +1,6 @@
 #include "raster/geometry/sphere.h"
 
 #include "common/geometry/sphere.h"
-#include "common/system/sabotage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +91,7 @@ std::optional<float> DrawSphere::intersect(const Ray& ray) const {
 
 Doubles DrawSphere::intersect(const CameraRays& rays) const {
     const Doubles none(std::numeric_limits<double>::infinity());
-    if (!identity || sabotaged(Guard::kSphereRoots)) {
+    if (!identity) {
         alignas(64) std::array<double, Doubles::size> found;
         for (std::size_t i = 0; i < found.size(); ++i) {
             const std::optional<float> t = intersect(rays.at(i, 0));

@@ -237,8 +237,7 @@ void StripSolver<S, D>::solve_directions(const Own& own, const Positions& positi
 /// on the position on the triangle.
 template <VertexShader S, typename D>
 bool StripSolver<S, D>::may_solve_directions(const StripPlace& place, const ReadStrip& samples) const {
-    return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && samples.all_easy() &&
-           !sabotaged(Guard::kPerspective);
+    return Sixteen::kDirections && (samples.seen & ~(samples.on_mesh & place.inside)) == 0 && samples.all_easy();
 }
 
 template <VertexShader S, typename D>
@@ -292,7 +291,7 @@ void StripSolver<S, D>::solve_one(const StripPlace& place, const ReadStrip& samp
         solve_at(samples, positions, strip);
     }
     if (strip.directions) return;
-    strip.inside &= sabotaged(Guard::kPerspective) ? 0 : samples.on_mesh;
+    strip.inside &= samples.on_mesh;
     if (mend) mend_strip(place, samples, strip);
 }
 

@@ -161,7 +161,7 @@ template <std::size_t kSide> struct DepthTile::Nearness {
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
         const Floats nearness = narrowed(half(i), half(i + Doubles::size));
-        return sabotaged(Guard::kReversedDepth) ? Floats(1.0f) - (Floats(1.0f) - nearness) : nearness;
+        return nearness;
     }
 };
 
@@ -175,7 +175,7 @@ void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Float
     // the stored float. (Two comparisons joined by "or" would form a longer dependency chain.)
     const Ints bits = xsimd::bitwise_cast<Ints>(nearness);
     Ints to_beat = xsimd::bitwise_cast<Ints>(before);
-    if (!sabotaged(Guard::kDrawOrder)) to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
+    to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
     const auto wins = xsimd::bool_cast(xsimd::select(xsimd::bool_cast(lanes), bits, Ints(-1)) > to_beat);
     xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
     xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
@@ -298,7 +298,7 @@ void DepthTile::draw(std::span<const Fragment> fragments) {
 void DepthTile::keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside) {
     open(place / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
-    const bool tie_won = nearness == nearness_[place] && number < ids_[place] && !sabotaged(Guard::kDrawOrder);
+    const bool tie_won = nearness == nearness_[place] && number < ids_[place];
     if (!(nearness > nearness_[place] || tie_won)) return;
     nearness_[place] = nearness;
     ids_[place] = number;

@@ -39,7 +39,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
     }
     world_ = world.build();
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !holes_;
-    streams_ = streamable(world_) && !sabotaged(Guard::kSphereRoots);
+    streams_ = streamable(world_);
 }
 
 // Transforms the ray to the instance's object space at the ray's time.

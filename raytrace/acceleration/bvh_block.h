@@ -4,7 +4,6 @@
 
 #include "common/geometry/quad.h"
 #include "common/geometry/triangle.h"
-#include "common/system/sabotage.h"
 #include "raytrace/acceleration/bvh.h"
 
 #include <bit>
@@ -89,7 +88,7 @@ private:
         const auto inside = (low > zero) | (high < zero);
         certain_ = lane_bits(inside & (xsimd::abs(t) > error)) & ~unsure;
         touched_lanes_ = inside & (xsimd::abs(t) <= error);
-        touched_ = sabotaged(Guard::kPlaneDistance) ? 0 : lane_bits(touched_lanes_) & ~unsure;
+        touched_ = lane_bits(touched_lanes_) & ~unsure;
         t_ = t;
         u_ = test.e1 * inv_det;
         v_ = test.e2 * inv_det;

@@ -148,8 +148,7 @@ private:
         } else if (leaf.kind() == PrimitiveKind::kInstance && std::popcount(active) > kFewRays) {
             instances_(bvh_.instances[leaf.index()], active, best_);
             nearer_ = true;
-        } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kSomeRays &&
-                   !sabotaged(Guard::kSphereRoots)) {
+        } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kSomeRays) {
             test(bvh_.spheres[leaf.index()], active);
         } else {
             for (; active != 0; active &= active - 1) {

@@ -1,7 +1,6 @@
 // These ray-box tests of nodes are conservative: no box that contains a hit is skipped.
 #pragma once
 
-#include "common/system/sabotage.h"
 #include "common/vec/ray.h"
 #include "raytrace/acceleration/bvh.h"
 
@@ -14,8 +13,8 @@ namespace duet::raytrace {
 /// the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance has 6
 /// more, and the fused form plane·(1/d) − origin·(1/d) adds another of each; this bound has room for 16.)
 struct SlabError {
-    /// Returns the margin of box tests, relative to the sizes of the coordinates.
-    static float relative() { return sabotaged(Guard::kEnlargedBoxes) ? 0.0f : 0x1p-20f; }
+    /// The margin of box tests, relative to the sizes of the coordinates.
+    static constexpr float kRelative = 0x1p-20f;
     /// No reciprocal is infinite: a direction component of 0 counts as this fraction of the largest component. The
     /// fraction is so small that a ray inside a slab, by more than the error that the slab is widened by, leaves it
     /// beyond everything in the box.
@@ -37,7 +36,7 @@ template <typename B> struct Slabs {
     Slabs(B origin, B direction, B extent, B greatest_extent, B greatest_size) {
         const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction),
                 place = xsimd::abs(origin);
-        const B error = (extent + extent + greatest_extent + place) * B(SlabError::relative()) +
+        const B error = (extent + extent + greatest_extent + place) * B(SlabError::kRelative) +
                         B(std::numeric_limits<float>::min());
         const B divisor = xsimd::max(xsimd::max(size, greatest_size * B(SlabError::kSmallest)),
                                      SlabError::least_divisor(extent + place));

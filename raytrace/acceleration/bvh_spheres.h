@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/geometry/sphere.h"
-#include "common/system/sabotage.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh.h"
 
@@ -27,10 +26,6 @@ class SphereBlockTest {
 public:
     [[gnu::always_inline]] SphereBlockTest(const SphereRay& its, const SphereBlock& block, float end) {
         const Ray& ray = its.ray;
-        if (sabotaged(Guard::kSphereRoots)) {
-            one_by_one(ray, block, end);
-            return;
-        }
         alignas(32) BlockLanes<float> near, far;
         unsigned met = 0;
         for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
@@ -60,16 +55,6 @@ public:
 
 private:
     using Batch = FloatBatch<kBlockSize>;
-
-    void one_by_one(Ray ray, const SphereBlock& block, float end) {
-        ray.t_max = end;
-        hits_ = 0;
-        for (std::size_t lane = 0; lane < kBlockSize; ++lane)
-            if (const auto t = intersect_sphere(ray, block.sphere(lane))) {
-                t_[lane] = *t;
-                hits_ |= 1u << lane;
-            }
-    }
 
     unsigned hits_;
     alignas(32) BlockLanes<float> t_;

@@ -153,8 +153,8 @@ private:
         Vec3 ahead, behind;
         const Batch smallest = Batch(SlabError::kSmallest) * xsimd::abs(direction[shear_.kz]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float error = (2 * extents[axis] + largest + sizes[axis]) * SlabError::relative() +
-                                std::numeric_limits<float>::min();
+            const float error =
+                (2 * extents[axis] + largest + sizes[axis]) * SlabError::kRelative + std::numeric_limits<float>::min();
             const float sign = backwards_[axis] ? -1.0f : 1.0f, away = error * sign;
             const Batch least(SlabError::least_divisor(extents[axis] + sizes[axis]));
             scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);

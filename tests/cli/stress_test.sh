@@ -20,10 +20,6 @@ cmp -s "$scratch/threads-1.json" "$scratch/threads-3.json" || fail "the rows dep
 
 expect 0 "$bin/compare" stress --list --only leak/edges
 grep -q "aimed at its edges" "$scratch/stdout" || fail "--list does not say what leak/edges is"
-grep -q sabotage "$scratch/stdout" && fail "a guard can be taken away in this build"
-expect 2 "$bin/compare" stress --sabotage enlarged-boxes
-one_line_error sabotage
-"$bin/compare" stress --help | grep -q sabotage && fail "--help shows --sabotage"
 expect 2 "$bin/compare" stress --only nothing
 one_line_error "arithmetic/frames"
 expect 2 "$bin/compare" stress --trials 0
