@@ -77,12 +77,12 @@ template <typename T> void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<
 
 /// Returns the surface geometry of a point whose object space is the world space.
 template <typename T> auto surface_geometry(const PointOnShapeT<T>& local) {
-    SurfaceGeometryT<decltype(rounded(local.p).x)> point;
-    point.p = rounded(local.p);
-    point.p_error = rounded(local.magnitude * T(kPointRounding));
-    point.ng = rounded(local.unit ? local.ng : normalize(local.ng));
+    SurfaceGeometryT<decltype(to_floats(local.p).x)> point;
+    point.p = to_floats(local.p);
+    point.p_error = to_floats(local.magnitude * T(kPointRounding));
+    point.ng = to_floats(local.unit ? local.ng : normalize(local.ng));
     point.ns = point.horizon = point.ng;
-    if (local.smooth) set_shading_normal(point, rounded(normalize(local.ns)), rounded(local.lift));
+    if (local.smooth) set_shading_normal(point, to_floats(normalize(local.ns)), to_floats(local.lift));
     return point;
 }
 

@@ -47,7 +47,12 @@ template <KnownBsdf BsdfType, typename T> T pdf(const BsdfType& bsdf, Vec3T<T> w
     return bsdf.pdf(wo, wi, TransportMode::kRadiance);
 }
 template <KnownBsdf BsdfType> constexpr bool is_transmissive(const BsdfType&) { return BsdfType::kTransmissive; }
-template <typename T> T refraction_index(const DielectricBsdfT<T>& bsdf) { return bsdf.eta; }
+template <KnownBsdf BsdfType> auto refraction_index(const BsdfType& bsdf) {
+    if constexpr (BsdfType::kTransmissive)
+        return bsdf.eta;
+    else
+        return 1.0f;
+}
 
 /// Returns whether the Bsdf has only delta lobes, which light sampling cannot find.
 bool is_specular(const Bsdf& bsdf);

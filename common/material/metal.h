@@ -20,10 +20,11 @@ template <typename T> struct MetalBsdfT {
     static constexpr float kSmoothAlpha = 1e-4f;
 
     RgbT<T> reflectance; ///< reflectance at normal incidence
-    T alpha;             ///< GGX width: roughness²
+    T alpha{};           ///< GGX width: roughness²
     RgbT<T> n, k;        ///< complex index of a named conductor, or 0
     RgbT<T> multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
 
+    MetalBsdfT() = default;
     MetalBsdfT(Rgb reflectance, float alpha);
     MetalBsdfT(const Conductor& conductor, float alpha);
 

@@ -123,6 +123,6 @@ template <typename T> MaskOf<T> is_finite(Vec3T<T> a) { // NaN is below no numbe
 }
 
 /// Rounds each component to float. There is an overload for batches in widen.h.
-inline Vec3 rounded(Vec3d v) { return Vec3(v); }
+inline Vec3 to_floats(Vec3d v) { return Vec3(v); }
 
 } // namespace duet

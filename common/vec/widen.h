@@ -31,10 +31,10 @@ inline NarrowBatch to_floats(DoubleBatch doubles) {
     return NarrowBatch::load_aligned(lanes.data());
 #endif
 }
-inline Vec3T<NarrowBatch> rounded(const Vec3T<DoubleBatch>& v) {
+inline Vec3T<NarrowBatch> to_floats(const Vec3T<DoubleBatch>& v) {
     return {to_floats(v.x), to_floats(v.y), to_floats(v.z)};
 }
-inline Vec3T<DoubleBatch> widened(const Vec3T<NarrowBatch>& v) {
+inline Vec3T<DoubleBatch> to_doubles(const Vec3T<NarrowBatch>& v) {
     return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)};
 }
 
