@@ -23,7 +23,7 @@ template <typename T> struct PointOnShapeT {
 
 /// Returns the point corner + u·du + v·dv of a triangle or, where `quad` holds, of a quad.
 template <typename T>
-PointOnShapeT<T> point_on_flat(const Vec3T<T>& corner, const Vec3T<T>& du, const Vec3T<T>& dv, T u, T v,
+inline PointOnShapeT<T> point_on_flat(const Vec3T<T>& corner, const Vec3T<T>& du, const Vec3T<T>& dv, T u, T v,
                                MaskOf<T> quad) {
     PointOnShapeT<T> point;
     point.p = corner + du * u + dv * v;
@@ -36,7 +36,7 @@ PointOnShapeT<T> point_on_flat(const Vec3T<T>& corner, const Vec3T<T>& du, const
 /// Returns the point of a triangle with the barycentric coordinates u and v, as seen along `direction`, which may have
 /// any length.
 template <typename T>
-PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& vertices,
+inline PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& vertices,
                                           const std::array<Vec3T<T>, 3>& normals, T u, T v,
                                           const Vec3T<T>& direction) {
     const auto& [a, b, c] = vertices;
@@ -51,7 +51,7 @@ PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& vertice
 /// Returns the point of a sphere at the parameter t of a ray. Projecting onto the sphere removes the error of t along
 /// the normal.
 template <typename T>
-PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const Vec3T<T>& origin, const Vec3T<T>& direction,
+inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const Vec3T<T>& origin, const Vec3T<T>& direction,
                                  T t) {
     PointOnShapeT<T> point;
     point.ng = normalize(origin + direction * t - center);
@@ -66,7 +66,7 @@ inline constexpr double kPointRounding = 2 * static_cast<double>(kRoundoff<float
 
 /// Sets the shading normal, and the shading-terminator fix by the lift. The other fields must have been set. T is float
 /// or a batch of floats.
-template <typename T> void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<T> ns, Vec3T<T> lift) {
+template <typename T> inline void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<T> ns, Vec3T<T> lift) {
     ns = select(is_finite(ns), ns, point.ng);
     point.ns = select(dot(ns, point.ng) < T(0), -ns, ns);
     // A lift within the error of p is ignored.
@@ -76,7 +76,7 @@ template <typename T> void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<
 }
 
 /// Returns the surface geometry of a point whose object space is the world space.
-template <typename T> auto surface_geometry(const PointOnShapeT<T>& local) {
+template <typename T> inline auto surface_geometry(const PointOnShapeT<T>& local) {
     SurfaceGeometryT<decltype(to_floats(local.p).x)> point;
     point.p = to_floats(local.p);
     point.p_error = to_floats(local.magnitude * T(kPointRounding));

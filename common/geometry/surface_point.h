@@ -35,7 +35,7 @@ struct SurfacePoint : SurfaceGeometryT<float> {
 };
 
 /// Moves a point beyond its error bound to the side to which the unit normal n points. T is float or a batch of floats.
-template <typename T> Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
+template <typename T> inline Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
     if (sabotaged(Guard::kOffsetOrigin)) return p;
     const Vec3T<T> offset = n * dot(abs(n), p_error);
     return rounded_away(p + offset, offset);
@@ -46,7 +46,7 @@ template <typename T> Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T
 /// plane of point.horizon, the ray starts from the smooth surface (p + lift) instead of the triangle. Triangles near
 /// the shading terminator then do not cast stepped shadows on each other (Hanika 2021, "Hacking the Shadow
 /// Terminator").
-template <typename T> Vec3T<T> offset_origin(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
+template <typename T> inline Vec3T<T> offset_origin(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
     const T zero(0), seen = dot(point.lift, point.ng); // 0 if there is no lift
     const MaskOf<T> lifted = dot(w, point.horizon) * seen > zero;
     const MaskOf<T> below = select(lifted, seen, dot(w, point.ng)) < zero;

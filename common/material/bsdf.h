@@ -36,6 +36,7 @@ template <typename T> struct BsdfSampleLanes {
     BsdfSampleT<T> sample;
 
     const BsdfSampleT<T>& operator*() const { return sample; }
+    const BsdfSampleT<T>* operator->() const { return &sample; }
 };
 /// Sample() of a BSDF returns this: std::optional for a single surface.
 template <typename T>

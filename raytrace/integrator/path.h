@@ -20,13 +20,13 @@ namespace duet::raytrace {
 /// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is not
 /// divided by the sample's density yet.
 template <typename AnyVertex, typename T>
-RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+inline RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     return scattering(vertex, light.wi) * light.radiance;
 }
 
 /// Returns the MIS weight of a light sample against the BSDF samples of the vertex.
 template <typename AnyVertex, typename T>
-T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+inline T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     if (all(light.delta)) return T(1);
     // BSDF samples find the environment and all emitters at rest, too.
     const T bsdf_pdf = pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(light.wi));
@@ -41,29 +41,27 @@ inline float found_light_weight(const Departure& departure, float light_pdf) {
 
 /// Holds how a path leaves a vertex.
 template <typename T> struct ScatteringT {
-    MaskOf<T> scatters = MaskOf<T>(false);  ///< whether the surface scatters any light; else it absorbs all
-    MaskOf<T> continues = MaskOf<T>(false); ///< whether the new direction is valid, too
-    BsdfSampleT<T> sample;
-    Vec3T<T> wi; ///< direction of the next ray, unit, in world space
+    OptionalBsdfSample<T> sample;
+    MaskOf<T> scatters = has_sample(sample); ///< whether the surface scatters any light; else it absorbs all
+    MaskOf<T> continues = MaskOf<T>(false);  ///< whether the new direction is valid, too
+    Vec3T<T> wi{};                           ///< direction of the next ray, unit, in world space
 };
 
 /// Samples the next direction from the BSDF of the vertex and multiplies the path's throughput by the sample's weight.
 template <typename AnyVertex, typename T>
-ScatteringT<T> scatter(const AnyVertex& vertex, const VertexNumbersT<T>& u, PathThroughputT<T>& path) {
-    ScatteringT<T> next;
-    const OptionalBsdfSample<T> s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
-    next.scatters = has_sample(s);
+inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexNumbersT<T>& u, PathThroughputT<T>& path) {
+    ScatteringT<T> next{sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf)};
     if (none_of(next.scatters)) return next;
-    next.sample = *s;
-    next.scatters = next.scatters & !is_black(next.sample.weight);
-    next.wi = normalize(vertex.frame.to_world(next.sample.wi));
-    next.continues = next.scatters & is_consistent(vertex, next.wi, next.sample.wi);
-    path.throughput *= next.sample.weight;
+    const BsdfSampleT<T>& s = *next.sample;
+    next.scatters = next.scatters & !is_black(s.weight);
+    next.wi = normalize(vertex.frame.to_world(s.wi));
+    next.continues = next.scatters & is_consistent(vertex, next.wi, s.wi);
+    path.throughput *= s.weight;
     if (is_transmissive(vertex.bsdf)) {
         // Entering glass scales the throughput by 1/η², and leaving it by η². Roulette must ignore both.
         const T eta2 = sqr(T(refraction_index(vertex.bsdf)));
         const T factor = select(vertex.wo.z > T(0), T(1) / eta2, eta2);
-        path.refraction = select(next.sample.transmitted, path.refraction * factor, path.refraction);
+        path.refraction = select(s.transmitted, path.refraction * factor, path.refraction);
     }
     return next;
 }
@@ -74,7 +72,7 @@ template <typename T> struct RouletteT {
 };
 /// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
 /// paths that end. `worth` is RenderPlan::worth.
-template <typename T> RouletteT<T> russian_roulette(float worth, T u, PathThroughputT<T>& path) {
+template <typename T> inline RouletteT<T> russian_roulette(float worth, T u, PathThroughputT<T>& path) {
     const T probability = survival(path.throughput, path.refraction, T(worth));
     const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
     if (all(certain)) return {probability, certain};
@@ -210,15 +208,15 @@ private:
         if (!next.scatters) return tell_end("the surface absorbs it");
         if (!next.continues) return tell_end("its direction lies between the horizons of both normals");
         if constexpr (kInsides)
-            if (next.sample.transmitted && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
-        if constexpr (Sink::kTold) sink_.log().scattered(vertex, next.sample, next.wi, state_);
-        footprint_.scatter(next.sample.pdf, next.sample.specular);
+            if (next.sample->transmitted && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *next.sample, next.wi, state_);
+        footprint_.scatter(next.sample->pdf, next.sample->specular);
         // Each number is written to where it is read next. If a whole ray were copied right after its components
         // were written, that load would wait for their stores.
-        state_.departure.certain = next.sample.specular || plan_.lights == nullptr;
+        state_.departure.certain = next.sample->specular || plan_.lights == nullptr;
         if (!state_.departure.certain) {
             state_.departure.receiver = light_receiver(vertex);
-            state_.departure.pdf = next.sample.pdf;
+            state_.departure.pdf = next.sample->pdf;
         }
         ray.origin = offset_origin(vertex.point, next.wi);
         ray.direction = next.wi;

@@ -13,7 +13,7 @@ Rgb environment_found(const RenderPlan& plan, const Vertex& vertex, const Vertex
     PathState state;
     const ScatteringT<float> next = scatter(vertex, u, state);
     if (!next.continues) return Rgb();
-    const Departure from{light_receiver(vertex), next.sample.pdf, next.sample.specular || plan.lights == nullptr};
+    const Departure from{light_receiver(vertex), next.sample->pdf, next.sample->specular || plan.lights == nullptr};
     const float light_pdf = from.certain ? 0 : arrival_pdf(*plan.environment, *plan.lights, from.receiver, next.wi);
     return state.throughput * radiance(*plan.environment, next.wi) * found_light_weight(from, light_pdf);
 }

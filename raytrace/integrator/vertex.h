@@ -41,12 +41,12 @@ private:
 // (BatchVertex), with the same members. T is the number type.
 
 /// Returns the direction back along a ray of the given direction (world space, unit) in a vertex's frame.
-template <typename T> Vec3T<T> direction_to_viewer(const FrameT<T>& frame, Vec3T<T> ng, Vec3T<T> ray_direction) {
+template <typename T> inline Vec3T<T> direction_to_viewer(const FrameT<T>& frame, Vec3T<T> ng, Vec3T<T> ray_direction) {
     const Vec3T<T> wo = -ray_direction;
     return lifted_above_horizon(frame.to_local(wo), select(dot(wo, ng) < T(0), T(-1), T(1)));
 }
 /// Returns the light receiver: on the visible side of the surface, or on both sides if the BSDF transmits.
-template <typename AnyVertex> auto light_receiver(const AnyVertex& vertex) {
+template <typename AnyVertex> inline auto light_receiver(const AnyVertex& vertex) {
     using T = decltype(vertex.wo.z);
     if (is_transmissive(vertex.bsdf)) return LightReceiverT<T>{vertex.point.p, Vec3T<T>(T(0), T(0), T(0))};
     return LightReceiverT<T>{vertex.point.p, select(vertex.wo.z < T(0), -vertex.point.ng, vertex.point.ng)};
@@ -54,13 +54,13 @@ template <typename AnyVertex> auto light_receiver(const AnyVertex& vertex) {
 /// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in the
 /// frame. On the viewer's side, `horizon` takes the place of the geometric normal (shading-terminator fix).
 template <typename AnyVertex, typename T>
-MaskOf<T> is_consistent(const AnyVertex& vertex, Vec3T<T> wi, Vec3T<T> local) {
+inline MaskOf<T> is_consistent(const AnyVertex& vertex, Vec3T<T> wi, Vec3T<T> local) {
     const Vec3T<T> normal = select(same_hemisphere(vertex.wo, local), vertex.point.horizon, vertex.point.ng);
     return dot(wi, normal) * local.z > T(0);
 }
 /// Returns f(wo, wi)·|cos θᵢ| for wi in world space (unit). It is black where the geometric and the shading normal
 /// disagree about the side of wi, because light must not leak through the surface.
-template <typename AnyVertex, typename T> RgbT<T> scattering(const AnyVertex& vertex, Vec3T<T> wi) {
+template <typename AnyVertex, typename T> inline RgbT<T> scattering(const AnyVertex& vertex, Vec3T<T> wi) {
     const Vec3T<T> local = vertex.frame.to_local(wi);
     const MaskOf<T> consistent = is_consistent(vertex, wi, local);
     if (none_of(consistent)) return RgbT<T>(T(0));

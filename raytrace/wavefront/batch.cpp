@@ -45,8 +45,8 @@ template <typename BsdfType> struct BatchVertex {
     const Vec wo;
     const BsdfType bsdf;
 
-    BatchVertex(std::span<const BatchPath> paths, const SurfaceGeometryT<Floats>& point_, const BsdfType& bsdf_)
-        : point(point_), frame(frame_from_normal(point.ns)),
+    BatchVertex(std::span<const BatchPath> paths, PlainSurfaces::Form form, const BsdfType& bsdf_)
+        : point(surface_points(paths, form)), frame(frame_from_normal(point.ns)),
           wo(direction_to_viewer(frame, point.ng, directions(paths))), bsdf(bsdf_) {}
 
 private:
@@ -57,21 +57,47 @@ private:
     }
 };
 
-MetalBsdfT<Floats> load_metals(std::span<const BatchPath> paths) {
+// Loads the BSDFs of the paths, which all hold the type BsdfT<float>, number by number.
+template <template <typename> typename BsdfT> auto numbers_of_bsdfs(std::span<const BatchPath> paths) {
+    // The numbers are loaded in rows of four. The last row overlaps the one before, or ends behind a BSDF of fewer
+    // numbers, but within the Bsdf.
+    constexpr std::size_t kRow = 4, kNumbers = std::max(sizeof(BsdfT<float>) / sizeof(float), kRow);
+    static_assert(kNumbers * sizeof(float) <= sizeof(Bsdf));
+    std::array<const float*, kLanes> first;
+    for_lanes(paths, [&](std::size_t i, const BatchPath& path) {
+        first[i] = reinterpret_cast<const float*>(&std::get<BsdfT<float>>(*path.bsdf));
+    });
+    std::array<Floats, kNumbers> numbers;
+    for (std::size_t done = 0; done < kNumbers; done += kRow) {
+        const std::size_t k = std::min(done, kNumbers - kRow);
+        const auto row = load_columns<kLanes>([&](std::size_t i) { return first[i] + k; });
+        std::copy(row.begin(), row.end(), numbers.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    return numbers;
+}
+DiffuseBsdfT<Floats> diffuse_bsdfs(std::span<const BatchPath> paths) {
+    const auto n = numbers_of_bsdfs<DiffuseBsdfT>(paths);
+    return {{n[0], n[1], n[2]}};
+}
+DielectricBsdfT<Floats> dielectric_bsdfs(std::span<const BatchPath> paths) {
+    const auto n = numbers_of_bsdfs<DielectricBsdfT>(paths);
+    return {n[0], {n[1], n[2], n[3]}};
+}
+MetalBsdfT<Floats> metal_bsdfs(std::span<const BatchPath> paths) {
+    const auto n = numbers_of_bsdfs<MetalBsdfT>(paths);
     MetalBsdfT<Floats> metals;
-    metals.reflectance = load(paths, &MetalBsdf::reflectance);
-    metals.alpha = load(paths, &MetalBsdf::alpha);
-    metals.n = load(paths, &MetalBsdf::n);
-    metals.k = load(paths, &MetalBsdf::k);
-    metals.multiple = load(paths, &MetalBsdf::multiple);
+    metals.reflectance = {n[0], n[1], n[2]};
+    metals.alpha = n[3];
+    metals.n = {n[4], n[5], n[6]};
+    metals.k = {n[7], n[8], n[9]};
+    metals.multiple = {n[10], n[11], n[12]};
     return metals;
 }
 
 template <typename BsdfType> class Batch {
 public:
-    Batch(const RenderPlan& plan, std::span<BatchPath> paths, const SurfaceGeometryT<Floats>& point,
-          const BsdfType& bsdf)
-        : plan_(plan), paths_(paths), vertex_(paths, point, bsdf) {
+    Batch(const RenderPlan& plan, std::span<BatchPath> paths, PlainSurfaces::Form form, const BsdfType& bsdf)
+        : plan_(plan), paths_(paths), vertex_(paths, form, bsdf) {
         const auto [r, g, b, refraction] =
             fours(paths, [](const BatchPath& path) -> const float& { return path.state->throughput.r; });
         path_ = {{r, g, b}, refraction};
@@ -80,7 +106,7 @@ public:
     // Adds a light sample to each path. The shadow rays are traced later.
     void add_light_samples(ShadowRays& shadows, RayCounts& counts) {
         store_receivers();
-        const BatchLightSamples samples(plan_, paths_);
+        const BatchLightSamples samples(plan_, paths_, vertex_.point.p);
         const LightLiSampleT<Floats> light = samples.lanes();
         const Color scattered = scattered_light(vertex_, light);
         unsigned lit = samples.some() & ~lane_bits(is_black(scattered));
@@ -110,7 +136,7 @@ public:
         }
         const Columns origins(offset_origin(vertex_.point, next.wi)), directions(next.wi),
             throughputs(path_.throughput);
-        const Column pdfs(next.sample.pdf), refractions(path_.refraction);
+        const Column pdfs(next.sample->pdf), refractions(path_.refraction);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             BatchPath& path = paths_[i];
             path.goes_on = (going >> i & 1u) != 0;
@@ -122,7 +148,7 @@ public:
             path.state->throughput = throughputs.rgb(i);
             path.state->refraction = refractions.of[i];
             path.state->departure.pdf = pdfs.of[i];
-            path.state->departure.certain = next.sample.specular || plan_.lights == nullptr;
+            path.state->departure.certain = next.sample->specular || plan_.lights == nullptr;
         }
     }
 
@@ -155,17 +181,15 @@ private:
 void advance_batch(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
                    ShadowRays& shadows, RayCounts& counts) {
     const auto advance = [&](const auto& bsdf) {
-        Batch batch(plan, paths, surface_points(paths, kind.form), bsdf);
+        Batch batch(plan, paths, kind.form, bsdf);
         if (plan.lights != nullptr && !is_specular(kind.scattering)) batch.add_light_samples(shadows, counts);
         if (depth + 1 < plan.max_depth || plan.hits_find_light) batch.leave(depth, counts);
     };
     switch (kind.scattering) {
-    case PlainSurfaces::Scattering::kMatt: return advance(DiffuseBsdfT<Floats>{load(paths, &DiffuseBsdf::albedo)});
+    case PlainSurfaces::Scattering::kMatt: return advance(diffuse_bsdfs(paths));
     case PlainSurfaces::Scattering::kMetal:
-    case PlainSurfaces::Scattering::kMirror: return advance(load_metals(paths));
-    case PlainSurfaces::Scattering::kGlass:
-        return advance(
-            DielectricBsdfT<Floats>{load(paths, &DielectricBsdf::eta), load(paths, &DielectricBsdf::tint)});
+    case PlainSurfaces::Scattering::kMirror: return advance(metal_bsdfs(paths));
+    case PlainSurfaces::Scattering::kGlass: return advance(dielectric_bsdfs(paths));
     }
 }
 

@@ -10,8 +10,8 @@ namespace duet::raytrace::lanes {
 
 class BatchLightSamples {
 public:
-    /// Draws a light sample for each path. Its receiver must be in the path's state.
-    BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths);
+    /// Draws a light sample for each path, at the points p. The light receiver must be in the path's state.
+    BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p);
 
     /// Returns a bit mask of the paths that have a light sample.
     unsigned some() const { return some_; }
@@ -23,10 +23,19 @@ public:
     }
 
 private:
-    using Choices = std::array<std::optional<LightChoice>, kLanes>;
+    // Holds a LightChoice for each path that has one. The components are copied one by one: if a whole choice were
+    // copied right after it was written, that load would wait for the stores.
+    struct Choices {
+        unsigned some = 0; // bit mask of the paths
+        std::array<std::size_t, kLanes> index;
+        std::array<float, kLanes> probability;
+
+        LightChoice operator[](std::size_t i) const { return {index[i], probability[i], 0}; }
+    };
 
     void set(std::size_t i, const Arrival& arrival);
-    unsigned sample_far_rectangles(const RenderPlan& plan, std::span<const BatchPath> paths, const Choices& choices);
+    unsigned sample_far_rectangles(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p,
+                                   const Choices& choices);
 
     std::array<Arrival, kLanes> all_;
     unsigned some_ = 0;

@@ -57,20 +57,6 @@ template <typename First> std::array<Floats, 4> fours(std::span<const BatchPath>
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }
 
-// Loads a color or a number of each path's BSDF, all of which hold the type BsdfType.
-template <typename BsdfType> Color load(std::span<const BatchPath> paths, Rgb BsdfType::* color) {
-    Columns columns;
-    for_lanes(paths,
-              [&](std::size_t i, const BatchPath& path) { columns.set(i, std::get<BsdfType>(*path.bsdf).*color); });
-    return columns.colors();
-}
-template <typename BsdfType> Floats load(std::span<const BatchPath> paths, float BsdfType::* number) {
-    Column column;
-    for_lanes(paths,
-              [&](std::size_t i, const BatchPath& path) { column.of[i] = std::get<BsdfType>(*path.bsdf).*number; });
-    return column.floats();
-}
-
 #endif
 
 } // namespace duet::raytrace::lanes
