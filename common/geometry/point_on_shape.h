@@ -77,11 +77,10 @@ template <typename T> inline void set_shading_normal(SurfaceGeometryT<T>& point,
 
 /// Returns the surface geometry of a point whose object space is the world space.
 template <typename T> inline auto surface_geometry(const PointOnShapeT<T>& local) {
-    SurfaceGeometryT<decltype(to_floats(local.p).x)> point;
-    point.p = to_floats(local.p);
-    point.p_error = to_floats(local.magnitude * T(kPointRounding));
-    point.ng = to_floats(local.unit ? local.ng : normalize(local.ng));
-    point.ns = point.horizon = point.ng;
+    const auto n = to_floats(local.unit ? local.ng : normalize(local.ng));
+    using F = decltype(n.x);
+    SurfaceGeometryT<F> point{
+        to_floats(local.p), to_floats(local.magnitude * T(kPointRounding)), n, n, n, Vec3T<F>(F(0), F(0), F(0))};
     if (local.smooth) set_shading_normal(point, to_floats(normalize(local.ns)), to_floats(local.lift));
     return point;
 }

@@ -20,13 +20,14 @@ template <typename T> struct MetalBsdfT {
     static constexpr float kSmoothAlpha = 1e-4f;
 
     RgbT<T> reflectance; ///< reflectance at normal incidence
-    T alpha{};           ///< GGX width: roughness²
+    T alpha;             ///< GGX width: roughness²
     RgbT<T> n, k;        ///< complex index of a named conductor, or 0
     RgbT<T> multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
 
-    MetalBsdfT() = default;
     MetalBsdfT(Rgb reflectance, float alpha);
     MetalBsdfT(const Conductor& conductor, float alpha);
+    MetalBsdfT(RgbT<T> reflectance_, T alpha_, RgbT<T> n_, RgbT<T> k_, RgbT<T> multiple_)
+        : reflectance(reflectance_), alpha(alpha_), n(n_), k(k_), multiple(multiple_) {}
 
     bool smooth() const { return all(alpha < T(kSmoothAlpha)); }
     RgbT<T> fresnel(T cosine) const;

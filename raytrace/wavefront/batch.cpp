@@ -85,13 +85,7 @@ DielectricBsdfT<Floats> dielectric_bsdfs(std::span<const BatchPath> paths) {
 }
 MetalBsdfT<Floats> metal_bsdfs(std::span<const BatchPath> paths) {
     const auto n = numbers_of_bsdfs<MetalBsdfT>(paths);
-    MetalBsdfT<Floats> metals;
-    metals.reflectance = {n[0], n[1], n[2]};
-    metals.alpha = n[3];
-    metals.n = {n[4], n[5], n[6]};
-    metals.k = {n[7], n[8], n[9]};
-    metals.multiple = {n[10], n[11], n[12]};
-    return metals;
+    return {{n[0], n[1], n[2]}, n[3], {n[4], n[5], n[6]}, {n[7], n[8], n[9]}, {n[10], n[11], n[12]}};
 }
 
 template <typename BsdfType> class Batch {
