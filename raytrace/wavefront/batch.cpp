@@ -111,9 +111,10 @@ public:
         for (; lit != 0; lit &= lit - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(lit));
             ++counts.shadow;
-            Ray ray{origins.vec(i), samples[i].wi};
+            const Arrival sample = samples[i];
+            Ray ray{origins.vec(i), sample.wi};
             ray.time = paths_[i].ray->time;
-            shadows.add(paths_[i].index, ray, p.vec(i), samples[i], found.rgb(i));
+            shadows.add(paths_[i].index, ray, p.vec(i), sample, found.rgb(i));
         }
     }
 

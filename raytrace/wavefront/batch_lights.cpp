@@ -25,12 +25,13 @@ BatchLightSamples::BatchLightSamples(const RenderPlan& plan, std::span<const Bat
 }
 
 void BatchLightSamples::set(std::size_t i, const Arrival& arrival) {
-    all_[i] = arrival;
     some_ |= 1u << i;
     wi_.set(i, arrival.wi);
     radiance_.set(i, arrival.radiance);
     pdf_.of[i] = arrival.pdf;
     delta_.of[i] = arrival.delta ? 1.0f : 0.0f;
+    distance_[i] = arrival.distance;
+    light_[i] = arrival.light;
 }
 
 // Samples the lights of the paths whose light is a rectangle that is sampled by area, all together. Returns a bit mask

@@ -16,15 +16,17 @@ public:
     /// Returns a bit mask of the paths that have a light sample.
     unsigned some() const { return some_; }
     /// Returns the light sample of path i, which must have one.
-    const Arrival& operator[](std::size_t i) const { return all_[i]; }
+    Arrival operator[](std::size_t i) const {
+        return {{wi_.vec(i), radiance_.rgb(i), pdf_.of[i], delta_.of[i] > 0}, distance_[i], light_[i]};
+    }
     /// Returns the light samples in lanes. Lanes without one have a black sample.
     LightLiSampleT<Floats> lanes() const {
         return {wi_.floats(), radiance_.colors(), pdf_.floats(), delta_.floats() > Floats(0.0f)};
     }
 
 private:
-    // Holds a LightChoice for each path that has one. The components are copied one by one: if a whole choice were
-    // copied right after it was written, that load would wait for the stores.
+    // Holds a LightChoice for each path that has one. Choices and samples are copied component by component: if a whole
+    // one were copied right after its components were written, that load would wait for the stores.
     struct Choices {
         unsigned some = 0; // bit mask of the paths
         std::array<std::size_t, kLanes> index;
@@ -37,10 +39,11 @@ private:
     unsigned sample_far_rectangles(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p,
                                    const Choices& choices);
 
-    std::array<Arrival, kLanes> all_;
     unsigned some_ = 0;
     Columns wi_, radiance_;
     Column pdf_, delta_;
+    std::array<float, kLanes> distance_;
+    std::array<std::int64_t, kLanes> light_;
 };
 
 #endif
