@@ -31,7 +31,7 @@ struct RenderPlan {
     bool mirror_light = false;      ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
     bool insides = false; ///< whether a dielectric absorbs or has a priority, so that paths need a medium stack
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
-    PlainSurfaces plain;            ///< surfaces at which paths are scattered in batches (plain_vertices.h)
+    PlainSurfaces plain;            ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;
     bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
     float worth = kPlainWorth;      ///< survival probability divided by throughput; see learned_worth

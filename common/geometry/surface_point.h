@@ -9,18 +9,22 @@
 
 namespace duet {
 
-struct SurfacePoint {
-    Vec3 p;       ///< position in world space
-    Vec3 p_error; ///< bound on the absolute error of p, per axis
-    Vec3 ng;      ///< unit geometric normal on the front side (counter-clockwise, outward), whichever side is visible
-    Vec3 ns;      ///< unit shading normal in the hemisphere of ng
+/// These fields of a surface point decide where rays start and end. T is float, or a batch of floats for several points.
+template <typename T> struct SurfaceGeometryT {
+    Vec3T<T> p;       ///< position in world space
+    Vec3T<T> p_error; ///< bound on the absolute error of p, per axis
+    Vec3T<T> ng; ///< unit geometric normal on the front side (counter-clockwise, outward), whichever side is visible
+    Vec3T<T> ns; ///< unit shading normal in the hemisphere of ng
     /// The shading-terminator fix uses this unit normal in the hemisphere of ng. No light is reflected from or to
     /// directions below its plane. It is ns where the smooth surface lies above the triangle on the viewer's side, else
     /// ng.
-    Vec3 horizon;
+    Vec3T<T> horizon;
     /// The shading-terminator fix moves the origins of secondary rays by this vector, from p to the smooth surface on
     /// the viewer's side. It is (0,0,0) where horizon is ng.
-    Vec3 lift;
+    Vec3T<T> lift;
+};
+
+struct SurfacePoint : SurfaceGeometryT<float> {
     Vec2 uv;             ///< texture coordinates
     Vec2 duv_dx, duv_dy; ///< change of uv from this sample to its neighbors; (0, 0): textures are not filtered
     Vec3 dpdu, dpdv;     ///< derivatives of p by u and v; (0,0,0) where uv are degenerate
@@ -30,17 +34,23 @@ struct SurfacePoint {
     float time = 0;
 };
 
+/// Moves a point beyond its error bound to the side to which the unit normal n points. T is float or a batch of floats.
+template <typename T> inline Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
+    const Vec3T<T> offset = n * dot(abs(n), p_error);
+    return rounded_away(p + offset, offset);
+}
+
 /// Returns the origin for a ray in direction w. The origin lies off the surface on the side of w, just beyond the error
 /// bound of p, so no scene-wide epsilon is needed (Pharr, Jakob and Humphreys 2023, §6.8.6). For a direction above the
 /// plane of point.horizon, the ray starts from the smooth surface (p + lift) instead of the triangle. Triangles near
 /// the shading terminator then do not cast stepped shadows on each other (Hanika 2021, "Hacking the Shadow
 /// Terminator").
-Vec3 offset_origin(const SurfacePoint& point, Vec3 w);
-
-/// Moves a point beyond its error bound to the side to which the unit normal n points. T is float or a batch of floats.
-template <typename T> Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error, Vec3T<T> n) {
-    const Vec3T<T> offset = n * dot(abs(n), p_error);
-    return rounded_away(p + offset, offset);
+template <typename T> inline Vec3T<T> offset_origin(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
+    const T zero(0), seen = dot(point.lift, point.ng); // 0 if there is no lift
+    const MaskOf<T> lifted = dot(w, point.horizon) * seen > zero;
+    const MaskOf<T> below = select(lifted, seen, dot(w, point.ng)) < zero;
+    return offset_origin(select(lifted, point.p + point.lift, point.p), point.p_error,
+                         select(below, -point.ng, point.ng));
 }
 
 /// Selects the fields of a surface point to compute. Only textures need uv, its derivatives and p_object, which cost

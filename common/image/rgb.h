@@ -40,7 +40,12 @@ template <typename T> constexpr T max_component(RgbT<T> c) { return max(max(c.r,
 template <typename T> constexpr T average(RgbT<T> c) { return (c.r + c.g + c.b) * T(1.0 / 3.0); }
 /// Returns the relative luminance Y for Rec. 709 primaries (ITU-R BT.709-6, §3.2).
 template <typename T> constexpr T luminance(RgbT<T> c) { return T(0.2126) * c.r + T(0.7152) * c.g + T(0.0722) * c.b; }
-template <typename T> constexpr bool is_black(RgbT<T> c) { return c.r == T(0) && c.g == T(0) && c.b == T(0); }
+template <typename T> constexpr MaskOf<T> is_black(RgbT<T> c) {
+    return (c.r == T(0)) & (c.g == T(0)) & (c.b == T(0));
+}
+template <typename T> RgbT<T> select(MaskOf<T> condition, RgbT<T> a, RgbT<T> b) {
+    return {select(condition, a.r, b.r), select(condition, a.g, b.g), select(condition, a.b, b.b)};
+}
 /// Maps a unit vector to the color (n + 1)/2. Rounding can make a component of n exceed 1 in magnitude by an ulp, so
 /// negative results are clamped to 0.
 inline Rgb direction_color(Vec3 n) {

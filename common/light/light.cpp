@@ -48,18 +48,12 @@ std::optional<LightSample> draw(const SunLight& light, Vec3, Vec2) {
     return LightSample{-light.direction, kInfinity, light.irradiance, 1, true};
 }
 
-/// Returns the density as a float where it is finite and positive, and 0 elsewhere.
-float usable(double pdf) {
-    const float value = static_cast<float>(std::min(pdf, 1e38));
-    return pdf > 0 && pdf < 1e38 ? value : 0.0f;
-}
-
 std::optional<LightSample> draw(const SurfaceLight& light, Vec3 p, Vec2 u) {
     if (!emits_towards(light, p)) return std::nullopt;
     const auto s =
         std::visit([&](const auto& shape) { return sample_solid_angle(shape, Vec3d(p), Vec2d(u)); }, light.shape);
-    if (!s || usable(s->pdf) == 0) return std::nullopt;
-    return LightSample{Vec3(s->wi), static_cast<float>(s->distance), light.radiance, usable(s->pdf), false};
+    if (!s || !is_usable_pdf(s->pdf)) return std::nullopt;
+    return LightSample{Vec3(s->wi), static_cast<float>(s->distance), light.radiance, static_cast<float>(s->pdf), false};
 }
 
 double area(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a))); }
@@ -86,20 +80,14 @@ Flux flux(const SurfaceLight& light, double) {
 } // namespace
 
 bool emits_towards(const SurfaceLight& light, Vec3 p) {
-    struct {
-        Vec3d p;
-        /// Returns a value that is positive on the front side, negative on the back, and 0 in the plane.
-        double operator()(const Triangle& t) const {
-            const Vec3d a(t.a);
-            return dot(cross(Vec3d(t.b) - a, Vec3d(t.c) - a), p - a);
-        }
-        double operator()(const Quad& q) const { return dot(cross(Vec3d(q.u), Vec3d(q.v)), p - Vec3d(q.corner)); }
-        double operator()(const Sphere& s) const {
-            return length_squared(p - Vec3d(s.center)) - sqr(static_cast<double>(s.radius));
-        }
-    } const side{Vec3d(p)};
-    const double front = std::visit(side, light.shape);
-    return front != 0 && (light.two_sided || front > 0);
+    if (const auto* sphere = std::get_if<Sphere>(&light.shape)) {
+        const double front =
+            length_squared(Vec3d(p) - Vec3d(sphere->center)) - sqr(static_cast<double>(sphere->radius));
+        return front != 0 && (light.two_sided || front > 0);
+    }
+    const auto* quad = std::get_if<Quad>(&light.shape);
+    return quad != nullptr ? area_seen(*quad, Vec3d(p)).emits(light.two_sided)
+                           : area_seen(std::get<Triangle>(light.shape), Vec3d(p)).emits(light.two_sided);
 }
 
 std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u) {
@@ -108,8 +96,9 @@ std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u) {
 
 float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q) {
     if (!emits_towards(light, p)) return 0;
-    return usable(
-        std::visit([&](const auto& shape) { return solid_angle_pdf(shape, Vec3d(p), Vec3d(q)); }, light.shape));
+    const double pdf =
+        std::visit([&](const auto& shape) { return solid_angle_pdf(shape, Vec3d(p), Vec3d(q)); }, light.shape);
+    return is_usable_pdf(pdf) ? static_cast<float>(pdf) : 0.0f;
 }
 
 float light_power(const Light& light, float scene_radius) {

@@ -8,9 +8,10 @@ namespace duet {
 
 /// A LightReceiver is a shading point p that receives light on the side of the unit vector n, or from all directions
 /// where n is (0, 0, 0).
-struct LightReceiver {
-    Vec3 p, n;
+template <typename T> struct LightReceiverT {
+    Vec3T<T> p, n;
 };
+using LightReceiver = LightReceiverT<float>;
 
 /// LightBounds bound a set of lights by a box around their positions and a cone around their normals. Each light
 /// emits at most 90° from its normal (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with

@@ -1,6 +1,5 @@
 #include "common/light/solid_angle.h"
 
-#include "common/light/area_sampling.h"
 #include "common/light/spherical_rectangle.h"
 #include "common/light/spherical_triangle.h"
 #include "common/sampling/warp.h"
@@ -17,16 +16,9 @@ namespace {
 using Triangle = SurfaceLight::Triangle;
 
 using Plane = AreaSeen<double>;
-Plane plane_of(const Triangle& t, Vec3d p) {
-    const Vec3d a(t.a);
-    return {cross(Vec3d(t.b) - a, Vec3d(t.c) - a) * 0.5, a - p};
-}
-Plane plane_of(const Quad& q, Vec3d p) { return {cross(Vec3d(q.u), Vec3d(q.v)), Vec3d(q.corner) - p}; }
 
-std::optional<SolidAngleSample> sample_area(const Plane& plane, Vec3d w) {
-    const double d = length(w), pdf = plane.pdf(w);
-    if (!(pdf > 0)) return std::nullopt;
-    return SolidAngleSample{w / d, d, pdf};
+std::optional<SolidAngleSample> if_positive(const SolidAngleSample& sample) {
+    return sample.pdf > 0 ? std::optional(sample) : std::nullopt;
 }
 
 /// Seen is a flat shape projected to N spherical triangles.
@@ -67,11 +59,10 @@ std::optional<Seen<Corners - 2>> seen_near(const Plane& plane, const std::array<
 
 /// Returns the spherical rectangle of a near quad with right angles. The result is empty where the quad is to be
 /// sampled by area.
-std::optional<SphericalRectangle> rectangle_near(const Plane& plane, const Quad& q, Vec3d p) {
-    const Vec3d corner = plane.to_plane, center = corner + (Vec3d(q.u) + Vec3d(q.v)) * 0.5;
-    if (!plane.near(center)) return std::nullopt;
-    if (dot(plane.area_vector, corner) == 0) return std::nullopt;
-    const SphericalRectangle seen(Vec3d(q.corner) - p, Vec3d(q.u), Vec3d(q.v));
+std::optional<SphericalRectangle> rectangle_near(const QuadSeen<double>& quad) {
+    if (!quad.near()) return std::nullopt;
+    if (dot(quad.area_vector, quad.to_plane) == 0) return std::nullopt;
+    const SphericalRectangle seen(quad.to_plane, quad.u, quad.v);
     if (!(seen.solid_angle() > kMinSolidAngle && seen.solid_angle() < kMaxSolidAngle)) return std::nullopt;
     return seen;
 }
@@ -95,7 +86,7 @@ std::array<Vec3d, 4> corners(const Quad& q, Vec3d p) {
 }
 
 template <typename Shape> double flat_pdf(const Shape& shape, Vec3d p, Vec3d q) {
-    const Plane plane = plane_of(shape, p);
+    const Plane plane = area_seen(shape, p);
     const auto seen = seen_near(plane, corners(shape, p));
     return seen ? 1 / seen->total : plane.pdf(q - p);
 }
@@ -105,38 +96,44 @@ double cone_gap(double sin2) { return sin2 / (1 + std::sqrt(1 - sin2)); }
 
 } // namespace
 
+AreaSeen<double> area_seen(const Triangle& t, Vec3d p) {
+    const Vec3d a(t.a);
+    return {cross(Vec3d(t.b) - a, Vec3d(t.c) - a) * 0.5, a - p};
+}
+QuadSeen<double> area_seen(const Quad& q, Vec3d p) { return {Vec3d(q.corner), Vec3d(q.u), Vec3d(q.v), p}; }
+
 bool is_rectangle(const Quad& q) {
     const double cosine = dot(Vec3d(q.u), Vec3d(q.v));
     return cosine * cosine <= 1e-12 * length_squared(Vec3d(q.u)) * length_squared(Vec3d(q.v));
 }
 
 std::optional<SolidAngleSample> sample_solid_angle(const Triangle& t, Vec3d p, Vec2d u) {
-    const Plane plane = plane_of(t, p);
+    const Plane plane = area_seen(t, p);
     const std::array<Vec3d, 3> c = corners(t, p);
     if (const auto seen = seen_near(plane, c)) return sample_seen(plane, *seen, u);
     const Vec2d b = uniform_triangle(u);
-    return sample_area(plane, c[0] + (c[1] - c[0]) * b.x + (c[2] - c[0]) * b.y);
+    return if_positive(plane.sample(c[0] + (c[1] - c[0]) * b.x + (c[2] - c[0]) * b.y));
 }
 double solid_angle_pdf(const Triangle& t, Vec3d p, Vec3d q) { return flat_pdf(t, p, q); }
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& q, Vec3d p, Vec2d u) {
-    const Plane plane = plane_of(q, p);
+    const QuadSeen<double> quad = area_seen(q, p);
     if (is_rectangle(q)) {
-        if (const auto seen = rectangle_near(plane, q, p)) {
+        if (const auto seen = rectangle_near(quad)) {
             const Vec3d w = seen->sample(u);
             const double distance = length(w);
             return SolidAngleSample{w / distance, distance, 1 / seen->solid_angle()};
         }
-    } else if (const auto seen = seen_near(plane, corners(q, p))) {
-        return sample_seen(plane, *seen, u);
+    } else if (const auto seen = seen_near(quad, corners(q, p))) {
+        return sample_seen(quad, *seen, u);
     }
-    return sample_area(plane, plane.to_plane + Vec3d(q.u) * u.x + Vec3d(q.v) * u.y);
+    return if_positive(quad.sample(u));
 }
 double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q) {
     if (!is_rectangle(quad)) return flat_pdf(quad, p, q);
-    const Plane plane = plane_of(quad, p);
-    const auto seen = rectangle_near(plane, quad, p);
-    return seen ? 1 / seen->solid_angle() : plane.pdf(q - p);
+    const QuadSeen<double> far = area_seen(quad, p);
+    const auto seen = rectangle_near(far);
+    return seen ? 1 / seen->solid_angle() : far.pdf(q - p);
 }
 
 std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p, Vec2d u) {

@@ -1,17 +1,16 @@
 // This file samples the solid angle that a shape subtends at a point.
 #pragma once
 
+#include "common/light/area_sampling.h"
 #include "common/light/light.h"
 
 #include <optional>
 
 namespace duet {
 
-struct SolidAngleSample {
-    Vec3d wi;        ///< unit direction from p to the shape
-    double distance; ///< distance to the shape along wi
-    double pdf;      ///< density by solid angle
-};
+/// Each overload returns a flat shape as seen from p.
+AreaSeen<double> area_seen(const SurfaceLight::Triangle& triangle, Vec3d p);
+QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
 /// Returns whether the quad's sides are at right angles, up to rounding. Near parallelograms of other angles are
 /// sampled as two triangles.

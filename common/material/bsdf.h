@@ -4,12 +4,16 @@
 // vectors in the local shading frame, where the normal is n = +z. Both point away from the surface. eval returns the
 // BSDF without the cosine factor. sample returns weight = f·|cos θᵢ| / pdf, where pdf is the density of wi by
 // solid angle. For a specular lobe (a delta distribution) eval and pdf return 0, and only sample finds the lobe.
+//
+// The BSDFs that are templates over the number type T evaluate one surface (T = float) or a SIMD batch of surfaces, one
+// per lane. All lanes of a batch have the same kind of lobes: either all are specular or none is.
 #pragma once
 
 #include "common/image/rgb.h"
 
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace duet {
 
@@ -17,17 +21,41 @@ namespace duet {
 /// Refraction scales radiance by η² and leaves importance unchanged (Veach 1997, §5.2).
 enum class TransportMode { kRadiance, kImportance };
 
-struct BsdfSample {
-    Vec3 wi;
-    Rgb weight;            ///< f·|cos θᵢ| / pdf
-    float pdf = 0;         ///< density by solid angle; for a specular lobe, the probability of choosing it
+template <typename T> struct BsdfSampleT {
+    Vec3T<T> wi;
+    RgbT<T> weight;        ///< f·|cos θᵢ| / pdf
+    T pdf{};               ///< density by solid angle; for a specular lobe, the probability of choosing it
     bool specular = false; ///< whether the lobe is a delta distribution, which light sampling cannot find
-    bool transmitted = false;
+    MaskOf<T> transmitted = MaskOf<T>(false);
 };
+using BsdfSample = BsdfSampleT<float>;
 
-inline float cos_theta(Vec3 w) { return w.z; }
-inline float abs_cos_theta(Vec3 w) { return abs(w.z); }
-inline bool same_hemisphere(Vec3 a, Vec3 b) { return a.z * b.z > 0; }
+/// Holds a BSDF sample in each lane of a batch, or none: the counterpart of std::optional for batches.
+template <typename T> struct BsdfSampleLanes {
+    MaskOf<T> valid = MaskOf<T>(false); ///< which lanes have a sample
+    BsdfSampleT<T> sample;
+
+    const BsdfSampleT<T>& operator*() const { return sample; }
+    const BsdfSampleT<T>* operator->() const { return &sample; }
+};
+/// Sample() of a BSDF returns this: std::optional for a single surface.
+template <typename T>
+using OptionalBsdfSample = std::conditional_t<Arithmetic<T>, std::optional<BsdfSampleT<T>>, BsdfSampleLanes<T>>;
+/// Returns the sample where it is valid, else nothing.
+template <typename T> OptionalBsdfSample<T> sample_where(MaskOf<T> valid, const BsdfSampleT<T>& sample) {
+    if constexpr (Arithmetic<T>)
+        return valid ? std::optional(sample) : std::nullopt;
+    else
+        return {valid, sample};
+}
+inline bool has_sample(const std::optional<BsdfSample>& sample) { return sample.has_value(); }
+template <typename T> MaskOf<T> has_sample(const BsdfSampleLanes<T>& lanes) { return lanes.valid; }
+
+template <typename T> T cos_theta(Vec3T<T> w) { return w.z; }
+template <typename T> T abs_cos_theta(Vec3T<T> w) { return abs(w.z); }
+template <typename T> MaskOf<T> same_hemisphere(Vec3T<T> a, Vec3T<T> b) { return a.z * b.z > T(0); }
+/// Mirrors w about the normal.
+template <typename T> Vec3T<T> mirrored(Vec3T<T> w) { return {-w.x, -w.y, w.z}; }
 
 /// Builds the sample record for a direction wi that a Bsdf without delta lobes has drawn. Density and weight are
 /// evaluated for the wi that was rounded to float.

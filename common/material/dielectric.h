@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/material/bsdf.h"
+#include "common/material/microfacet.h"
 #include "common/material/rough_dielectric.h"
 #include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
@@ -11,16 +12,36 @@
 namespace duet {
 
 /// Reflects and refracts specularly by Fresnel's equations and Snell's law. +z points to the outside.
-struct DielectricBsdf {
-    float eta; ///< index of refraction inside over outside
-    Rgb tint;  ///< factor of transmitted light at each crossing
+template <typename T> struct DielectricBsdfT {
+    static constexpr bool kTransmissive = true;
 
-    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    T eta;        ///< index of refraction inside over outside
+    RgbT<T> tint; ///< factor of transmitted light at each crossing
+
+    RgbT<T> eval(Vec3T<T>, Vec3T<T>, TransportMode) const { return RgbT<T>(T(0)); }
     /// Chooses reflection (lobe < F) or refraction. At total reflection it always reflects. The sample is empty where
     /// wo.z is 0.
-    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
-    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    OptionalBsdfSample<T> sample(Vec3T<T> wo, T lobe, Vec2T<T> u, TransportMode mode) const;
+    T pdf(Vec3T<T>, Vec3T<T>, TransportMode) const { return T(0); }
 };
+using DielectricBsdf = DielectricBsdfT<float>;
+
+template <typename T>
+OptionalBsdfSample<T> DielectricBsdfT<T>::sample(Vec3T<T> wo, T lobe, Vec2T<T>, TransportMode mode) const {
+    const T zero(0), one(1), cos_o = abs_cos_theta(wo);
+    const T relative = select(wo.z > zero, eta, one / eta); // index beyond the boundary over the index on wo's side
+    const T reflected = fresnel_dielectric(cos_o, relative); // 1 at total reflection
+    const MaskOf<T> reflects = lobe < reflected;
+    const T cos_t = safe_sqrt(cos2_refracted(cos_o, relative));
+    // L / n² is constant along a refracted ray: radiance that enters the thinner medium spreads over a larger solid
+    // angle.
+    const T spread = mode == TransportMode::kRadiance ? one / (relative * relative) : one;
+    return sample_where((wo.z != zero) & (reflects | (cos_t != zero)),
+                        BsdfSampleT<T>{select(reflects, mirrored(wo), refract(wo, cos_t, relative)),
+                                       select(reflects, RgbT<T>(one), tint * spread),
+                                       select(reflects, reflected, one - reflected), true, !reflects});
+}
+extern template struct DielectricBsdfT<float>; // in dielectric.cpp
 
 /// Returns whether a boundary of this relative index bends light so little that its microfacets do not matter. They
 /// would be computed from the difference of two nearly equal directions, so such boundaries are treated as smooth.

@@ -9,23 +9,27 @@
 namespace duet {
 
 /// Reflects the fraction `albedo` of the light, equally in all directions of the side it came from.
-struct DiffuseBsdf {
-    Rgb albedo;
+template <typename T> struct DiffuseBsdfT {
+    static constexpr bool kTransmissive = false;
+
+    RgbT<T> albedo;
 
     /// Returns albedo / π where wo and wi are on the same side, and black elsewhere.
-    Rgb eval(Vec3 wo, Vec3 wi, TransportMode) const { return same_hemisphere(wo, wi) ? albedo * kInvPi : Rgb(); }
-    /// Draws wi cosine-distributed on wo's side. The sample is empty only where wo.z is 0.
-    std::optional<BsdfSample> sample(Vec3 wo, float, Vec2 u, TransportMode) const {
-        if (wo.z == 0) return std::nullopt;
-        Vec3 wi = cosine_hemisphere(u);
-        const float density = cosine_hemisphere_pdf(wi.z);
-        if (wo.z < 0) wi.z = -wi.z;
-        return BsdfSample{wi, albedo, density}; // weight: (albedo / π)·cos / (cos / π)
+    RgbT<T> eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
+        return select(same_hemisphere(wo, wi), albedo * T(kInvPi), RgbT<T>(T(0)));
     }
-    float pdf(Vec3 wo, Vec3 wi, TransportMode) const {
-        return same_hemisphere(wo, wi) ? cosine_hemisphere_pdf(abs_cos_theta(wi)) : 0.0f;
+    /// Draws wi cosine-distributed on wo's side. The sample is empty only where wo.z is 0.
+    OptionalBsdfSample<T> sample(Vec3T<T> wo, T, Vec2T<T> u, TransportMode) const {
+        Vec3T<T> wi = cosine_hemisphere(u);
+        const T density = cosine_hemisphere_pdf(wi.z);
+        wi.z = select(wo.z < T(0), -wi.z, wi.z);
+        return sample_where(wo.z != T(0), BsdfSampleT<T>{wi, albedo, density}); // weight: (albedo/π)·cos / (cos/π)
+    }
+    T pdf(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
+        return select(same_hemisphere(wo, wi), cosine_hemisphere_pdf(abs_cos_theta(wi)), T(0));
     }
 };
+using DiffuseBsdf = DiffuseBsdfT<float>;
 
 struct Diffuse {
     RgbSlot albedo{Rgb(0.8f)}; ///< each channel in [0, 1]

@@ -4,6 +4,9 @@
 
 #include "common/image/rgb.h"
 
+#include <array>
+#include <cstddef>
+
 namespace duet {
 
 /// GgxAlbedo is the directional albedo of single scattering. `energy` is the albedo where every microfacet reflects
@@ -24,6 +27,15 @@ struct GgxAlbedo {
 GgxAlbedo ggx_albedo(float alpha, float cosine);
 /// Returns 1 − energy: the fraction of light that single scattering misses, because it hits a second microfacet.
 float ggx_lost(float alpha, float cosine);
+/// Looks up each lane of a batch.
+template <typename Batch> Batch ggx_lost(Batch alpha, Batch cosine) {
+    constexpr std::size_t kLanes = sizeof(Batch) / sizeof(float);
+    alignas(Batch) std::array<float, kLanes> alphas, cosines;
+    alpha.store_aligned(alphas.data());
+    cosine.store_aligned(cosines.data());
+    for (std::size_t i = 0; i < kLanes; ++i) cosines[i] = ggx_lost(alphas[i], cosines[i]);
+    return Batch::load_aligned(cosines.data());
+}
 /// GgxMeans are cosine-weighted means over the hemisphere, 2∫ … μ dμ: `lost` of 1 − energy, and `share` of
 /// energy·share.
 struct GgxMeans {

@@ -32,6 +32,28 @@ inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, V
 inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.pdf(wo, wi, mode); }, bsdf);
 }
+
+// These functions do the same for a BSDF of a known type, as in a batch of surfaces.
+template <typename BsdfType>
+concept KnownBsdf = requires { BsdfType::kTransmissive; };
+template <KnownBsdf BsdfType, typename T> RgbT<T> eval(const BsdfType& bsdf, Vec3T<T> wo, Vec3T<T> wi) {
+    return bsdf.eval(wo, wi, TransportMode::kRadiance);
+}
+template <KnownBsdf BsdfType, typename T>
+OptionalBsdfSample<T> sample(const BsdfType& bsdf, Vec3T<T> wo, T lobe, Vec2T<T> u) {
+    return bsdf.sample(wo, lobe, u, TransportMode::kRadiance);
+}
+template <KnownBsdf BsdfType, typename T> T pdf(const BsdfType& bsdf, Vec3T<T> wo, Vec3T<T> wi) {
+    return bsdf.pdf(wo, wi, TransportMode::kRadiance);
+}
+template <KnownBsdf BsdfType> constexpr bool is_transmissive(const BsdfType&) { return BsdfType::kTransmissive; }
+template <KnownBsdf BsdfType> auto refraction_index(const BsdfType& bsdf) {
+    if constexpr (BsdfType::kTransmissive)
+        return bsdf.eta;
+    else
+        return 1.0f;
+}
+
 /// Returns whether the Bsdf has only delta lobes, which light sampling cannot find.
 bool is_specular(const Bsdf& bsdf);
 /// Returns whether the Bsdf is purely diffuse, smooth or rough.

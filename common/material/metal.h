@@ -3,6 +3,9 @@
 
 #include "common/material/bsdf.h"
 #include "common/material/conductor.h"
+#include "common/material/ggx.h"
+#include "common/material/ggx_albedo.h"
+#include "common/material/microfacet.h"
 #include "common/texture/texture.h"
 
 namespace duet {
@@ -12,27 +15,98 @@ namespace duet {
 /// rough metal that absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and else
 /// Schlick's from the reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect
 /// mirror.
-struct MetalBsdf {
+template <typename T> struct MetalBsdfT {
+    static constexpr bool kTransmissive = false;
     static constexpr float kSmoothAlpha = 1e-4f;
 
-    Rgb reflectance; ///< reflectance at normal incidence
-    float alpha;     ///< GGX width: roughness²
-    Rgb n, k;        ///< complex index of a named conductor, or 0
-    Rgb multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
+    RgbT<T> reflectance; ///< reflectance at normal incidence
+    T alpha;             ///< GGX width: roughness²
+    RgbT<T> n, k;        ///< complex index of a named conductor, or 0
+    RgbT<T> multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
 
-    MetalBsdf(Rgb reflectance, float alpha);
-    MetalBsdf(const Conductor& conductor, float alpha);
+    MetalBsdfT(Rgb reflectance, float alpha);
+    MetalBsdfT(const Conductor& conductor, float alpha);
+    MetalBsdfT(RgbT<T> reflectance_, T alpha_, RgbT<T> n_, RgbT<T> k_, RgbT<T> multiple_)
+        : reflectance(reflectance_), alpha(alpha_), n(n_), k(k_), multiple(multiple_) {}
 
-    bool smooth() const { return alpha < kSmoothAlpha; }
-    Rgb fresnel(float cosine) const;
+    bool smooth() const { return all(alpha < T(kSmoothAlpha)); }
+    RgbT<T> fresnel(T cosine) const;
     /// Returns the directional albedo: the fraction of uniform incident light that is reflected to a viewer at that
     /// angle. A rough named conductor uses Schlick's term here.
-    Rgb albedo(float cosine) const;
-    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    RgbT<T> albedo(T cosine) const;
+    RgbT<T> eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode mode) const;
     /// Draws wi. `lobe` in [0, 1) chooses between one reflection and several.
-    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
-    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    OptionalBsdfSample<T> sample(Vec3T<T> wo, T lobe, Vec2T<T> u, TransportMode mode) const;
+    T pdf(Vec3T<T> wo, Vec3T<T> wi, TransportMode mode) const;
+
+private:
+    /// Returns the fraction of light that single scattering misses, or 0 without the multiple-scattering lobe.
+    T lost(T cosine) const;
+    // These are eval and pdf for wo and wi above the surface, with their microfacet and lost(wo.z).
+    RgbT<T> eval_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const;
+    T pdf_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const;
 };
+using MetalBsdf = MetalBsdfT<float>;
+
+template <typename T> RgbT<T> MetalBsdfT<T>::fresnel(T cosine) const {
+    const MaskOf<T> named = n.r != T(0);
+    if (none_of(named)) return fresnel_schlick(reflectance, cosine);
+    const RgbT<T> exact{fresnel_conductor(cosine, n.r, k.r), fresnel_conductor(cosine, n.g, k.g),
+                        fresnel_conductor(cosine, n.b, k.b)};
+    return select(named, exact, fresnel_schlick(reflectance, cosine));
+}
+
+template <typename T> RgbT<T> MetalBsdfT<T>::eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
+    const MaskOf<T> reflected = same_hemisphere(wo, wi);
+    if (smooth() || none_of(reflected)) return RgbT<T>(T(0));
+    wo = upwards(wo);
+    wi = upwards(wi);
+    return select(reflected, eval_above(wo, wi, microfacet(wo, wi), lost(wo.z)), RgbT<T>(T(0)));
+}
+
+template <typename T> T MetalBsdfT<T>::pdf(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
+    const MaskOf<T> reflected = same_hemisphere(wo, wi);
+    if (smooth() || none_of(reflected)) return T(0);
+    wo = upwards(wo);
+    wi = upwards(wi);
+    return select(reflected, pdf_above(wo, wi, microfacet(wo, wi), lost(wo.z)), T(0));
+}
+
+template <typename T>
+OptionalBsdfSample<T> MetalBsdfT<T>::sample(Vec3T<T> wo, T lobe, Vec2T<T> u, TransportMode) const {
+    const MaskOf<T> visible = wo.z != T(0);
+    if (smooth()) return sample_where(visible, BsdfSampleT<T>{mirrored(wo), fresnel(abs_cos_theta(wo)), T(1), true});
+
+    const Vec3T<T> above = upwards(wo);
+    const T lost_at_wo = lost(above.z);
+    const MaskOf<T> several = lobe >= T(1) - lost_at_wo;
+    Vec3T<T> wi = normalize(reflect(above, ggx_sample_visible_normal(above, alpha, u)));
+    if (any(several)) wi = select(several, cosine_hemisphere(u), wi);
+    // A visible normal may reflect wo below the surface, where the light would hit a second microfacet. Such samples
+    // are dropped, so the density integrates to slightly less than 1.
+    const MaskOf<T> valid = visible & (wi.z > T(0));
+    const MicrofacetT<T> h = microfacet(above, wi);
+    const T density = pdf_above(above, wi, h, lost_at_wo);
+    const RgbT<T> weight = eval_above(above, wi, h, lost_at_wo) * (wi.z / density);
+    wi.z = select(wo.z < T(0), -wi.z, wi.z);
+    return sample_where(valid, BsdfSampleT<T>{wi, weight, density});
+}
+
+template <typename T> T MetalBsdfT<T>::lost(T cosine) const {
+    const MaskOf<T> single = is_black(multiple);
+    return all(single) ? T(0) : select(single, T(0), ggx_lost(alpha, cosine));
+}
+
+template <typename T>
+RgbT<T> MetalBsdfT<T>::eval_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const {
+    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) + multiple * (lost_at_wo * lost(wi.z));
+}
+
+template <typename T>
+T MetalBsdfT<T>::pdf_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const {
+    return ggx_reflections_pdf(wo, wi, h.normal, alpha, lost_at_wo);
+}
+extern template struct MetalBsdfT<float>; // in metal.cpp
 
 struct Metal {
     RgbSlot reflectance{Rgb(0.9f)}; ///< value at normal incidence, each channel in [0, 1]

@@ -1,11 +1,12 @@
-// This file defines scalar helpers. Templates call `select`, `min`, `max` and `sqrt` unqualified: name lookup finds the
-// functions below for float and double, and xsimd's overloads for SIMD batches. The same source thus works for all
-// three.
+// This file defines scalar helpers. Templates call `select`, `min`, `max`, `sqrt`, `any` and `all` unqualified: name
+// lookup finds the functions below for float and double, and xsimd's overloads for SIMD batches. The same source thus
+// works for all three.
 #pragma once
 
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace duet {
 
@@ -18,6 +19,14 @@ inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 
 template <typename T>
 concept Arithmetic = std::is_arithmetic_v<T>;
+
+/// MaskOf is the type of a condition on numbers of type T: bool, or a batch of one bool per lane. Conditions are combined
+/// by `&` and `|`, which batches have, too.
+template <typename T> using MaskOf = decltype(std::declval<T>() < std::declval<T>());
+/// These return whether the condition holds in any lane, in all lanes and in no lane.
+constexpr bool any(bool condition) { return condition; }
+constexpr bool all(bool condition) { return condition; }
+template <typename Mask> constexpr bool none_of(const Mask& condition) { return !any(condition); }
 
 /// Returns a where the condition holds, else b. Both arguments are always evaluated.
 template <Arithmetic T> constexpr T select(bool condition, T a, T b) { return condition ? a : b; }

@@ -117,8 +117,12 @@ template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a
 /// Returns w mirrored about the unit normal n. Both w and the result point away from the surface.
 template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
 
-template <Arithmetic T> bool is_finite(Vec3T<T> a) {
-    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+template <typename T> MaskOf<T> is_finite(Vec3T<T> a) { // NaN is below no number
+    const T limit(std::numeric_limits<float>::infinity());
+    return (abs(a.x) < limit) & (abs(a.y) < limit) & (abs(a.z) < limit);
 }
+
+/// Rounds each component to float. There is an overload for batches in widen.h.
+inline Vec3 to_floats(Vec3d v) { return Vec3(v); }
 
 } // namespace duet

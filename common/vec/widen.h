@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/vec/simd.h"
+#include "common/vec/vec.h"
 
 namespace duet {
 
@@ -29,6 +30,12 @@ inline NarrowBatch to_floats(DoubleBatch doubles) {
     store_floats(doubles, lanes.data());
     return NarrowBatch::load_aligned(lanes.data());
 #endif
+}
+inline Vec3T<NarrowBatch> to_floats(const Vec3T<DoubleBatch>& v) {
+    return {to_floats(v.x), to_floats(v.y), to_floats(v.z)};
+}
+inline Vec3T<DoubleBatch> to_doubles(const Vec3T<NarrowBatch>& v) {
+    return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)};
 }
 
 #endif

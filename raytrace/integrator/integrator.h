@@ -27,11 +27,12 @@ struct RayCounts {
 // The first dimensions of a sample are the camera's. Each vertex of the path then has a block of its own. A
 // dimension that is not used somewhere does not shift the dimensions elsewhere.
 
-/// Holds the random samples in [0, 1) that a vertex uses.
-struct VertexNumbers {
-    Vec2 bsdf, light;
-    float light_choice, lobe, roulette;
+/// Holds the random samples in [0, 1) that a vertex uses. T is float, or a batch of floats for one vertex per lane.
+template <typename T> struct VertexNumbersT {
+    Vec2T<T> bsdf, light;
+    T light_choice, lobe, roulette;
 };
+using VertexNumbers = VertexNumbersT<float>;
 /// Returns the first sample dimension of the vertex after `depth` scatterings.
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
@@ -60,7 +61,7 @@ Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&
 /// so that the CPU overlaps the work of several paths where one alone would wait for its own results. All spans must
 /// have the same length. The rays, hits and samplers are modified.
 void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
-                    std::span<Rgb> radiances, RayCounts&); ///< paths.cpp
+                    std::span<Rgb> radiances, RayCounts&); ///< wavefront/wavefront.cpp
 
 /// Computes path_radiance from the same random samples, split into components. Their sum equals path_radiance except
 /// for rounding.

@@ -17,16 +17,14 @@ std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& li
     if (chosen.index == lights.environment_index()) {
         const std::optional<EnvironmentSample> s = sample(scene.environment, u);
         if (!s) return std::nullopt;
-        return Arrival{s->wi, s->radiance, s->pdf * chosen.probability, false, kInfinity, -1};
+        return Arrival{{s->wi, s->radiance, s->pdf * chosen.probability, false}, kInfinity, -1};
     }
-    const std::optional<LightSample> s = sample_light(scene.lights[chosen.index], receiver.p, u);
+    std::optional<LightSample> s = sample_light(scene.lights[chosen.index], receiver.p, u);
     if (!s) return std::nullopt;
-    Rgb radiance = s->radiance;
     if (scene.needs.lamp_textures)
         if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen.index]))
-            radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
-    return Arrival{s->wi,    radiance,    s->pdf * chosen.probability,
-                   s->delta, s->distance, static_cast<std::int64_t>(chosen.index)};
+            s->radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
+    return arrival(*s, chosen);
 }
 
 namespace {

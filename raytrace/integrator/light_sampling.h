@@ -6,15 +6,22 @@
 
 namespace duet::raytrace {
 
-/// Holds a light sample: light that arrives at a point from a light or the environment, unless it is occluded.
-struct Arrival {
-    Vec3 wi;                 ///< unit, in world space
-    Rgb radiance;            ///< see LightSample::radiance
-    float pdf = 0;           ///< by solid angle, including the choice of the light; > 0
-    bool delta = false;      ///< whether BSDF samples cannot find it
+/// Holds a light sample: light that arrives at a point from a light or the environment, unless it is occluded. T is
+/// float, or a batch of floats for one light sample per lane.
+template <typename T> struct LightLiSampleT {
+    Vec3T<T> wi;      ///< unit, in world space
+    RgbT<T> radiance; ///< see LightSample::radiance
+    T pdf{};          ///< by solid angle, including the choice of the light; > 0
+    MaskOf<T> delta = MaskOf<T>(false); ///< whether BSDF samples cannot find it
+};
+struct Arrival : LightLiSampleT<float> {
     float distance = 0;      ///< infinity for the sun and the environment
     std::int64_t light = -1; ///< index into Scene::lights; −1: the environment
 };
+/// Returns the sample of a light that was chosen as described by `chosen`.
+inline Arrival arrival(const LightSample& s, const LightChoice& chosen) {
+    return {{s.wi, s.radiance, s.pdf * chosen.probability, s.delta}, s.distance, static_cast<std::int64_t>(chosen.index)};
+}
 /// Draws a light sample: `choice` in [0, 1) chooses the light, and `u` in [0, 1)² the point on it. Returns nothing
 /// if the chosen light sends no light to the receiver.
 std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,

@@ -1,6 +1,9 @@
 // Path is unidirectional path tracing with next event estimation. Each vertex draws a light sample and a BSDF
 // sample, combined by multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples
 // (plan.lights is null) it is the naive path tracer, in which only BSDF samples find the lights.
+//
+// The functions at the top hold the formulas of a step. They are templates over the number type T: Path calls them for
+// one path (T = float), and wavefront/batch.cpp for a batch of paths, one per SIMD lane. Every path runs through them.
 #pragma once
 
 #include "raytrace/integrator/insides.h"
@@ -13,6 +16,70 @@
 #include <utility>
 
 namespace duet::raytrace {
+
+/// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is not
+/// divided by the sample's density yet.
+template <typename AnyVertex, typename T>
+inline RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+    return scattering(vertex, light.wi) * light.radiance;
+}
+
+/// Returns the MIS weight of a light sample against the BSDF samples of the vertex.
+template <typename AnyVertex, typename T>
+inline T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+    if (all(light.delta)) return T(1);
+    // BSDF samples find the environment and all emitters at rest, too.
+    const T bsdf_pdf = pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(light.wi));
+    return mis_weight(light.pdf, select(light.delta, T(0), bsdf_pdf));
+}
+
+/// Returns the MIS weight of light that a ray has found, against light samples at the previous vertex. `light_pdf` is
+/// the density with which these draw the ray's direction.
+inline float found_light_weight(const Departure& departure, float light_pdf) {
+    return departure.certain ? 1 : mis_weight(departure.pdf, light_pdf);
+}
+
+/// Holds how a path leaves a vertex.
+template <typename T> struct ScatteringT {
+    OptionalBsdfSample<T> sample;
+    MaskOf<T> scatters = has_sample(sample); ///< whether the surface scatters any light; else it absorbs all
+    MaskOf<T> continues = MaskOf<T>(false);  ///< whether the new direction is valid, too
+    Vec3T<T> wi{};                           ///< direction of the next ray, unit, in world space
+};
+
+/// Samples the next direction from the BSDF of the vertex and multiplies the path's throughput by the sample's weight.
+template <typename AnyVertex, typename T>
+inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexNumbersT<T>& u, PathThroughputT<T>& path) {
+    ScatteringT<T> next{sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf)};
+    if (none_of(next.scatters)) return next;
+    const BsdfSampleT<T>& s = *next.sample;
+    next.scatters = next.scatters & !is_black(s.weight);
+    next.wi = normalize(vertex.frame.to_world(s.wi));
+    next.continues = next.scatters & is_consistent(vertex, next.wi, s.wi);
+    path.throughput *= s.weight;
+    if (is_transmissive(vertex.bsdf)) {
+        // Entering glass scales the throughput by 1/η², and leaving it by η². Roulette must ignore both.
+        const T eta2 = sqr(T(refraction_index(vertex.bsdf)));
+        const T factor = select(vertex.wo.z > T(0), T(1) / eta2, eta2);
+        path.refraction = select(s.transmitted, path.refraction * factor, path.refraction);
+    }
+    return next;
+}
+
+template <typename T> struct RouletteT {
+    T probability;      ///< of survival; may exceed 1
+    MaskOf<T> survives;
+};
+/// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
+/// paths that end. `worth` is RenderPlan::worth.
+template <typename T> inline RouletteT<T> russian_roulette(float worth, T u, PathThroughputT<T>& path) {
+    const T probability = survival(path.throughput, path.refraction, T(worth));
+    const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
+    if (all(certain)) return {probability, certain};
+    path.throughput *= select(certain, T(1), T(1) / probability);
+    const MaskOf<T> lucky = u < probability;
+    return {probability, MaskOf<T>(certain | lucky)};
+}
 
 // A sink receives the light that a path finds. For images, this one adds up all light, from any source.
 class Sum {
@@ -71,46 +138,47 @@ public:
         const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
         if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
         if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
-        if (!scatter(vertex, u, ray)) return false;
+        if (!leave(vertex, u, ray)) return false;
         if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
         ++counts_.indirect;
         return true;
     }
     auto result() const { return sink_.result(); }
 
-    /// Returns the state, which batched scattering changes in place of advance().
+    /// Returns the state, which a batch changes in place of advance().
     PathState& state() { return state_; }
-    /// Adds light that batched scattering has found.
+    /// Adds the light of a light sample of a batch.
     void add(Rgb light) { sink_.add(light, LightSource::kLight, 0); }
+    /// Adds light that the ray has found after `bounces` scatterings. `light_pdf` is the density with which light
+    /// samples at the previous vertex find it, if any compete.
+    void add_found(Rgb emission, float light_pdf, LightSource source, int bounces) {
+        const float weight = found_light_weight(state_.departure, light_pdf);
+        const Rgb light = state_.throughput * emission * weight;
+        if constexpr (Sink::kTold) sink_.log().found(emission, weight, light);
+        sink_.add(light, source, bounces);
+    }
 
 private:
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
-        float weight = 1;
-        if (!state_.departure.certain)
-            weight = mis_weight(state_.departure.pdf,
-                                arrival_pdf(*plan_.environment, *plan_.lights, state_.departure.receiver, w));
-        const Rgb emission = radiance(*plan_.environment, w);
-        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
-        sink_.add(state_.throughput * emission * weight, LightSource::kEnvironment, bounces);
+        const Departure& from = state_.departure;
+        const float light_pdf = from.certain ? 0 : arrival_pdf(*plan_.environment, *plan_.lights, from.receiver, w);
+        add_found(radiance(*plan_.environment, w), light_pdf, LightSource::kEnvironment, bounces);
     }
 
     void add_emission(const Vertex& vertex, Vec3 direction, int bounces) {
         if (!plan_.emission) return;
         const Rgb emission = emitted(vertex.material, plan_.scene.textures, vertex.point, -direction);
         if (is_black(emission)) return;
-        float weight = 1;
-        if (!state_.departure.certain)
-            weight = mis_weight(state_.departure.pdf,
-                                arrival_pdf(plan_.scene, *plan_.lights, state_.departure.receiver, vertex.point));
-        if constexpr (Sink::kTold) sink_.log().found(emission, weight, state_.throughput * emission * weight);
-        sink_.add(state_.throughput * emission * weight, source_of(vertex.point), bounces);
+        const Departure& from = state_.departure;
+        const float light_pdf = from.certain ? 0 : arrival_pdf(plan_.scene, *plan_.lights, from.receiver, vertex.point);
+        add_found(emission, light_pdf, source_of(vertex.point), bounces);
     }
 
     void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
-        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, vertex.receiver(), u.light_choice, u.light);
+        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
         if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
-        Rgb scattered = vertex.scattered(arrival->wi) * arrival->radiance;
+        Rgb scattered = scattered_light(vertex, *arrival);
         if constexpr (kInsides) scattered *= left_on_the_way(vertex, *arrival);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return tell_no_light_sample("the surface does not scatter the chosen light towards here");
@@ -121,9 +189,7 @@ private:
             sink_.add_shadowed(state_.throughput * scattered / arrival->pdf, source, bounces + 1);
             return;
         }
-        // BSDF samples find the environment and all emitters at rest, too.
-        const float bsdf_pdf = arrival->delta ? 0 : pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi));
-        const float weight = mis_weight(arrival->pdf, bsdf_pdf);
+        const float weight = light_sample_weight(vertex, *arrival);
         const Rgb light = state_.throughput * scattered * (weight / arrival->pdf);
         if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, true, weight, light);
         sink_.add(light, source, bounces + 1);
@@ -137,34 +203,25 @@ private:
     }
 
     // Samples the next direction from the BSDF. Returns false if the path ends.
-    bool scatter(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
-        const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
-        if (!s || is_black(s->weight)) return tell_end("the surface absorbs it");
-        const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
-        if (!vertex.consistent(wi, s->wi)) return tell_end("its direction lies between the horizons of both normals");
-        state_.throughput *= s->weight;
-        if (s->transmitted) note_refraction(vertex);
-        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *s, wi, state_);
-        footprint_.scatter(s->pdf, s->specular);
+    bool leave(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
+        const ScatteringT<float> next = scatter(vertex, u, state_);
+        if (!next.scatters) return tell_end("the surface absorbs it");
+        if (!next.continues) return tell_end("its direction lies between the horizons of both normals");
+        if constexpr (kInsides)
+            if (next.sample->transmitted && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
+        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *next.sample, next.wi, state_);
+        footprint_.scatter(next.sample->pdf, next.sample->specular);
         // Each number is written to where it is read next. If a whole ray were copied right after its components
         // were written, that load would wait for their stores.
-        state_.departure.certain = s->specular || plan_.lights == nullptr;
+        state_.departure.certain = next.sample->specular || plan_.lights == nullptr;
         if (!state_.departure.certain) {
-            state_.departure.receiver = vertex.receiver();
-            state_.departure.pdf = s->pdf;
+            state_.departure.receiver = light_receiver(vertex);
+            state_.departure.pdf = next.sample->pdf;
         }
-        ray.origin = offset_origin(vertex.point, wi);
-        ray.direction = wi;
+        ray.origin = offset_origin(vertex.point, next.wi);
+        ray.direction = next.wi;
         ray.t_min = 0;
         return true;
-    }
-
-    // Entering glass scales the throughput by 1/η², and leaving it by η². Roulette must ignore both.
-    void note_refraction(const Vertex& vertex) {
-        const float eta = refraction_index(vertex.bsdf);
-        state_.refraction *= vertex.wo.z > 0 ? 1 / sqr(eta) : sqr(eta);
-        if constexpr (kInsides)
-            if (crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
     }
 
     // Continues the ray to the first boundary that is not ignored, in scenes with a medium stack.
@@ -193,15 +250,11 @@ private:
     }
 
     bool survives(float u) {
-        const float probability = survival(state_.throughput, state_.refraction, plan_.worth);
-        if (!(probability < 1)) return true; // NaN survives, too, so that it is counted as invalid
-        if constexpr (Sink::kTold) sink_.log().roulette(probability, u < probability);
-        if (!(u < probability)) {
-            ++counts_.ended;
-            return false;
-        }
-        state_.throughput *= 1 / probability;
-        return true;
+        const auto [probability, survives] = russian_roulette(plan_.worth, u, state_);
+        if constexpr (Sink::kTold)
+            if (probability < 1) sink_.log().roulette(probability, survives);
+        counts_.ended += !survives;
+        return survives;
     }
 
     bool tell_end([[maybe_unused]] const char* why) {

@@ -13,9 +13,12 @@ struct Departure {
     bool certain = true; ///< whether no light sample competes, as after a camera ray or a delta lobe
 };
 
-struct PathState {
-    Rgb throughput{1.0f};
-    float refraction = 1; ///< factor by which refractions have scaled the throughput
+/// Holds what scattering multiplies. T is float, or a batch of floats for one path per lane.
+template <typename T> struct PathThroughputT {
+    RgbT<T> throughput{T(1.0f)};
+    T refraction = T(1.0f); ///< factor by which refractions have scaled the throughput
+};
+struct PathState : PathThroughputT<float> {
     Departure departure;
 };
 

@@ -1,7 +1,6 @@
 // This integrator computes emission, and direct light without occlusion, by light sampling. The rasterizer computes
 // the same quantity in closed form.
-#include "raytrace/integrator/integrator.h"
-#include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/path.h"
 
 namespace duet::raytrace {
 
@@ -11,22 +10,20 @@ namespace {
 // light.
 Rgb environment_found(const RenderPlan& plan, const Vertex& vertex, const VertexNumbers& u) {
     if (plan.environment == nullptr) return Rgb();
-    const auto s = sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf);
-    if (!s) return Rgb();
-    const Vec3 wi = normalize(vertex.frame.to_world(s->wi));
-    if (!vertex.consistent(wi, s->wi)) return Rgb();
-    const bool sampled = plan.lights != nullptr && !s->specular;
-    const float other = sampled ? arrival_pdf(*plan.environment, *plan.lights, vertex.receiver(), wi) : 0.0f;
-    return s->weight * radiance(*plan.environment, wi) * mis_weight(s->pdf, other);
+    PathState state;
+    const ScatteringT<float> next = scatter(vertex, u, state);
+    if (!next.continues) return Rgb();
+    const Departure from{light_receiver(vertex), next.sample->pdf, next.sample->specular || plan.lights == nullptr};
+    const float light_pdf = from.certain ? 0 : arrival_pdf(*plan.environment, *plan.lights, from.receiver, next.wi);
+    return state.throughput * radiance(*plan.environment, next.wi) * found_light_weight(from, light_pdf);
 }
 
 Rgb light_sampled(const RenderPlan& plan, const Vertex& vertex, const VertexNumbers& u) {
     if (plan.lights == nullptr || is_specular(vertex.bsdf)) return Rgb();
-    const auto arrival = sample_arrival(plan.scene, *plan.lights, vertex.receiver(), u.light_choice, u.light);
+    const auto arrival = sample_arrival(plan.scene, *plan.lights, light_receiver(vertex), u.light_choice, u.light);
     if (!arrival) return Rgb();
-    const Rgb light = vertex.scattered(arrival->wi) * arrival->radiance / arrival->pdf;
-    if (arrival->light >= 0) return light;
-    return light * mis_weight(arrival->pdf, pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(arrival->wi)));
+    const Rgb light = scattered_light(vertex, *arrival) / arrival->pdf;
+    return arrival->light >= 0 ? light : light * light_sample_weight(vertex, *arrival);
 }
 
 } // namespace

@@ -6,11 +6,6 @@ namespace {
 
 const RayFootprint* pointer(const std::optional<RayFootprint>& footprint) { return footprint ? &*footprint : nullptr; }
 
-Vec3 towards_viewer(const Frame& frame, Vec3 ng, Vec3 direction) {
-    const Vec3 wo = -direction; // unit, as all rays in world space
-    return lifted_above_horizon(frame.to_local(wo), dot(wo, ng) < 0 ? -1.0f : 1.0f);
-}
-
 /// Returns a dielectric with the relative index that it has inside another one.
 Material with_index(const Material& material, float eta) {
     Dielectric other = std::get<Dielectric>(material);
@@ -49,7 +44,7 @@ Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const Ray
                float relative_index, std::uint32_t material_index)
     : point(surface_point(plan.scene, ray, hit, footprint, plan.details[material_index])),
       material(plan.scene.materials[material_index]), frame(frame_from_normal(point.ns)),
-      wo(towards_viewer(frame, point.ng, ray.direction)),
+      wo(direction_to_viewer(frame, point.ng, ray.direction)),
       bsdf(made_or_constant(plan, material_index, point, relative_index, made_)) {}
 
 } // namespace duet::raytrace

@@ -32,27 +32,40 @@ private:
 public:
     const Bsdf& bsdf;
 
-    /// Returns f(wo, wi)·|cos θᵢ| for wi in world space (unit). It is black where the geometric and the shading
-    /// normal disagree about the side of wi, because light must not leak through the surface.
-    Rgb scattered(Vec3 wi) const {
-        const Vec3 local = frame.to_local(wi);
-        return consistent(wi, local) ? eval(bsdf, wo, local) * abs_cos_theta(local) : Rgb();
-    }
-    /// Returns the light receiver: on the visible side of the surface, or on both sides if the BSDF transmits.
-    LightReceiver receiver() const {
-        if (is_transmissive(bsdf)) return {point.p, Vec3()};
-        return {point.p, wo.z < 0 ? -point.ng : point.ng};
-    }
-    /// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in
-    /// the frame. On the viewer's side, `horizon` takes the place of the geometric normal (shading-terminator fix).
-    bool consistent(Vec3 wi, Vec3 local) const {
-        return dot(wi, same_hemisphere(wo, local) ? point.horizon : point.ng) * local.z > 0;
-    }
-
 private:
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index,
            std::uint32_t material_index);
 };
+
+// The functions below are templates over the vertex: a Vertex, or the vertices of several paths in SIMD lanes
+// (BatchVertex), with the same members. T is the number type.
+
+/// Returns the direction back along a ray of the given direction (world space, unit) in a vertex's frame.
+template <typename T> inline Vec3T<T> direction_to_viewer(const FrameT<T>& frame, Vec3T<T> ng, Vec3T<T> ray_direction) {
+    const Vec3T<T> wo = -ray_direction;
+    return lifted_above_horizon(frame.to_local(wo), select(dot(wo, ng) < T(0), T(-1), T(1)));
+}
+/// Returns the light receiver: on the visible side of the surface, or on both sides if the BSDF transmits.
+template <typename AnyVertex> inline auto light_receiver(const AnyVertex& vertex) {
+    using T = decltype(vertex.wo.z);
+    if (is_transmissive(vertex.bsdf)) return LightReceiverT<T>{vertex.point.p, Vec3T<T>(T(0), T(0), T(0))};
+    return LightReceiverT<T>{vertex.point.p, select(vertex.wo.z < T(0), -vertex.point.ng, vertex.point.ng)};
+}
+/// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in the
+/// frame. On the viewer's side, `horizon` takes the place of the geometric normal (shading-terminator fix).
+template <typename AnyVertex, typename T>
+inline MaskOf<T> is_consistent(const AnyVertex& vertex, Vec3T<T> wi, Vec3T<T> local) {
+    const Vec3T<T> normal = select(same_hemisphere(vertex.wo, local), vertex.point.horizon, vertex.point.ng);
+    return dot(wi, normal) * local.z > T(0);
+}
+/// Returns f(wo, wi)·|cos θᵢ| for wi in world space (unit). It is black where the geometric and the shading normal
+/// disagree about the side of wi, because light must not leak through the surface.
+template <typename AnyVertex, typename T> inline RgbT<T> scattering(const AnyVertex& vertex, Vec3T<T> wi) {
+    const Vec3T<T> local = vertex.frame.to_local(wi);
+    const MaskOf<T> consistent = is_consistent(vertex, wi, local);
+    if (none_of(consistent)) return RgbT<T>(T(0));
+    return select(consistent, eval(vertex.bsdf, vertex.wo, local) * abs_cos_theta(local), RgbT<T>(T(0)));
+}
 
 /// Returns the fraction of a pixel's width that its `sample` covers: the samples up to it share the pixel's area. It
 /// does not depend on how many samples follow, so that continued films and shards have the bits of a single run. In

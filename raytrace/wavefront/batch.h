@@ -1,10 +1,10 @@
-// Path vertices on batched surfaces (PlainSurfaces) are processed with SIMD, one vertex per lane.
+// A batch advances several paths at surfaces of one kind (PlainSurfaces) together with SIMD, one path per lane.
 #pragma once
 
 #include "common/vec/simd.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/path_state.h"
-#include "raytrace/integrator/shadow_rays.h"
+#include "raytrace/wavefront/shadow_rays.h"
 
 #include <span>
 
@@ -14,7 +14,7 @@ namespace duet::raytrace {
 inline constexpr std::size_t kPathLanes = kDoubleLanes;
 
 /// Describes one path of a batch. It refers to data of the caller.
-struct PlainPath {
+struct BatchPath {
     std::uint32_t index; ///< identifies the path of a shadow ray
     Ray* ray;       ///< the ray that has hit; the next ray if the path continues
     const Hit* hit; ///< the hit of that ray
@@ -32,11 +32,11 @@ struct NumbersUsed {
 /// Returns what paths at surfaces of this scattering use after `depth` scatterings.
 NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth);
 
-/// Scatters up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth
-/// scatterings. Shadow rays are added to `shadows`, to be traced later. The result for each path is bit-equal to
-/// that for the path alone (path.h): all operations are rounded the same in every lane, and most of the functions
-/// are the same templates over the number type.
-void scatter_plain(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<PlainPath> paths, int depth,
+/// Advances up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth scatterings, as
+/// Path::advance does one path. Shadow rays are added to `shadows`, to be traced later. The result for each path is
+/// bit-equal to that for the path alone: the formulas are the same templates (path.h), and all operations are rounded
+/// the same in every lane.
+void advance_batch(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
                   ShadowRays& shadows, RayCounts& counts);
 
 } // namespace duet::raytrace

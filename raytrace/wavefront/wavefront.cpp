@@ -1,7 +1,8 @@
-// Paths advance together. Those at batched surfaces (PlainSurfaces) of one kind are scattered with SIMD.
+// A wavefront is a set of paths that advance together, vertex by vertex. This file only schedules them: it sorts the
+// paths by what their rays have hit, and advances those at batched surfaces (PlainSurfaces) of one kind in batches.
 #include "raytrace/acceleration/sort_by_class.h"
 #include "raytrace/integrator/path.h"
-#include "raytrace/integrator/plain_vertices.h"
+#include "raytrace/wavefront/batch.h"
 
 #include "common/system/error.h"
 
@@ -80,9 +81,9 @@ private:
     std::array<std::uint32_t, kClasses> ends_{};
 };
 
-template <bool kInsides> class Paths {
+template <bool kInsides> class Wavefront {
 public:
-    Paths(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
+    Wavefront(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
           RayCounts& counts)
         : plan_(plan), rays_(rays), hits_(hits), samplers_(samplers), counts_(counts), by_class_(rays.size()),
           numbers_(rays.size()), shadows_(plan) {
@@ -107,7 +108,7 @@ public:
 
 private:
     using Kind = PlainSurfaces::Kind;
-    static constexpr std::size_t kFewest = 3; // fewest paths that are scattered as a batch
+    static constexpr std::size_t kFewest = 3; // fewest paths that are advanced as a batch
 
     void find_hits() {
         const Accelerator& accelerator = plan_.prepared.accelerator;
@@ -139,32 +140,28 @@ private:
         const Environment* environment = plan_.environment;
         if (!kInsides && environment == nullptr) return;
         if constexpr (!kInsides) {
-            if (const auto* even = std::get_if<ConstantEnvironment>(environment)) return escape_to(*even, which);
-            if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, which);
+            if (const auto* even = std::get_if<ConstantEnvironment>(environment)) return escape_to(*even, which, depth);
+            if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, which, depth);
         }
         for (const std::uint32_t i : which) paths_[i].advance(rays_[i], hits_[i], depth, VertexNumbers());
     }
-    // Does what Path::add_environment does, for an environment that is not sampled as a light, in a loop without
-    // calls.
-    template <typename Sky> void escape_to(const Sky& sky, std::span<const std::uint32_t> which) {
-        for (const std::uint32_t i : which) {
-            const PathState& state = paths_[i].state();
-            const float weight = mis_weight(state.departure.certain ? 1 : state.departure.pdf, 0.0f);
-            paths_[i].add(state.throughput * radiance(sky, rays_[i].direction) * weight);
-        }
+    // Adds the light of an environment that is not sampled as a light, in a loop without calls.
+    template <typename Sky> void escape_to(const Sky& sky, std::span<const std::uint32_t> which, int depth) {
+        for (const std::uint32_t i : which)
+            paths_[i].add_found(radiance(sky, rays_[i].direction), 0, LightSource::kEnvironment, depth);
     }
 
-    PlainPath plain_path(std::uint32_t i) {
+    BatchPath batch_path(std::uint32_t i) {
         const Hit& hit = hits_[i];
         return {i, &rays_[i], &hit, &plan_.plain.shape(hit), &plan_.plain.bsdf(hit), &numbers_[i], &paths_[i].state()};
     }
     void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
         used_numbers_.draw(samplers_, which, depth, numbers_used(plan_, kind.scattering, depth), numbers_);
         for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kPathLanes))) {
-            std::array<PlainPath, kPathLanes> some;
+            std::array<BatchPath, kPathLanes> some;
             const std::size_t size = std::min(which.size(), kPathLanes);
-            for (std::size_t k = 0; k < size; ++k) some[k] = plain_path(which[k]);
-            scatter_plain(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+            for (std::size_t k = 0; k < size; ++k) some[k] = batch_path(which[k]);
+            advance_batch(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
             for (std::size_t k = 0; k < size; ++k)
                 if (some[k].goes_on) going_.push_back(which[k]);
         }
@@ -188,8 +185,8 @@ private:
 
 void path_radiances(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
                     std::span<Rgb> radiances, RayCounts& counts) {
-    if (plan.insides) return Paths<true>(plan, rays, hits, samplers, counts).trace(radiances);
-    Paths<false>(plan, rays, hits, samplers, counts).trace(radiances);
+    if (plan.insides) return Wavefront<true>(plan, rays, hits, samplers, counts).trace(radiances);
+    Wavefront<false>(plan, rays, hits, samplers, counts).trace(radiances);
 }
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-#include "raytrace/integrator/shadow_rays.h"
+#include "raytrace/wavefront/shadow_rays.h"
 
 #include "raytrace/acceleration/bvh_leaf.h"
 

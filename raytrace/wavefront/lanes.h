@@ -2,8 +2,9 @@
 #pragma once
 
 #include "common/image/rgb.h"
+#include "common/vec/robust_batch.h"
 #include "common/vec/widen.h"
-#include "raytrace/integrator/plain_vertices.h"
+#include "raytrace/wavefront/batch.h"
 
 #include <array>
 #include <span>
@@ -18,7 +19,7 @@ using Doubles = DoubleBatch;
 using Vec = Vec3T<Floats>;
 using Vecd = Vec3T<Doubles>;
 using Color = RgbT<Floats>;
-using Mask = Floats::batch_bool_type;
+using Mask = MaskOf<Floats>;
 
 // A Column has one number per path, and Columns have three.
 struct Column {
@@ -35,6 +36,7 @@ struct Columns {
 
     Columns() = default;
     template <typename T> explicit Columns(const Vec3T<T>& v) : x(v.x), y(v.y), z(v.z) {}
+    explicit Columns(const Color& c) : x(c.r), y(c.g), z(c.b) {}
     void set(std::size_t i, Vec3 v) { x.of[i] = v.x, y.of[i] = v.y, z.of[i] = v.z; }
     void set(std::size_t i, Rgb c) { set(i, Vec3(c.r, c.g, c.b)); }
     Vec3 vec(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
@@ -44,17 +46,14 @@ struct Columns {
     Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
 };
 
-inline Vec rounded(const Vecd& v) { return {to_floats(v.x), to_floats(v.y), to_floats(v.z)}; }
-inline Vecd widened(const Vec& v) { return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)}; }
-
 // Calls set(lane, path) for each lane. Lanes beyond the number of paths get the first path, so that their values are
 // valid.
-template <typename Set> void for_lanes(std::span<const PlainPath> paths, const Set& set) {
+template <typename Set> void for_lanes(std::span<const BatchPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
 }
 
 // Loads four consecutive numbers of each path, starting at first(path), into four batches.
-template <typename First> std::array<Floats, 4> fours(std::span<const PlainPath> paths, const First& first) {
+template <typename First> std::array<Floats, 4> fours(std::span<const BatchPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }
 
