@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
     using namespace duet;
-    std::string shading_name = "lit", occlusion_name = "gtao";
+    std::string shading_name = "lit", quality_name = "high", occlusion_name = "gtao";
     double occlusion_radius = 0;
     bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
     bool screen_reflections = true, screen_refractions = true, prefiltered = true, transformed_cosines = true;
@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
     program.spp_help = "Coverage samples a pixel (default 1: its centre)";
     program.add_options = [&](CLI::App& app) {
         app.add_option("--shading", shading_name, raster::shading_names() + " (default: lit, by materials and lights)");
+        app.add_option("--quality", quality_name,
+                       "lit: realtime (deferred shading) or high (sample by sample; default)");
         app.add_option(
             "--msaa", multisamples,
             "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
@@ -59,6 +61,7 @@ int main(int argc, char** argv) {
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::shading(shading_name);
+        settings.quality = raster::quality(quality_name);
         if (multisamples != 0) raster::multisample_pattern(multisamples); // throws for an unsupported number
         settings.multisamples = multisamples;
         settings.edges = edges;
