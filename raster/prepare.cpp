@@ -3,6 +3,7 @@
 #include "raster/geometry/geometry.h"
 #include "raster/light/prefiltered.h"
 #include "raster/screen/surroundings.h"
+#include "raster/shading/deferred.h"
 #include "raster/shadow/shadows.h"
 
 #include "common/system/error.h"
@@ -160,6 +161,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         static_cast<std::int64_t>(packed + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                   scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
+    data.deferred_frames = std::make_shared<DeferredFramePool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)

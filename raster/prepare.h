@@ -23,6 +23,7 @@ struct PreparedObject {
     bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };
 
+class DeferredFramePool; // raster/shading/deferred.h
 class GeometryPool; // raster/geometry/geometry.h
 class Shadows;      // raster/shadow/shadows.h
 class Prefiltered;  // raster/light/prefiltered.h
@@ -53,6 +54,7 @@ struct PreparedData {
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
+    std::shared_ptr<DeferredFramePool> deferred_frames{}; ///< likewise
 };
 
 } // namespace duet::raster

@@ -51,12 +51,13 @@ private:
     void fill_packet(int x, int y) {
         const StripPlace place = strip_place(tile_, x, y);
         reader_.read(place.ids, samples_);
-        if (samples_.seen == 0) return;
+        if (samples_.seen == 0) return clear_packet(x, y);
         normals_->shade(place, normal_);
         colors_->shade(place, color_);
         find_materials();
         store_packet(object_, x, y, gbuffer_.object);
         store_packet(material_, x, y, gbuffer_.material);
+        clear_emission(x, y);
         store_depths_and_normals(place);
         const auto of_packet = static_cast<std::uint32_t>(material_[static_cast<std::size_t>(
             std::countr_zero(samples_.seen))]);
@@ -66,6 +67,21 @@ private:
             for_each_seen(place, [&](int column, int row, std::size_t i) { fill_lobes(column, row, i, place); });
         if (emits_[of_packet] || !one_material_)
             for_each_seen(place, [&](int column, int row, std::size_t i) { add_emission(column, row, i, place); });
+    }
+
+    /// Marks a packet as background; its other attributes are not read.
+    void clear_packet(int x, int y) {
+        static const StripOf<float> kZero{};
+        StripOf<std::int32_t> none;
+        none.fill(-1);
+        store_packet(kZero, x, y, gbuffer_.reversed_depth);
+        store_packet(none, x, y, gbuffer_.object);
+        store_packet(none, x, y, gbuffer_.material);
+        clear_emission(x, y);
+    }
+    void clear_emission(int x, int y) {
+        static const StripOf<float> kZero{};
+        for (PlaneFloat* plane : {&emission_.x, &emission_.y, &emission_.z}) store_packet(kZero, x, y, *plane);
     }
 
     template <typename Visit> void for_each_seen(const StripPlace& place, const Visit& visit) const {

@@ -3,16 +3,51 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 
-namespace duet::raster {
+#include "common/system/stopwatch.h"
 
-Planes3 shade_deferred(const PreparedData& data, const Settings& settings, const Geometry& geometry,
-                       const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control) {
-    const int width = grid.region.width(), height = grid.region.height();
-    GBuffer gbuffer(ScreenProjection(view.pinhole, offset), width, height, any_clear_coat(data.scene));
-    Planes3 radiance(width, height);
+namespace duet::raster {
+namespace {
+
+void prepare_frame(const ScreenProjection& projection, int width, int height, bool coats, DeferredFrame& frame) {
+    const bool fits = frame.gbuffer && frame.gbuffer->width() == width && frame.gbuffer->height() == height;
+    if (fits) {
+        frame.gbuffer->projection = projection;
+    } else {
+        frame.gbuffer.emplace(projection, width, height, coats);
+        frame.radiance = Planes3(width, height);
+    }
+    frame.seconds.clear();
+}
+
+} // namespace
+
+void shade_deferred(const PreparedData& data, const Settings& settings, const Geometry& geometry,
+                    const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
+                    DeferredFrame& frame) {
+    prepare_frame(ScreenProjection(view.pinhole, offset), grid.region.width(), grid.region.height(),
+                  any_clear_coat(data.scene), frame);
+    GBuffer& gbuffer = *frame.gbuffer;
+    Planes3& radiance = frame.radiance;
+    Stopwatch watch;
+    const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
+
     fill_gbuffer(data, settings, geometry, view, grid, offset, control, gbuffer, radiance);
+    done("surface attributes");
     draw_background(data, settings, gbuffer, radiance);
-    return radiance;
+    done("background");
+}
+
+std::unique_ptr<DeferredFrame> DeferredFramePool::take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<DeferredFrame>();
+    std::unique_ptr<DeferredFrame> frame = std::move(free_.back());
+    free_.pop_back();
+    return frame;
+}
+
+void DeferredFramePool::give_back(std::unique_ptr<DeferredFrame> frame) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(frame));
 }
 
 } // namespace duet::raster
