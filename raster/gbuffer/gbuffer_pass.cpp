@@ -2,8 +2,7 @@
 
 #include "raster/gbuffer/surface_lobes.h"
 #include "raster/shader/one_sample.h"
-#include "raster/shader/strip_shader.h"
-#include "raster/shadings/shadings.h"
+#include "raster/shader/program.h"
 #include "raster/visibility/cover.h"
 #include "raster/visibility/strip_samples.h"
 
@@ -15,6 +14,14 @@
 
 namespace duet::raster {
 namespace {
+
+/// Computes the attributes that vary over a surface.
+struct AttributeShader : NormalVaryings {
+    static constexpr bool kDirections = false;
+    template <typename T, typename F> NormalAndColor<T> fragment(const F& f) const {
+        return {f.normal(f.at.n).unit(), f.base_color()};
+    }
+};
 
 /// Stores a packet's values, two rows of eight pixels, in a plane. The row below the image is left out.
 template <typename T> void store_packet(const StripOf<T>& packet, int x, int y, Plane<T>& plane) {
@@ -29,7 +36,7 @@ struct Frame {
     const PassView& view;
     std::vector<std::optional<LobesOfColor>> of_color; ///< by material
     std::vector<bool> emits;                           ///< by material
-    std::unique_ptr<Program> normals = normal_program(), colors = albedo_program();
+    AttributeShader shader{};
 };
 
 /// Fills the G-buffer of one tile, packet by packet.
@@ -38,8 +45,7 @@ public:
     TileFiller(const Frame& frame, const DepthTile& tile, GBuffer& gbuffer, Planes3& emission)
         : scene_(frame.data.scene), geometry_(frame.geometry), view_(frame.view), of_color_(frame.of_color),
           emits_(frame.emits), tile_(tile), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
-          normals_(frame.normals->for_tile(frame.data, geometry_, view_, tile.rect())),
-          colors_(frame.colors->for_tile(frame.data, geometry_, view_, tile.rect())) {}
+          shader_(frame.data, geometry_, view_, tile.rect(), frame.shader) {}
 
     void run() {
         const PixelRect& rect = tile_.rect();
@@ -52,8 +58,7 @@ private:
         const StripPlace place = strip_place(tile_, x, y);
         reader_.read(place.ids, samples_);
         if (samples_.seen == 0) return clear_packet(x, y);
-        normals_->shade(place, normal_);
-        colors_->shade(place, color_);
+        shader_.shade(place, shaded_);
         find_materials();
         store_packet(object_, x, y, gbuffer_.object);
         store_packet(material_, x, y, gbuffer_.material);
@@ -117,20 +122,14 @@ private:
     }
 
     void store_depths_and_normals(const StripPlace& place) {
-        StripOf<float> depth, nx, ny, nz;
-        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const auto seen = lanes_from<float>(samples_.seen >> i);
-            store(depth, i, xsimd::select(seen, Floats::load_aligned(place.nearness + i), Floats(0.0f)));
-            const auto component = [&](const StripOf<float>& color) {
-                return xsimd::select(seen, Floats(2.0f) * load(color, i) - Floats(1.0f), Floats(1.0f));
-            };
-            const Vec3T<Floats> n = unit(Vec3T<Floats>{component(normal_.r), component(normal_.g), component(normal_.b)});
-            store(nx, i, n.x), store(ny, i, n.y), store(nz, i, n.z);
-        }
+        StripOf<float> depth;
+        for (std::size_t i = 0; i < kStrip; i += Floats::size)
+            store(depth, i, xsimd::select(lanes_from<float>(samples_.seen >> i),
+                                          Floats::load_aligned(place.nearness + i), Floats(0.0f)));
         store_packet(depth, place.x, place.y, gbuffer_.reversed_depth);
-        store_packet(nx, place.x, place.y, gbuffer_.normal.x);
-        store_packet(ny, place.x, place.y, gbuffer_.normal.y);
-        store_packet(nz, place.x, place.y, gbuffer_.normal.z);
+        store_packet(shaded_.normal.x, place.x, place.y, gbuffer_.normal.x);
+        store_packet(shaded_.normal.y, place.x, place.y, gbuffer_.normal.y);
+        store_packet(shaded_.normal.z, place.x, place.y, gbuffer_.normal.z);
     }
 
     /// Fills the lobes of a packet of one material, in lanes.
@@ -138,7 +137,8 @@ private:
         StripColors diffuse, specular;
         StripOf<float> constant;
         for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const RgbT<Floats> color{load(color_.r, i), load(color_.g, i), load(color_.b, i)};
+            const StripColors& base = shaded_.color;
+            const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
             const RgbT<Floats> d = lobes.diffuse(color, cosines(place, i)), s = lobes.specular(color);
             store(diffuse.r, i, d.r), store(diffuse.g, i, d.g), store(diffuse.b, i, d.b);
             store(specular.r, i, s.r), store(specular.g, i, s.g), store(specular.b, i, s.b);
@@ -162,11 +162,7 @@ private:
         };
         const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, place.x), at(kRows<float>, place.y),
                                                           Floats(gbuffer_.projection.near()));
-        const auto component = [&](const StripOf<float>& color) {
-            return Floats(2.0f) * load(color, i) - Floats(1.0f);
-        };
-        return dot(unit(Vec3T<Floats>{component(normal_.r), component(normal_.g), component(normal_.b)}),
-                   gbuffer_.projection.to_viewer(p));
+        return dot(Vec3T<Floats>{load(shaded_.normal.x, i), load(shaded_.normal.y, i), load(shaded_.normal.z, i)}, gbuffer_.projection.to_viewer(p));
     }
 
     void add_emission(int x, int y, std::size_t i, const StripPlace& place) {
@@ -213,10 +209,10 @@ private:
     GBuffer& gbuffer_;
     Planes3& emission_;
     StripReader reader_;
-    std::unique_ptr<StripShader> normals_, colors_;
+    ShadedStrips<AttributeShader> shader_;
     // The current packet:
     StripSamples samples_;
-    StripColors normal_, color_; ///< (n + 1)/2 of the shading normal, and the base color
+    StripNormalsAndColors shaded_;
     StripOf<std::int32_t> object_, material_;
     bool one_material_ = false;
 };

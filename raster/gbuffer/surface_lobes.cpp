@@ -74,8 +74,11 @@ std::optional<LobesOfColor> LobesOfColor::of(const Material& material) {
         result.tabulate(layers);
         result.dielectric_ = layers.dielectric;
         result.back_ = coated->back();
-    } else {
-        return std::nullopt;
+    } else if (const auto* glass = std::get_if<Dielectric>(&material)) {
+        if (!glass->roughness.constant()) return std::nullopt;
+        const SurfaceLobes lobes = surface_lobes(bsdf_at(material, no_textures, SurfacePoint{}), 1);
+        result.dielectric_ = lobes.specular.r;
+        result.alpha = lobes.alpha;
     }
     return result;
 }
