@@ -1,7 +1,10 @@
 #include "raster/shading/deferred.h"
 
 #include "raster/gbuffer/gbuffer_pass.h"
+#include "raster/light/environment_light.h"
 #include "raster/lighting/background.h"
+#include "raster/lighting/sky_light.h"
+#include "raster/screen/needs.h"
 
 #include "common/system/stopwatch.h"
 
@@ -28,6 +31,7 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
                   any_clear_coat(data.scene), frame);
     GBuffer& gbuffer = *frame.gbuffer;
     Planes3& radiance = frame.radiance;
+    const int threads = settings.threads;
     Stopwatch watch;
     const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
 
@@ -35,6 +39,14 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     done("surface attributes");
     draw_background(data, settings, gbuffer, radiance);
     done("background");
+    const PartSet& parts = settings.parts;
+    if (shows_environment(data, settings) && parts.environment) {
+        const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
+        if (occluded) frame.occlusion.compute(gbuffer, static_cast<float>(occlusion_radius(data, settings)), threads);
+        done("ambient occlusion");
+        add_sky_light(data, settings, gbuffer, occluded ? &frame.occlusion : nullptr, radiance);
+        done("sky light");
+    }
 }
 
 std::unique_ptr<DeferredFrame> DeferredFramePool::take() {

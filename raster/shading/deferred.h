@@ -4,6 +4,7 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
+#include "raster/screen_space/gtao.h"
 
 #include <memory>
 #include <mutex>
@@ -21,6 +22,7 @@ namespace duet::raster {
 struct DeferredFrame {
     std::optional<GBuffer> gbuffer;
     Planes3 radiance;
+    GtaoImage occlusion;
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
 
     std::size_t memory_bytes() const { return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes(); }
