@@ -5,6 +5,7 @@
 #include "raster/screen/surroundings.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadow/shadows.h"
+#include "raster/shadows/map_shadows.h"
 
 #include "common/system/error.h"
 
@@ -172,6 +173,8 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();
+        if (settings.quality == Quality::kRealtime)
+            data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
     }
     if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));

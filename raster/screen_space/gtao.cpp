@@ -1,5 +1,7 @@
 #include "raster/screen_space/gtao.h"
 
+#include "raster/gbuffer/neighbors.h"
+
 #include "common/vec/frame.h"
 
 #include <algorithm>
@@ -18,8 +20,6 @@ constexpr float kClosest = 3e-4f;
 constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horizons begin to fade
 constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated normals may face away
 constexpr int kBlock = 4;             ///< pixels of half resolution along a side, each with a direction of its own
-/// Two pixels are averaged if their points lie within this many pixel widths of each other's planes.
-constexpr float kPlaneTolerance = 2;
 
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
@@ -155,24 +155,6 @@ SkyVisibility<Floats> search_line(const GBuffer& gbuffer, const Vec3s& p, const 
     }
     // `all` averages to 1 over the directions of a block, whatever the normal, so no line is normalized by itself.
     return {all - lost, hidden};
-}
-
-/// Loads a batch that starts at any column, with columns and rows beyond the plane's edges clamped.
-Floats load_at(const PlaneFloat& plane, int x, int y) {
-    const float* row = plane.row(std::clamp(y, 0, plane.height() - 1));
-    if (x >= 0 && x + static_cast<int>(Floats::size) <= plane.width()) return Floats::load_unaligned(row + x);
-    const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0);
-    return gather(row, truncated(clamp(column, Floats(0.0f), Floats(static_cast<float>(plane.width() - 1)))));
-}
-Vec3s load_at(const Planes3& planes, int x, int y) {
-    return {load_at(planes.x, x, y), load_at(planes.y, x, y), load_at(planes.z, x, y)};
-}
-
-/// Returns how alike two surfaces are, in [0, 1]: 0 if the point q lies off the plane through p, or if normals differ.
-Floats likeness(const Vec3s& p, const Vec3s& n, const Floats& tolerance, const Vec3s& q, const Vec3s& m) {
-    const Floats off = abs(dot(q - p, n)) / tolerance, turn = max(dot(n, m), Floats(0.0f));
-    const Floats square = turn * turn;
-    return max(Floats(1.0f) - off, Floats(0.0f)) * square * square;
 }
 
 } // namespace

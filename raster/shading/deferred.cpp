@@ -3,8 +3,11 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/light/environment_light.h"
 #include "raster/lighting/background.h"
+#include "raster/lighting/direct_light.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/screen/needs.h"
+#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_filter.h"
 
 #include "common/system/stopwatch.h"
 
@@ -37,6 +40,18 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
 
     fill_gbuffer(data, settings, geometry, view, grid, offset, control, gbuffer, radiance);
     done("surface attributes");
+    if (settings.parts.direct && !data.scene.lights.empty()) {
+        if (settings.shadows && data.soft_shadows) {
+            const MapShadows shadows(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), view.time);
+            const DirectLight light = direct_light(data, settings, gbuffer, &shadows);
+            done("direct light and shadows");
+            add_filtered(gbuffer, light, threads, radiance);
+            done("shadow filter");
+        } else {
+            add(direct_light(data, settings, gbuffer, nullptr), threads, radiance);
+            done("direct light");
+        }
+    }
     draw_background(data, settings, gbuffer, radiance);
     done("background");
     const PartSet& parts = settings.parts;
