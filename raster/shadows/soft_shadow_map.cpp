@@ -73,7 +73,7 @@ Vec3s DepthCube::surface(const Vec3s& w) const {
     const Floats per_texel = depth * Floats(1 / scale_);
     const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,
                  out = depth * sign;
-    return {pick(out, up, right), pick(right, out, up), pick(up, right, out)};
+    return {pick(out, right, up), pick(up, out, right), pick(right, up, out)};
 }
 
 struct SoftShadowMap::Outline {
