@@ -2,6 +2,7 @@
 
 #include "raster/geometry/geometry.h"
 #include "raster/light/prefiltered.h"
+#include "raster/probes/irradiance_probes.h"
 #include "raster/screen/surroundings.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadow/shadows.h"
@@ -177,6 +178,10 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
             data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
     }
     if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
+    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime && settings.indirect_light) {
+        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

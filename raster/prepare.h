@@ -27,6 +27,7 @@ class DeferredFramePool; // raster/shading/deferred.h
 class GeometryPool; // raster/geometry/geometry.h
 class SoftShadowMaps; // raster/shadows/map_shadows.h
 class Shadows;      // raster/shadow/shadows.h
+class IrradianceProbes; // raster/probes/irradiance_probes.h
 class Prefiltered;  // raster/light/prefiltered.h
 
 struct PreparedData {
@@ -53,6 +54,7 @@ struct PreparedData {
     std::int64_t memory_bytes = 0;
     std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
     std::shared_ptr<const SoftShadowMaps> soft_shadows{}; ///< likewise
+    std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame

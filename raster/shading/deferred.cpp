@@ -4,6 +4,7 @@
 #include "raster/light/environment_light.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
+#include "raster/lighting/indirect_light.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/screen/needs.h"
 #include "raster/shadows/map_shadows.h"
@@ -55,11 +56,19 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     draw_background(data, settings, gbuffer, radiance);
     done("background");
     const PartSet& parts = settings.parts;
-    if (shows_environment(data, settings) && parts.environment) {
-        const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
-        if (occluded) frame.occlusion.compute(gbuffer, static_cast<float>(occlusion_radius(data, settings)), threads);
+    const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
+    const auto occlude = [&](float radius) {
+        if (occluded) frame.occlusion.compute(gbuffer, radius, threads);
         done("ambient occlusion");
-        add_sky_light(data, settings, gbuffer, occluded ? &frame.occlusion : nullptr, radiance);
+        return occluded ? &frame.occlusion : nullptr;
+    };
+    if (data.irradiance_probes && parts.environment) {
+        const GtaoImage* occlusion = occlude(data.irradiance_probes->spacing());
+        add_indirect_light(settings, gbuffer, *data.irradiance_probes, occlusion, radiance);
+        done("indirect light");
+    } else if (shows_environment(data, settings) && parts.environment) {
+        const GtaoImage* occlusion = occlude(static_cast<float>(occlusion_radius(data, settings)));
+        add_sky_light(data, settings, gbuffer, occlusion, radiance);
         done("sky light");
     }
 }
