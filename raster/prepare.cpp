@@ -3,6 +3,7 @@
 #include "raster/geometry/geometry.h"
 #include "raster/light/prefiltered.h"
 #include "raster/probes/irradiance_probes.h"
+#include "raster/probes/reflection_probes.h"
 #include "raster/screen/surroundings.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadow/shadows.h"
@@ -129,6 +130,24 @@ void prepare_glossy(const Settings& settings, PreparedData& data) {
     }
 }
 
+/// Renders the probes of deferred shading.
+void prepare_probes(const Settings& settings, PreparedData& data) {
+    const Scene& scene = data.scene;
+    if (settings.indirect_light) {
+        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
+    if (std::ranges::none_of(scene.materials, reflects)) return;
+    const int side = std::holds_alternative<ImageEnvironment>(scene.environment) ? 256 : 32;
+    const bool shown = settings.environment && scene.needs.environment;
+    data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
+        return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), Rgb(), kInfinity};
+    }, settings.threads);
+    data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
+    data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
+                                                   data.reflection_probes->memory_bytes());
+}
+
 } // namespace
 
 Prepared prepare(const Scene& scene, const Settings& settings) {
@@ -178,10 +197,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
             data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
     }
     if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
-    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime && settings.indirect_light) {
-        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
-        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
-    }
+    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime) prepare_probes(settings, data);
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

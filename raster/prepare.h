@@ -28,6 +28,8 @@ class GeometryPool; // raster/geometry/geometry.h
 class SoftShadowMaps; // raster/shadows/map_shadows.h
 class Shadows;      // raster/shadow/shadows.h
 class IrradianceProbes; // raster/probes/irradiance_probes.h
+class RadianceMap; // raster/probes/radiance_map.h
+class ReflectionProbes; // raster/probes/reflection_probes.h
 class Prefiltered;  // raster/light/prefiltered.h
 
 struct PreparedData {
@@ -55,6 +57,8 @@ struct PreparedData {
     std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
     std::shared_ptr<const SoftShadowMaps> soft_shadows{}; ///< likewise
     std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
+    std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
+    std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame

@@ -201,6 +201,12 @@ void process_without(const PreparedData& data, const std::vector<std::uint32_t>&
             result);
 }
 
+void process_only(const PreparedData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
+                  const PassView& view, const Settings& settings, Geometry& result) {
+    process(data, common_to(data.polygonal, objects), common_to(data.spheres, objects), grid, view, settings, true,
+            result);
+}
+
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
                            const Settings& settings, Geometry& result) {
     process_without(data, data.glass, grid, view, settings, result);

@@ -7,6 +7,7 @@
 #include "common/vec/frame.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace duet::raster {
@@ -79,13 +80,23 @@ template <typename Value> void for_each_texel(OctahedralMap& map, int threads, c
 
 } // namespace
 
-RadianceMap::RadianceMap(int side, const std::function<Rgb(Vec3)>& radiance,
-                         const std::function<float(Vec3)>& distance, int threads)
-    : sharp_(side) {
-    for_each_texel(sharp_, threads, [&](Vec3 w) {
-        const Rgb c = radiance(w);
-        return OctahedralMap::Texel{c.r, c.g, c.b, distance(w)};
+RadianceMap::RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads)
+    : sharp_(side), bright_(side) {
+    std::atomic<bool> emits = false;
+    parallel_for(static_cast<std::size_t>(side), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < side; ++x) {
+            const Arriving a = arriving(sharp_.direction(x, y));
+            const Rgb rest = a.radiance - a.emitted;
+            // Distances stay finite, so that steps along a ray do.
+            const float distance = min(a.distance, 1e15f);
+            sharp_.texel(x, y) = {rest.r, rest.g, rest.b, distance};
+            bright_.texel(x, y) = {a.radiance.r, a.radiance.g, a.radiance.b, distance};
+            if (!is_black(a.emitted)) emits = true;
+        }
     });
+    sharp_.finish(), bright_.finish();
+    if (!emits) bright_ = {};
     std::vector<OctahedralMap> mips{sharp_};
     while (mips.back().side() > 4) mips.push_back(halved(mips.back()));
     for (int k = 0; k < kLevels; ++k) {
@@ -98,7 +109,7 @@ RadianceMap::RadianceMap(int side, const std::function<Rgb(Vec3)>& radiance,
 }
 
 RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& w) const {
-    const auto [r, g, b] = sharp_.at<3>(w);
+    const auto [r, g, b] = (bright_.empty() ? sharp_ : bright_).at<3>(w);
     return {r, g, b};
 }
 
@@ -117,7 +128,7 @@ RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& axis, const Floats& alpha) con
 }
 
 std::size_t RadianceMap::memory_bytes() const {
-    std::size_t sum = sharp_.memory_bytes();
+    std::size_t sum = sharp_.memory_bytes() + bright_.memory_bytes();
     for (const OctahedralMap& map : rough_) sum += map.memory_bytes();
     return sum;
 }

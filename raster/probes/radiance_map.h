@@ -17,15 +17,21 @@ public:
     static constexpr int kLevels = 5;
 
     RadianceMap() = default;
-    /// Samples `radiance`, a function of a unit direction, at side × side texels (a power of 2, at least 8), then
-    /// filters. `distance` gives the fourth channel of the sharp map. The result is the same for any number of threads.
-    RadianceMap(int side, const std::function<Rgb(Vec3)>& radiance, const std::function<float(Vec3)>& distance,
-                int threads);
+    /// What arrives from a direction: the radiance, how much of it lights emit, and the distance of where it comes from.
+    struct Arriving {
+        Rgb radiance, emitted;
+        float distance = kInfinity;
+    };
+    /// Samples `arriving`, a function of a unit direction, at side × side texels (a power of 2, at least 8), then
+    /// filters what lights do not emit: their reflection on rough surfaces is direct light. The result is the same for
+    /// any number of threads.
+    RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads);
 
     bool empty() const { return sharp_.empty(); }
-    /// Returns the radiance filtered by lobes of GGX width alpha about directions of any length.
+    /// Returns the radiance, without what lights emit, filtered by lobes of GGX width alpha about directions of any
+    /// length.
     RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
-    /// Returns the sharp radiance.
+    /// Returns the sharp radiance, with what lights emit.
     RgbT<Floats> at(const Vec3T<Floats>& w) const;
     /// Returns the distance of what is visible in directions of any length.
     Floats distance(const Vec3T<Floats>& w) const { return sharp_.nearest(w, 3); }
@@ -33,7 +39,7 @@ public:
     std::size_t memory_bytes() const;
 
 private:
-    OctahedralMap sharp_;
+    OctahedralMap sharp_, bright_; ///< without and with what lights emit; bright_ is empty if there is none
     std::array<OctahedralMap, kLevels> rough_; ///< rough_[k] has roughness (k + 1) / kLevels
 };
 

@@ -5,6 +5,7 @@
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
 #include "raster/lighting/indirect_light.h"
+#include "raster/lighting/reflections.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/screen/needs.h"
 #include "raster/shadows/map_shadows.h"
@@ -70,6 +71,10 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
         const GtaoImage* occlusion = occlude(static_cast<float>(occlusion_radius(data, settings)));
         add_sky_light(data, settings, gbuffer, occlusion, radiance);
         done("sky light");
+    }
+    if (data.reflection_probes && parts.reflection) {
+        add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
+        done("reflections");
     }
 }
 
