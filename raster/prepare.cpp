@@ -2,6 +2,7 @@
 
 #include "raster/geometry/geometry.h"
 #include "raster/light/prefiltered.h"
+#include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/reflection_probes.h"
 #include "raster/screen/surroundings.h"
@@ -144,6 +145,7 @@ void prepare_probes(const Settings& settings, PreparedData& data) {
         return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), Rgb(), kInfinity};
     }, settings.threads);
     data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
+    data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
                                                    data.reflection_probes->memory_bytes());
 }

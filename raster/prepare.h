@@ -30,6 +30,7 @@ class Shadows;      // raster/shadow/shadows.h
 class IrradianceProbes; // raster/probes/irradiance_probes.h
 class RadianceMap; // raster/probes/radiance_map.h
 class ReflectionProbes; // raster/probes/reflection_probes.h
+class GlassShapes; // raster/probes/glass_shapes.h
 class Prefiltered;  // raster/light/prefiltered.h
 
 struct PreparedData {
@@ -59,6 +60,7 @@ struct PreparedData {
     std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
     std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
+    std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame

@@ -1,5 +1,6 @@
 #include "raster/probes/irradiance_probes.h"
 
+#include "raster/probes/solid_test.h"
 #include "raster/shader/shader.h"
 
 #include "common/system/parallel.h"
@@ -44,16 +45,24 @@ template <typename Visit> void for_each_pixel(const ProbeCapture& capture, const
             for (int x = 0; x < capture.side(); ++x) visit(ProbeCapture::Pixel{face, x, y});
 }
 
-/// Returns the region that probes fill: the scene, but not far beyond what its camera looks at.
-Box3d region_of(const Scene& scene) {
+/// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
+/// at. Points outside use the nearest probes.
+Box3d region_of(const PreparedData& data) {
+    const Scene& scene = data.scene;
     const Camera& camera = scene.camera;
-    const double reach = 2 * length(camera.look_at - camera.eye);
+    const double view = length(camera.look_at - camera.eye), reach = 2 * view;
+    Box3 bounds;
+    for (const PreparedObject& object : data.objects)
+        if (static_cast<double>(length(object.bounds.diagonal())) < 10 * view) bounds.extend(object.bounds);
+    if (bounds.empty()) bounds = scene.bounds;
     Box3d box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto low = static_cast<double>(scene.bounds.low[axis]), high = static_cast<double>(scene.bounds.high[axis]);
+        const auto low = static_cast<double>(bounds.low[axis]), high = static_cast<double>(bounds.high[axis]);
         box.low[axis] = std::clamp(camera.look_at[axis] - reach, low, high);
         box.high[axis] = std::clamp(camera.look_at[axis] + reach, low, high);
-        if (!(box.high[axis] > box.low[axis])) box.low[axis] -= 0.01 * reach, box.high[axis] += 0.01 * reach;
+        // A flat scene, too, has room above and below.
+        const double least = 0.05 * view, short_of = least - (box.high[axis] - box.low[axis]);
+        if (short_of > 0) box.low[axis] -= short_of / 2, box.high[axis] += short_of / 2;
     }
     return box;
 }
@@ -63,7 +72,7 @@ Box3d region_of(const Scene& scene) {
 /// Spreads the probes so that cells are close to cubes. The outermost probes stand half a cell within the region, so
 /// that none lies in an outer wall.
 void IrradianceProbes::place(const PreparedData& data) {
-    const Box3d box = region_of(data.scene);
+    const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
     const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
                                    static_cast<double>(kFewestProbes), static_cast<double>(kMostProbes));
@@ -92,12 +101,14 @@ IrradianceProbes::IrradianceProbes(const PreparedData& data, const Settings& set
     place(data);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+        if (inside_solid(data, position(i))) return;
         captures[i] = std::make_unique<ProbeCapture>(data, settings, position(i), kSide, data.glass);
         set_distances(*captures[i], probes_[i]);
     });
     for (int k = 0; k <= kBounces; ++k) {
         std::vector<Harmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+            if (!captures[i]) return;
             next[i] = gathered(*captures[i]);
             if (k > 0) add_bounce(*captures[i], next[i]);
         });
@@ -210,6 +221,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
         for (int corner = 0; corner < 8; ++corner) {
             const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
+            if (probes_[probe].distance.empty()) continue; // inside an object
             const Vec3 q(position(probe) - eye);
             const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
             const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z}, n, basis,
@@ -217,7 +229,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             sum += c.weight;
             light += c.irradiance * c.weight;
         }
-        const Floats over = Floats(1.0f) / sum;
+        const Floats over = Floats(1.0f) / max(sum, Floats(1e-20f));
         const auto lanes = xsimd::bool_cast(own);
         result = {xsimd::select(lanes, light.r * over, result.r), xsimd::select(lanes, light.g * over, result.g),
                   xsimd::select(lanes, light.b * over, result.b)};

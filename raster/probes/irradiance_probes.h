@@ -34,7 +34,7 @@ private:
     using Harmonics = std::array<Rgb, 9>;
     struct Probe {
         Harmonics irradiance{};
-        OctahedralMap distance; ///< of the visible surfaces: the mean and the mean of the square
+        OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
     };
 
     void place(const PreparedData& data);

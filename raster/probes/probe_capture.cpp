@@ -13,8 +13,14 @@
 namespace duet::raster {
 namespace {
 
+/// Selects what a capture renders: all objects but some, with their light, or one object alone.
+struct Selection {
+    const std::vector<std::uint32_t>& objects;
+    bool excluded;
+};
+
 ProbeCapture::Face capture(const PreparedData& data, const Settings& settings, const Camera& camera, int side,
-                           const std::vector<std::uint32_t>& excluded) {
+                           const Selection& selection) {
     const View view{camera, side, side};
     const Pinhole pinhole = CameraModel(view).through();
     const std::vector<SampleOffset> samples{SampleOffset{}};
@@ -24,10 +30,14 @@ ProbeCapture::Face capture(const PreparedData& data, const Settings& settings, c
                         .samples = samples};
     const TileGrid grid{{0, 0, side, side}};
     GeometryLoan geometry(*data.geometries);
-    process_without(data, excluded, grid, pass, settings, *geometry);
+    if (selection.excluded)
+        process_without(data, selection.objects, grid, pass, settings, *geometry);
+    else
+        process_only(data, selection.objects, grid, pass, settings, *geometry);
     ProbeCapture::Face face{GBuffer(ScreenProjection(pinhole, samples.front()), side, side, any_clear_coat(data.scene)),
                             Planes3(side, side), Planes3(side, side)};
     fill_gbuffer(data, settings, *geometry, pass, grid, samples.front(), Control{}, face.gbuffer, face.emission);
+    if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;
     if (settings.shadows && data.soft_shadows) {
@@ -44,18 +54,23 @@ Settings single_threaded(Settings settings) {
     settings.parts = {};
     return settings;
 }
+/// Back faces are visible from within.
+Settings with_all_faces(const Settings& settings) {
+    Settings result = single_threaded(settings);
+    result.skips.back_faces = false;
+    return result;
+}
 
 template <std::size_t... kFaces>
 std::array<ProbeCapture::Face, 6> capture_all(const PreparedData& data, const Settings& settings,
                                               const std::vector<Camera>& views, int side,
-                                              const std::vector<std::uint32_t>& excluded,
-                                              std::index_sequence<kFaces...>) {
-    return {capture(data, settings, views[kFaces], side, excluded)...};
+                                              const Selection& selection, std::index_sequence<kFaces...>) {
+    return {capture(data, settings, views[kFaces], side, selection)...};
 }
 
-std::vector<Camera> views_about(const PreparedData& data, Vec3d center, int side) {
+std::vector<Camera> views_about(const PreparedData& data, Vec3d center) {
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
-    std::vector<Camera> views = cube_views(center, {}, size, side, 0);
+    std::vector<Camera> views = cube_views(center, {}, size, 1, 0);
     for (Camera& view : views) view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
     return views;
 }
@@ -65,7 +80,13 @@ std::vector<Camera> views_about(const PreparedData& data, Vec3d center, int side
 ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
                            const std::vector<std::uint32_t>& excluded)
     : center_(center), side_(side),
-      faces_(capture_all(data, single_threaded(settings), views_about(data, center, side), side, excluded,
+      faces_(capture_all(data, single_threaded(settings), views_about(data, center), side, {excluded, true},
+                         std::make_index_sequence<6>())) {}
+
+ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object,
+                           int side)
+    : center_(center), side_(side),
+      faces_(capture_all(data, with_all_faces(settings), views_about(data, center), side, {{object}, false},
                          std::make_index_sequence<6>())) {}
 
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {

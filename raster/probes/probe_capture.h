@@ -22,6 +22,9 @@ public:
     ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
                  const std::vector<std::uint32_t>& excluded);
 
+    /// Renders one object alone, without light: its surface as seen from within or from outside.
+    ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object, int side);
+
     Vec3d center() const { return center_; }
     int side() const { return side_; }
     std::array<Face, 6>& faces() { return faces_; }

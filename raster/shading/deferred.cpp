@@ -4,6 +4,15 @@
 #include "raster/light/environment_light.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
+#include "raster/lighting/indirect_light.h"
+#include "raster/lighting/reflections.h"
+#include "raster/lighting/refraction.h"
+#include "raster/lighting/sky_light.h"
+#include "raster/screen/needs.h"
+#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_filter.h"
+
+#include "common/system/stopwatch.h"
 
 namespace duet::raster {
 namespace {
@@ -33,7 +42,19 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
 
     fill_gbuffer(data, settings, geometry, view, grid, offset, control, gbuffer, radiance);
-    add(direct_light(data, settings, gbuffer, nullptr), settings.threads, radiance);
+    done("surface attributes");
+    if (settings.parts.direct && !data.scene.lights.empty()) {
+        if (settings.shadows && data.soft_shadows) {
+            const MapShadows shadows(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), view.time);
+            const DirectLight light = direct_light(data, settings, gbuffer, &shadows);
+            done("direct light and shadows");
+            add_filtered(gbuffer, light, threads, radiance);
+            done("shadow filter");
+        } else {
+            add(direct_light(data, settings, gbuffer, nullptr), threads, radiance);
+            done("direct light");
+        }
+    }
     draw_background(data, settings, gbuffer, radiance);
     done("background");
     const PartSet& parts = settings.parts;
@@ -55,6 +76,10 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     if (data.reflection_probes && parts.reflection) {
         add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
         done("reflections");
+        if (data.scene.needs.transmission) {
+            add_refraction(data, settings, gbuffer, radiance);
+            done("refraction");
+        }
     }
 }
 
