@@ -16,9 +16,11 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
 /// The time to render probes grows with their number times the triangles. These bounds keep it within about a second.
-constexpr double kMostTriangles = 4e7;
+constexpr double kMostTriangles = 1e8;
 constexpr int kMostProbes = 512, kFewestProbes = 27;
-constexpr int kDistanceSide = 8; ///< texels of an octahedral map of distances
+constexpr int kDistanceSide = 16;/// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
+/// judged, as the maps of distances are coarse (Majercik et al., §5.2).
+constexpr float kBias = 0.4f; ///< texels of an octahedral map of distances
 
 /// The polynomials of the real spherical harmonics of orders 0, 1 and 2, without constant factors (Ramamoorthi and
 /// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 3).
@@ -124,7 +126,7 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
         const Vec2 at = octahedral(capture.direction(pixel));
         const auto cell = [](float v) {
-            return std::clamp(static_cast<int>((v + 1) * 0.5f * kDistanceSide), 0, kDistanceSide - 1);
+            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0, kDistanceSide - 1);
         };
         const float distance = min(capture.distance(pixel), farthest), weight = capture.solid_angle(pixel);
         sums(cell(at.x), cell(at.y)) += Vec3(distance, distance * distance, 1) * weight;
@@ -223,8 +225,9 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
             if (probes_[probe].distance.empty()) continue; // inside an object
             const Vec3 q(position(probe) - eye);
+            const float bias = kBias * std::min({step.x, step.y, step.z});
             const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
-            const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z}, n, basis,
+            const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
                            part(0, dx) * part(1, dy) * part(2, dz) + Floats(1e-4f));
             sum += c.weight;
             light += c.irradiance * c.weight;

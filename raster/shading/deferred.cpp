@@ -17,6 +17,9 @@
 namespace duet::raster {
 namespace {
 
+/// Occlusion by what is nearer than half the distance between probes; they see the rest themselves.
+constexpr float kOccluded = 0.5f;
+
 void prepare_frame(const ScreenProjection& projection, int width, int height, bool coats, DeferredFrame& frame) {
     const bool fits = frame.gbuffer && frame.gbuffer->width() == width && frame.gbuffer->height() == height;
     if (fits) {
@@ -65,7 +68,7 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
         return occluded ? &frame.occlusion : nullptr;
     };
     if (data.irradiance_probes && parts.environment) {
-        const GtaoImage* occlusion = occlude(data.irradiance_probes->spacing());
+        const GtaoImage* occlusion = occlude(kOccluded * data.irradiance_probes->spacing());
         add_indirect_light(settings, gbuffer, *data.irradiance_probes, occlusion, radiance);
         done("indirect light");
     } else if (shows_environment(data, settings) && parts.environment) {
