@@ -11,23 +11,36 @@ Floats with_bounces(const Floats& visible, const Floats& albedo) {
     return max(visible, ((visible * a + b) * visible + c) * visible);
 }
 
-} // namespace
-
-void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                        const GtaoImage* occlusion, Planes3& radiance) {
+/// Adds albedo/π times what irradiance(x, y, lanes) returns for each batch.
+template <typename Irradiance>
+void add_reflected(const Settings& settings, const GBuffer& gbuffer, Planes3& radiance, const Irradiance& irradiance) {
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        RgbT<Floats> light = albedo * probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
-                                                        gbuffer.normal.vector(x, y), lit);
-        if (occlusion != nullptr) {
-            const Floats visible = occlusion->at(x, y).visible;
-            light.r *= with_bounces(visible, albedo.r);
-            light.g *= with_bounces(visible, albedo.g);
-            light.b *= with_bounces(visible, albedo.b);
-        }
+        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit);
         radiance.set(x, y, radiance.color(x, y) + light * xsimd::select(lit, Floats(kInvPi), Floats(0.0f)));
+    });
+}
+
+} // namespace
+
+void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                        Planes3& radiance) {
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {
+        return probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
+    });
+}
+
+void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                        GtaoImage& half, Planes3& radiance) {
+    half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
+        return probes.irradiance(gbuffer.projection.eye(), p, n, lanes);
+    });
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto&) {
+        const auto [visible, irradiance] = half.lit_at(x, y);
+        return irradiance * RgbT<Floats>{with_bounces(visible, albedo.r), with_bounces(visible, albedo.g),
+                                         with_bounces(visible, albedo.b)};
     });
 }
 

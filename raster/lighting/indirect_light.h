@@ -9,8 +9,11 @@
 
 namespace duet::raster {
 
-/// Adds the light of the probes that diffuse surfaces reflect. `occlusion` may be null: nothing is hidden then.
+/// Adds the light of the probes that diffuse surfaces reflect, at every pixel and without occlusion.
 void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                        const GtaoImage* occlusion, Planes3& radiance);
+                        Planes3& radiance);
+/// The same at half resolution, with the occlusion that `half` holds; it receives the irradiance.
+void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                        GtaoImage& half, Planes3& radiance);
 
 } // namespace duet::raster

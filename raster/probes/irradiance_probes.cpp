@@ -18,9 +18,10 @@ using Vec3s = Vec3T<Floats>;
 /// The time to render probes grows with their number times the triangles. These bounds keep it within about a second.
 constexpr double kMostTriangles = 1e8;
 constexpr int kMostProbes = 512, kFewestProbes = 27;
-constexpr int kDistanceSide = 16;/// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
+constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
+/// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
 /// judged, as the maps of distances are coarse (Majercik et al., §5.2).
-constexpr float kBias = 0.4f; ///< texels of an octahedral map of distances
+constexpr float kBias = 0.4f;
 
 /// The polynomials of the real spherical harmonics of orders 0, 1 and 2, without constant factors (Ramamoorthi and
 /// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 3).

@@ -54,7 +54,7 @@ void add_reflected_light(const PreparedData& data, Settings settings, ProbeCaptu
     settings.threads = 1;
     for (ProbeCapture::Face& face : capture.faces()) {
         if (data.irradiance_probes)
-            add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, nullptr, face.direct);
+            add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
         add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
     }
 }

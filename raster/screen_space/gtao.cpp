@@ -175,6 +175,12 @@ void GtaoImage::compute(const GBuffer& gbuffer, float radius, int threads) {
     parallel_for(rows, threads, [&](std::size_t y) { filter_row(static_cast<int>(y)); });
 }
 
+/// Returns the points of a batch of half-resolution pixels, relative to the eye.
+Vec3s GtaoImage::point(int x, int y, const Floats& depth) const {
+    return gbuffer_->projection.point(Floats(static_cast<float>(2 * x)) + load(kLanesAsFloats, 0) * Floats(2.0f),
+                                      Floats(static_cast<float>(2 * y)), max(depth, Floats(1e-30f)));
+}
+
 void GtaoImage::search_row(int y, float radius) {
     const auto halved = [&](const PlaneFloat& from, PlaneFloat& to) {
         for (int x = 0; x < to.width(); ++x) to(x, y) = from(2 * x, 2 * y);
@@ -185,11 +191,8 @@ void GtaoImage::search_row(int y, float radius) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);
         SkyVisibility<Floats> found;
-        if (xsimd::any(seen)) {
-            const Floats column = Floats(static_cast<float>(2 * x)) + load(kLanesAsFloats, 0) * Floats(2.0f);
-            const Vec3s p = gbuffer_->projection.point(column, Floats(static_cast<float>(2 * y)),
-                                                       xsimd::select(seen, depth, Floats(1.0f)));
-            found = search_line(*gbuffer_, p, normal_.vector(x, y), radius, pattern_of(x, y));
+        if (radius > 0 && xsimd::any(seen)) {
+            found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
         }
         store(found_.visible, x, y, found.visible);
         found_.hidden.set(x, y, found.hidden);
@@ -199,10 +202,6 @@ void GtaoImage::search_row(int y, float radius) {
 /// Averages a row over the 4 × 4 pixels about each, which together hold all directions.
 void GtaoImage::filter_row(int y) {
     const ScreenProjection& projection = gbuffer_->projection;
-    const auto point = [&](int x, int row, const Floats& depth) {
-        return projection.point(Floats(static_cast<float>(2 * x)) + load(kLanesAsFloats, 0) * Floats(2.0f),
-                                Floats(static_cast<float>(2 * row)), max(depth, Floats(1e-30f)));
-    };
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         if (!xsimd::any(depth > Floats(0.0f))) continue;

@@ -62,18 +62,16 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     done("background");
     const PartSet& parts = settings.parts;
     const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
-    const auto occlude = [&](float radius) {
-        if (occluded) frame.occlusion.compute(gbuffer, radius, threads);
-        done("ambient occlusion");
-        return occluded ? &frame.occlusion : nullptr;
-    };
     if (data.irradiance_probes && parts.environment) {
-        const GtaoImage* occlusion = occlude(kOccluded * data.irradiance_probes->spacing());
-        add_indirect_light(settings, gbuffer, *data.irradiance_probes, occlusion, radiance);
+        const float radius = occluded ? kOccluded * data.irradiance_probes->spacing() : 0;
+        frame.occlusion.compute(gbuffer, radius, threads);
+        done("ambient occlusion");
+        add_indirect_light(settings, gbuffer, *data.irradiance_probes, frame.occlusion, radiance);
         done("indirect light");
     } else if (shows_environment(data, settings) && parts.environment) {
-        const GtaoImage* occlusion = occlude(static_cast<float>(occlusion_radius(data, settings)));
-        add_sky_light(data, settings, gbuffer, occlusion, radiance);
+        if (occluded) frame.occlusion.compute(gbuffer, static_cast<float>(occlusion_radius(data, settings)), threads);
+        done("ambient occlusion");
+        add_sky_light(data, settings, gbuffer, occluded ? &frame.occlusion : nullptr, radiance);
         done("sky light");
     }
     if (data.reflection_probes && parts.reflection) {
