@@ -181,22 +181,26 @@ void look_up(const std::array<const T*, kStrip>& table, const Ints& index, std::
 #endif
 }
 
-/// Looks up values in two consecutive tables of sixteen by the lower five bits of the indices from the i-th on.
-inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index,
-                      std::size_t i) {
+/// Looks up values in two consecutive tables of sixteen by the lower five bits of each index.
+inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const Ints& index) {
 #if defined(__AVX512F__)
-    return _mm512_permutex2var_ps(load(first, 0), load(index, i), load(second, 0));
+    return _mm512_permutex2var_ps(load(first, 0), index, load(second, 0));
 #elif defined(__AVX2__)
-    const __m256i at = load(index, i);
-    return _mm256_blendv_ps(look_up(first, at), look_up(second, at), _mm256_castsi256_ps(_mm256_slli_epi32(at, 27)));
+    return _mm256_blendv_ps(look_up(first, index), look_up(second, index),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(index, 27)));
 #else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
     alignas(64) std::array<float, Floats::size> found;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-        const auto at = static_cast<std::size_t>(index[i + k]);
-        found[k] = (at & 16 ? second : first)[at & 15];
-    }
+    index.store_aligned(at.data());
+    for (std::size_t k = 0; k < found.size(); ++k)
+        found[k] = (at[k] & 16 ? second : first)[static_cast<std::size_t>(at[k] & 15)];
     return Floats::load_aligned(found.data());
 #endif
+}
+/// Looks up values in two consecutive tables of sixteen by the indices from the i-th on.
+inline Floats look_up(const StripOf<float>& first, const StripOf<float>& second, const StripOf<std::int32_t>& index,
+                      std::size_t i) {
+    return look_up(first, second, load(index, i));
 }
 /// Looks up integers in two tables of sixteen; see above for floats.
 inline Ints look_up(const StripOf<std::int32_t>& first, const StripOf<std::int32_t>& second,

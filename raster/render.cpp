@@ -8,6 +8,7 @@
 #include "raster/screen/look.h"
 #include "raster/screen/screen.h"
 #include "raster/shade.h"
+#include "raster/shading/deferred.h"
 #include "raster/shadings/shadings.h"
 #include "raster/split.h"
 #include "raster/visibility/cover.h"
@@ -248,6 +249,39 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
     if (!frame.control.stopped()) overlay.add_edges(seen);
 }
 
+bool is_deferred(const Frame& frame) {
+    return frame.program == nullptr && frame.settings.quality == Quality::kRealtime;
+}
+
+/// Renders one pass of Shading::kLit by deferred shading, and calls use(radiance) for each sample of a pixel.
+template <typename Use>
+void render_deferred(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                     const Use& use) {
+    const PassView pass_view = pass_view_of(camera, view, pass);
+    process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
+    frame.account.add(frame.geometry);
+    const Stopwatch watch;
+    DeferredFramePool& pool = *frame.data.deferred_frames;
+    std::unique_ptr<DeferredFrame> images = pool.take();
+    for (const SampleOffset offset : pass.samples) {
+        if (frame.control.stopped()) break;
+        shade_deferred(frame.data, frame.settings, frame.geometry, pass_view, frame.grid, offset, frame.control,
+                       *images);
+        for (const auto& [stage, seconds] : images->seconds) frame.account.add_stage(stage, seconds);
+        use(images->radiance);
+    }
+    pool.give_back(std::move(images));
+    frame.account.tiles += watch.seconds();
+    for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.account.tiles_done += 1, frame.progress.step();
+}
+
+/// Calls visit(x, y) for all pixels, in parallel.
+template <typename Visit> void for_each_pixel(const View& view, int threads, const Visit& visit) {
+    parallel_for(static_cast<std::size_t>(view.height), threads, [&](std::size_t row) {
+        for (int x = 0; x < view.width; ++x) visit(x, static_cast<int>(row));
+    });
+}
+
 /// Renders one pass per lens point or time, and averages them.
 Rendering render_picture(const Frame& frame, const CameraModel& camera, const View& view,
                          const std::vector<Pass>& passes) {
@@ -262,6 +296,13 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
             continue;
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
+        if (is_deferred(frame) && !frame.settings.aovs.any()) {
+            render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
+                for_each_pixel(view, frame.settings.threads,
+                               [&](int x, int y) { picture.add(x, y, radiance.color_at(x, y)); });
+            });
+            continue;
+        }
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
             // Transparent layers are sorted per sample, so each sample is shaded.
             if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
@@ -292,6 +333,16 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
     } else {
         resize(result.srgb, view);
         frame.account.picture_bytes = result.srgb.size() * sizeof(Rgba8);
+    }
+    if (!depths_only && is_deferred(frame)) {
+        const SrgbEncoder& encoder = srgb_encoder();
+        render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
+            for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
+                const Rgb c = radiance.color_at(x, y);
+                result.srgb(x, y) = {encoder(c.r), encoder(c.g), encoder(c.b), 255};
+            });
+        });
+        return;
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
         if (depths_only && frame.layers != nullptr)

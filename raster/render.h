@@ -44,6 +44,14 @@ struct PartSet {
     bool all() const { return emission && direct && environment && reflection; }
 };
 
+/// Selects how Shading::kLit computes its effects.
+enum class Quality {
+    kRealtime, ///< deferred shading (raster/shading/deferred.h)
+    kHigh,     ///< sample by sample
+};
+/// Returns the quality named "realtime" or "high". Throws Error for any other name.
+Quality quality(std::string_view name);
+
 /// Selects the output format of a rendering.
 enum class Output {
     kRadiance, ///< Rendering::radiance and the requested auxiliary images
@@ -53,6 +61,7 @@ enum class Output {
 
 struct Settings : RenderSettings {
     Shading shading = Shading::kLit;
+    Quality quality = Quality::kHigh;
     Output output = Output::kRadiance; ///< kNearness uses only one sample per pixel
     bool front_faces_only = false;     ///< cull back faces of all meshes and quads, as real-time renderers do
     /// Multisampling (raster/visibility/multisample.h) takes 2, 4, 8 or 16 samples per pixel for coverage and depth,
@@ -68,6 +77,7 @@ struct Settings : RenderSettings {
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
     AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: on diffuse surfaces
+    bool indirect_light = true; ///< Shading::kLit, Quality::kRealtime: light between surfaces, from irradiance probes
     /// Occluders of the environment are at most this far away, in meters. 0 stands for half (with SSAO an eighth) of
     /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point.
     double occlusion_radius = 0;

@@ -21,7 +21,9 @@ struct GgxAlbedoTables {
     static float roughness_of(int row) { return lerp(kSmoothest, kRoughest, static_cast<float>(row) / (kSide - 1)); }
     // The lost fraction varies with the ratio of cosine to alpha. The columns of `lost` are therefore equal steps of
     // this "steepness", from 0 at grazing angles to 1 at normal incidence.
-    static float steepness(float alpha, float cosine) { return (1 + alpha) * cosine / (cosine + alpha); }
+    template <typename T> static T steepness(T alpha, T cosine) {
+        return (T(1) + alpha) * cosine / (cosine + alpha);
+    }
     static float cosine_of_steepness(float alpha, float x) { return clamp(x * alpha / (1 + alpha - x), 1e-7f, 1.0f); }
     // Schlick's share varies with the cosine, fastest at grazing angles, so its columns are equal steps of the root.
     static float height(float cosine) { return std::sqrt(cosine); }

@@ -51,6 +51,12 @@ std::unique_ptr<Program> program(Shading shading, const Camera& camera) {
     return nullptr;
 }
 
+Quality quality(std::string_view name) {
+    if (name == "realtime") return Quality::kRealtime;
+    if (name == "high") return Quality::kHigh;
+    throw Error(message("quality: found ", name, ", expected realtime or high"));
+}
+
 AmbientOcclusion ambient_occlusion(std::string_view name) {
     if (name == "none") return AmbientOcclusion::kNone;
     if (name == "ssao") return AmbientOcclusion::kSsao;

@@ -1,0 +1,43 @@
+// Defines the G-buffer of deferred shading: what each pixel's visible surface is, stored once, for stages that each
+// add one effect (Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"; Akenine-Möller et al. 2018,
+// "Real-Time Rendering", §20.1).
+#pragma once
+
+#include "raster/gbuffer/plane.h"
+#include "raster/gbuffer/screen_projection.h"
+
+namespace duet::raster {
+
+/// Holds one visible surface per pixel as a structure of arrays. Every opaque material is reduced to the same lobes:
+/// Lambert's diffuse lobe, a GGX specular lobe with Schlick's Fresnel term, and a clear coat. So every stage has one
+/// formula for all materials.
+struct GBuffer {
+    ScreenProjection projection;
+    PlaneFloat reversed_depth;  ///< near / depth, in (0, 1]; 0 for the background
+    Planes3 normal;             ///< unit shading normal on the viewer's side, in world space
+    /// Fraction of diffusely incident light that the diffuse lobe sends to this viewer; what layers above it absorb or
+    /// reflect is already taken off.
+    Planes3 diffuse;
+    Planes3 specular;           ///< reflectance of the specular lobe at normal incidence; 0: no specular lobe
+    PlaneFloat alpha;           ///< GGX width of the specular lobe, in [0, 1]; below MetalBsdf::kSmoothAlpha a mirror
+    PlaneFloat coat;            ///< fraction covered by the clear coat, in [0, 1]; empty if no material has one
+    PlaneFloat coat_alpha;      ///< GGX width of the coat; empty if no material has one
+    PlaneInt object;            ///< index into Scene::objects; −1 for the background
+    PlaneInt material;          ///< index into Scene::materials; −1 for the background
+
+    GBuffer(const ScreenProjection& view, int width, int height, bool coats);
+    int width() const { return reversed_depth.width(); }
+    int height() const { return reversed_depth.height(); }
+    /// Returns the points of a batch of pixels, relative to the eye. Those of the background are at a finite distance.
+    Vec3T<Floats> points(int x, int y) const {
+        const Floats depth = load(reversed_depth, x, y);
+        return projection.point(Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
+                                Floats(static_cast<float>(y)),
+                                xsimd::select(depth > Floats(0.0f), depth, Floats(1.0f)));
+    }
+    /// Returns the lanes of a batch in which a surface is visible.
+    xsimd::batch_bool<float> visible(int x, int y) const { return load(reversed_depth, x, y) > Floats(0.0f); }
+    std::size_t memory_bytes() const;
+};
+
+} // namespace duet::raster

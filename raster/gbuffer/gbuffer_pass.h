@@ -1,0 +1,24 @@
+// The G-buffer pass: rasterizes one sample per pixel and stores the visible surfaces' attributes.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/geometry/geometry.h"
+#include "raster/geometry/tiles.h"
+
+namespace duet {
+struct Control;
+}
+
+namespace duet::raster {
+
+/// Fills the G-buffer of a view whose samples lie at `offset` in their pixels. `emission` receives the radiance that
+/// the visible surfaces emit towards the viewer, 0 elsewhere. Every pixel is written, unless `control` stops
+/// the pass: then the tiles that are left out keep what they held.
+void fill_gbuffer(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
+                  const TileGrid& grid, SampleOffset offset, const Control& control, GBuffer& gbuffer,
+                  Planes3& emission);
+
+/// Returns whether some material has a clear coat, which the G-buffer then needs planes for.
+bool any_clear_coat(const Scene& scene);
+
+} // namespace duet::raster

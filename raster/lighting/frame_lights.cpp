@@ -1,0 +1,71 @@
+#include "raster/lighting/frame_lights.h"
+
+#include <variant>
+
+namespace duet::raster {
+namespace {
+
+using Kind = FrameLight::Kind;
+
+struct Converter {
+    const ScreenProjection& projection;
+
+    Vec3 relative(Vec3 p) const { return projection.relative(Vec3d(p)); }
+
+    FrameLight operator()(const PointLight& light) const {
+        FrameLight result(Kind::kPoint, light.intensity);
+        result.position = relative(light.position);
+        return result;
+    }
+    FrameLight operator()(const SpotLight& light) const {
+        FrameLight result(Kind::kSpot, light.intensity);
+        result.position = relative(light.position), result.axis = light.direction;
+        result.cos_outer = light.cos_outer;
+        result.inverse_range = 1 / max(light.cos_inner - light.cos_outer, 1e-6f); // equal angles give a hard edge
+        return result;
+    }
+    FrameLight operator()(const SunLight& light) const {
+        FrameLight result(Kind::kSun, light.irradiance);
+        result.axis = -light.direction;
+        return result;
+    }
+    FrameLight operator()(const SurfaceLight& light) const {
+        FrameLight result = std::visit([&](const auto& shape) { return of_shape(shape); }, light.shape);
+        result.emitted = light.radiance, result.two_sided = light.two_sided;
+        return result;
+    }
+
+    FrameLight flat(Kind kind, Vec3 corner, Vec3d u, Vec3d v) const {
+        FrameLight result(kind);
+        result.position = relative(corner), result.u = Vec3(u), result.v = Vec3(v);
+        const Vec3d normal = cross(u, v);
+        const double size = length(normal);
+        if (size > 0) result.axis = Vec3(normal / size);
+        return result;
+    }
+    FrameLight of_shape(const SurfaceLight::Triangle& t) const {
+        return flat(Kind::kTriangle, t.a, Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a));
+    }
+    FrameLight of_shape(const Quad& q) const { return flat(Kind::kQuad, q.corner, Vec3d(q.u), Vec3d(q.v)); }
+    FrameLight of_shape(const Sphere& s) const {
+        FrameLight result(Kind::kSphere);
+        result.position = relative(s.center), result.radius = s.radius;
+        return result;
+    }
+};
+
+} // namespace
+
+std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection) {
+    std::vector<FrameLight> result;
+    result.reserve(lights.size());
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        FrameLight light = std::visit(Converter{projection}, lights[i]);
+        light.index = i;
+        const bool degenerate = light.flat() && light.axis == Vec3();
+        if (!is_black(light.emitted) && !degenerate) result.push_back(light);
+    }
+    return result;
+}
+
+} // namespace duet::raster

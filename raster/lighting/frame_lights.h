@@ -1,0 +1,33 @@
+// The scene's lights as one frame uses them: as floats relative to the eye.
+#pragma once
+
+#include "common/light/light.h"
+#include "raster/gbuffer/screen_projection.h"
+
+#include <span>
+#include <vector>
+
+namespace duet::raster {
+
+/// Represents a light in a form that one branch per light, not per pixel, can evaluate.
+struct FrameLight {
+    enum class Kind { kTriangle, kQuad, kSphere, kPoint, kSpot, kSun };
+
+    Kind kind;
+    std::size_t index = 0; ///< into Scene::lights
+    Rgb emitted;           ///< radiance, W/(m² sr); intensity of a point or spot light, W/sr; irradiance of a sun, W/m²
+    Vec3 position;         ///< corner of a flat light, center of a sphere, position of a point or spot light
+    Vec3 u, v;             ///< edges of a flat light; its front is the side to which u × v points
+    Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction towards a sun
+    float radius = 0;      ///< of a sphere
+    bool two_sided = false;
+    float cos_outer = -1, inverse_range = 0; ///< of a spot: the intensity rises from cos_outer to 1 / inverse_range more
+
+    explicit FrameLight(Kind kind_, Rgb emitted_ = {}) : kind(kind_), emitted(emitted_) {}
+    bool flat() const { return kind == Kind::kTriangle || kind == Kind::kQuad; }
+};
+
+/// Converts the lights that emit anything.
+std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection);
+
+} // namespace duet::raster

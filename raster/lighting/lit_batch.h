@@ -1,0 +1,56 @@
+// Evaluates one light on a batch of pixels of the G-buffer.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/lighting/frame_lights.h"
+#include "raster/lighting/specular_lobe.h"
+
+namespace duet::raster {
+
+/// Holds the surfaces of a batch of pixels, ready for any number of lights. Everything local is in the frame whose z
+/// axis is the shading normal, with the viewer in the plane y = 0.
+class LitBatch {
+public:
+    using Lanes = xsimd::batch_bool<float>;
+    /// Keeps the tables of a thread from batch to batch.
+    struct Tables {
+        LobeLookup specular, coat;
+    };
+
+    LitBatch(const GBuffer& gbuffer, int x, int y, Tables& tables);
+
+    /// Returns the radiance that the lobes reflect of one light without shadows. Only light from above the plane of the
+    /// shading normal counts. An emitter does not light points in its own plane.
+    RgbT<Floats> reflected(const FrameLight& light) const;
+
+    const Vec3T<Floats>& p() const { return p_; }
+    const Vec3T<Floats>& n() const { return z_; }
+    bool empty() const { return lane_bits(visible_) == 0; }
+
+private:
+    struct Lobe {
+        CosineSpaceT<Floats> cosine_space;
+        Floats alpha;
+        RgbT<Floats> normal;    ///< reflectance at normal incidence
+        Floats weight;          ///< fraction of the lobe's light that is seen
+        RgbT<Floats> albedo;    ///< fraction of uniform light that is reflected once, times weight / π
+        Lanes lanes;            ///< where the lobe exists
+    };
+
+    Vec3T<Floats> local(const Vec3T<Floats>& v) const { return {dot(x_, v), dot(y_, v), dot(z_, v)}; }
+    Lobe& add_lobe(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha, const Lanes& lanes);
+    template <std::size_t N> RgbT<Floats> from_polygon(const FrameLight& light) const;
+    RgbT<Floats> from_sphere(const FrameLight& light) const;
+    RgbT<Floats> from_position(const FrameLight& light) const;
+    RgbT<Floats> from_direction(const Vec3T<Floats>& wi, const Floats& irradiance) const;
+
+    Vec3T<Floats> p_, x_, y_, z_; ///< the point relative to the eye; the axes of the frame
+    Vec3T<Floats> wo_;            ///< local unit direction to the viewer
+    Floats rounding_;             ///< greatest error of a point's position, m
+    Lanes visible_, diffuse_lanes_;
+    RgbT<Floats> diffuse_;        ///< BRDF of all light that is nearly uniform over directions
+    std::array<Lobe, 2> lobes_;
+    std::size_t lobe_count_ = 0;
+};
+
+} // namespace duet::raster

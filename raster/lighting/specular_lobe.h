@@ -1,0 +1,52 @@
+// The GGX lobe of a batch of pixels: its linearly transformed cosine and its directional albedo, from tables.
+#pragma once
+
+#include "common/image/rgb.h"
+#include "raster/lighting/lane_math.h"
+
+namespace duet::raster {
+
+/// Maps directions of a lobe to those of a clamped cosine, up to a common factor. The frame is that of the normal, +z,
+/// with the viewer in the plane y = 0 (Heitz et al. 2016, §3). The matrix is [xx 0 xz; 0 yy 0; zx 0 zz].
+template <typename T> struct CosineSpaceT {
+    T xx, xz, yy, zx, zz;
+    T determinant, gram_xx, gram_xz, gram_yy, gram_zz; ///< of M Mᵀ; the others are 0
+
+    /// The numbers are those of raster/light/ggx_table.h's LobeMatrix, which is the inverse up to its determinant.
+    static CosineSpaceT of(T m11, T m13, T m22, T m31, T m33) {
+        const T flat = m11 * m33 - m13 * m31;
+        CosineSpaceT s{m33, -m13, flat / m22, -m31, m11, {}, {}, {}, {}, {}};
+        s.determinant = flat * s.yy;
+        s.gram_xx = s.xx * s.xx + s.xz * s.xz, s.gram_zz = s.zx * s.zx + s.zz * s.zz;
+        s.gram_xz = s.xx * s.zx + s.xz * s.zz, s.gram_yy = s.yy * s.yy;
+        return s;
+    }
+    Vec3T<T> operator()(const Vec3T<T>& w) const {
+        return {fused(xx, w.x, T(xz * w.z)), yy * w.y, fused(zx, w.x, T(zz * w.z))};
+    }
+};
+
+/// Holds what the tables say about a lobe of microfacets that reflect all light, for a batch of pixels.
+struct LobeTables {
+    Floats m11, m13, m22, m31, m33;
+    Floats energy, share;  ///< GgxAlbedo
+    Floats mean_lost;      ///< GgxMeans::lost
+};
+
+/// Looks the tables up. The rows of a roughness are interpolated once and reused while the roughness stays the same, so
+/// that what remains is looked up in registers, by the angle. (Gathers would take 28 of 16 lanes each.)
+class LobeLookup {
+public:
+    /// alpha is in [0, 1], `cosine` between normal and viewer in (0, 1]. Only the given lanes need be right.
+    LobeTables operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes);
+
+private:
+    void set_rows(float alpha);
+
+    float alpha_ = -1;
+    std::array<StripOf<float>, 5> matrix_;
+    std::array<StripOf<float>, 2> lost_, share_; ///< 32 columns each
+    float mean_lost_ = 0;
+};
+
+} // namespace duet::raster

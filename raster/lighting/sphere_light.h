@@ -1,0 +1,89 @@
+// The irradiance from a sphere in closed form (Snyder 1996, "Area Light Sources for Real-Time Graphics", §A), and the
+// light of a sphere that a linearly transformed cosine reflects (Heitz and Hill 2017, "Real-Time Line- and Disk-Light
+// Shading with Linearly Transformed Cosines"; here for the sphere's cone itself), for one point or a batch of points.
+#pragma once
+
+#include "raster/lighting/lane_math.h"
+#include "raster/lighting/specular_lobe.h"
+
+namespace duet::raster {
+
+/// Returns ∫ max(0, z) dw over a sphere's solid angle, clipped to z ≥ 0: the irradiance per unit of radiance, in
+/// [0, π]. `c` is the z component of the unit vector to the center, and `sine2` the squared sine of the half angle that
+/// the sphere subtends, below 1. Only the given lanes need be right.
+template <typename T> T sphere_form_factor_times_pi(T c, T sine2, const MaskOf<T>& lanes) {
+    const T whole = T(kPi) * sine2 * max(c, T(0));
+    const MaskOf<T> clipped = c * c < sine2;
+    if (!any_lane(clipped & lanes)) return whole;
+    // Snyder's s² (c arccos y − cot σ h) + arctan(h tan σ) with x = h tan σ, rearranged so that small spheres do not
+    // cancel.
+    const T tangent = sqrt(sine2 / (T(1) - sine2));
+    const T reach = tangent * sqrt(max(T(1) - c * c, T(1e-12f))); // x where the chord is a diameter
+    const T y = clamp(-c / reach, T(-1), T(1)), x = reach * safe_sqrt((T(1) - y) * (T(1) + y));
+    const T part = sine2 * (c * arc_cosine(y) + x) + arc_tangent_excess(x);
+    return select(clipped, max(part, T(0)), whole);
+}
+
+namespace sphere {
+
+/// Represents the symmetric matrix [xx xy xz; xy yy yz; xz yz zz].
+template <typename T> struct Symmetric {
+    T xx, xy, xz, yy, yz, zz;
+
+    Symmetric adjugate() const {
+        return {yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy,
+                xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy};
+    }
+};
+
+/// Returns 2 cos(arccos(q) / 3), the greatest root of t³ − 3t − 2q, for q in [−1, 1]. The error is below 1e-6.
+template <typename T> T greatest_root(T q) {
+    constexpr std::array<float, 8> kFit{1,             1.1546944f,   -0.22208648f, 0.10573821f,
+                                        -0.060626126f, 0.03231898f, -0.0123398994f, 0.00230085802f};
+    return polynomial(kFit, safe_sqrt((T(1) + min(q, T(1))) * T(0.5f))); // in √((1 + q)/2) it has no singularity
+}
+
+} // namespace sphere
+
+/// Returns π times the fraction of a lobe that a sphere fills. The direction `d` to its center is unit, in the frame of
+/// the lobe; sine2 is as above. Transformed to the cosine's space, the sphere's cone is elliptic; the horizon clips it
+/// as it would clip the circular cone of the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting:
+/// a Journey from Research to Production"). A cone that is small after the transformation counts as circular.
+template <typename T> T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
+    const Vec3T<T> u = lobe(d);
+    const T squared = dot(u, u), inverse = inverse_sqrt(squared);
+    // The form factor of a small cone is its solid angle over π, which the transformation scales by its determinant.
+    T form_factor = sine2 * lobe.determinant * (inverse * inverse * inverse), c = u.z * inverse;
+    constexpr float kSmall = 1.0f / 256; // a relative error below 1 %
+    const MaskOf<T> large = form_factor > T(kSmall);
+    if (any_lane(large & lanes)) {
+        // The directions w of the cone have (w·d)² ≥ cos²σ w²; the dual cone's matrix B = u uᵀ − sin²σ M Mᵀ has one
+        // positive eigenvalue. It is found by Cardano's formula from B less a third of its trace.
+        const sphere::Symmetric<T> b{u.x * u.x - sine2 * lobe.gram_xx, u.x * u.y, u.x * u.z - sine2 * lobe.gram_xz,
+                                     u.y * u.y - sine2 * lobe.gram_yy, u.y * u.z, u.z * u.z - sine2 * lobe.gram_zz};
+        const T trace = b.xx + b.yy + b.zz, mean = trace * T(1.0f / 3);
+        sphere::Symmetric<T> k = b;
+        k.xx = k.xx - mean, k.yy = k.yy - mean, k.zz = k.zz - mean;
+        const T p2 = (k.xx * k.xx + k.yy * k.yy + k.zz * k.zz +
+                      T(2) * (k.xy * k.xy + k.xz * k.xz + k.yz * k.yz)) * T(1.0f / 6);
+        const T inverse_p = inverse_sqrt(max(p2, T(1e-30f)));
+        const sphere::Symmetric<T> minors = k.adjugate();
+        const T half_determinant = (k.xx * minors.xx + k.xy * minors.xy + k.xz * minors.xz) * T(0.5f);
+        const T q = clamp(half_determinant * (inverse_p * inverse_p * inverse_p), T(-1), T(1));
+        const T rest = p2 * inverse_p * sphere::greatest_root(q), mu = mean + rest;
+        const T det = (sine2 * lobe.determinant) * (sine2 * lobe.determinant) * (T(1) - sine2);
+        const T exact = inverse_sqrt(T(1) + mu * mu * (T(2) * mu - trace) / det);
+        // The eigenvector is the longest column of the adjugate of B − μ.
+        k.xx = k.xx - rest, k.yy = k.yy - rest, k.zz = k.zz - rest;
+        const sphere::Symmetric<T> a = k.adjugate();
+        const MaskOf<T> y_most = (a.yy > a.xx) & (a.yy >= a.zz), z_most = (a.zz > a.xx) & (a.zz > a.yy);
+        Vec3T<T> axis = select(z_most, Vec3T<T>(a.xz, a.yz, a.zz),
+                               select(y_most, Vec3T<T>(a.xy, a.yy, a.yz), Vec3T<T>(a.xx, a.xy, a.xz)));
+        axis = axis * inverse_sqrt(max(T(dot(axis, axis)), T(1e-37f)));
+        const T up = select(dot(axis, u) < T(0), -axis.z, axis.z);
+        form_factor = select(large, exact, form_factor), c = select(large, up, c);
+    }
+    return sphere_form_factor_times_pi(c, min(form_factor, T(1 - 1e-6f)), lanes);
+}
+
+} // namespace duet::raster
