@@ -1,0 +1,111 @@
+// These tests check the maps over directions that probes hold, and where probes stand.
+#include "tests/raster/scenes.h"
+
+#include "raster/prepare.h"
+#include "raster/probes/irradiance_probes.h"
+#include "raster/probes/octahedral_map.h"
+#include "raster/probes/radiance_map.h"
+#include "raster/probes/solid_test.h"
+
+#include <doctest/doctest.h>
+
+using namespace duet;
+using namespace duet::test;
+using raster::Floats;
+
+namespace {
+
+Vec3T<Floats> all(Vec3 w) { return {Floats(w.x), Floats(w.y), Floats(w.z)}; }
+
+/// Returns directions all over the sphere, those along axes and edges of the octahedron among them.
+std::vector<Vec3> directions() {
+    std::vector<Vec3> result;
+    for (int x = -3; x <= 3; ++x)
+        for (int y = -3; y <= 3; ++y)
+            for (int z = -3; z <= 3; ++z)
+                if (x != 0 || y != 0 || z != 0)
+                    result.push_back(normalize(Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))));
+    return result;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("the octahedral square and the sphere map to each other") {
+        for (const Vec3 w : directions()) {
+            const Vec2 p = raster::octahedral(w);
+            CHECK(std::abs(p.x) <= 1);
+            CHECK(std::abs(p.y) <= 1);
+            CHECK(length(raster::octahedral_direction(p) - w) < 1e-6f);
+        }
+    }
+
+    TEST_CASE("bilinear lookups are continuous across the edges of the square") {
+        raster::OctahedralMap map(32);
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 32; ++x) {
+                const Vec3 w = map.direction(x, y);
+                map.texel(x, y) = {w.x, w.y, w.z, 1};
+            }
+        map.finish();
+        for (const Vec3 w : directions()) { // texels are up to 0.14 wide, and the functions' curvature is 1
+            const auto [x, y, z, one] = map.at<4>(all(w));
+            CHECK(length(Vec3(x.get(0), y.get(0), z.get(0)) - w) < 0.01f);
+            CHECK(one.get(0) == doctest::Approx(1));
+        }
+    }
+
+    TEST_CASE("filtering keeps constant radiance, and the mean of radiance that is linear in the direction") {
+        const raster::RadianceMap map(
+            64, [](Vec3 w) { return raster::RadianceMap::Arriving{Rgb(2, 1 + w.y, 3), Rgb(), 5}; }, 2);
+        for (const float alpha : {0.0f, 0.04f, 0.3f, 1.0f})
+            for (const Vec3 w : directions()) {
+                const RgbT<Floats> c = map.at(all(w), Floats(alpha));
+                CHECK(c.r.get(0) == doctest::Approx(2).epsilon(1e-4));
+                CHECK(c.b.get(0) == doctest::Approx(3).epsilon(1e-4));
+                CHECK(std::abs(c.g.get(0) - 1) <= std::abs(w.y) + 0.02f); // lobes only blur the slope
+            }
+        CHECK(map.distance(all({1, 0, 0})).get(0) == 5);
+    }
+
+    TEST_CASE("what lights emit shows in mirrors alone") {
+        const raster::RadianceMap map(
+            16, [](Vec3 w) { return raster::RadianceMap::Arriving{Rgb(w.y > 0 ? 9.0f : 1.0f), Rgb(w.y > 0 ? 8.0f : 0.0f), 1}; },
+            1);
+        CHECK(map.at(all({0, 1, 0})).g.get(0) == doctest::Approx(9));
+        CHECK(map.at(all({0, 1, 0}), Floats(0.2f)).g.get(0) == doctest::Approx(1));
+    }
+
+    TEST_CASE("points are inside spheres, boxes and closed meshes, or not") {
+        Scene scene;
+        add(scene, Sphere{Vec3(5, 0, 0), 1});
+        add(scene, torus(24, 12));
+        finish_scene(scene);
+        const raster::Prepared prepared = raster::prepare(scene, raster::Settings{});
+        const raster::PreparedData& data = prepared.data();
+        CHECK(raster::inside_solid(data, {5.9, 0, 0.1}));
+        CHECK_FALSE(raster::inside_solid(data, {6.1, 0, 0}));
+        CHECK(raster::inside_solid(data, {1.01, 0.02, 0.03}));
+        CHECK_FALSE(raster::inside_solid(data, {0.01, 0.02, 0.03})); // in the hole
+        CHECK_FALSE(raster::inside_solid(data, {1.01, 0.9, 0.03}));
+    }
+
+    // The irradiance of radiance 1 from everywhere is π, wherever the probes stand.
+    TEST_CASE("probes in a white furnace hold the furnace's irradiance") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, Mat4(), Diffuse{{Rgb(1.0f)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 0, 3}, {0, 0, 0});
+        finish_scene(scene);
+        raster::Settings settings;
+        settings.quality = raster::Quality::kRealtime;
+        const raster::Prepared prepared = raster::prepare(scene, settings);
+        const raster::IrradianceProbes& probes = *prepared.data().irradiance_probes;
+        for (const Vec3 n : directions()) {
+            const RgbT<Floats> e =
+                probes.irradiance(Vec3d(), all(n * 0.3f), all(n), Floats(1.0f) > Floats(0.0f));
+            CHECK(e.g.get(0) == doctest::Approx(kPi).epsilon(0.03));
+        }
+    }
+}
