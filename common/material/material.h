@@ -36,15 +36,15 @@ inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = Transp
 // These functions do the same for a BSDF of a known type, as in a batch of surfaces.
 template <typename BsdfType>
 concept KnownBsdf = requires { BsdfType::kTransmissive; };
-template <KnownBsdf BsdfType, typename T> RgbT<T> eval(const BsdfType& bsdf, Vec3T<T> wo, Vec3T<T> wi) {
+template <KnownBsdf BsdfType, typename Vec> auto eval(const BsdfType& bsdf, const Vec& wo, const Vec& wi) {
     return bsdf.eval(wo, wi, TransportMode::kRadiance);
 }
-template <KnownBsdf BsdfType, typename T>
-OptionalBsdfSample<T> sample(const BsdfType& bsdf, Vec3T<T> wo, T lobe, Vec2T<T> u) {
-    return bsdf.sample(wo, lobe, u, TransportMode::kRadiance);
-}
-template <KnownBsdf BsdfType, typename T> T pdf(const BsdfType& bsdf, Vec3T<T> wo, Vec3T<T> wi) {
+template <KnownBsdf BsdfType, typename Vec> auto pdf(const BsdfType& bsdf, const Vec& wo, const Vec& wi) {
     return bsdf.pdf(wo, wi, TransportMode::kRadiance);
+}
+template <KnownBsdf BsdfType, typename T>
+auto sample(const BsdfType& bsdf, const Vec3T<T>& wo, T lobe, const Vec2T<T>& u) {
+    return bsdf.sample(wo, lobe, u, TransportMode::kRadiance);
 }
 template <KnownBsdf BsdfType> constexpr bool is_transmissive(const BsdfType&) { return BsdfType::kTransmissive; }
 template <KnownBsdf BsdfType> auto refraction_index(const BsdfType& bsdf) {

@@ -60,50 +60,24 @@ Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
 }
 
 template <std::size_t kLanes> using WholeBatch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
-/// Computes one coordinate of a Sobol pair in each lane, from dimension `first` on. Lanes 0 to 7 are four pairs of one
-/// sample; with 16 lanes, lanes 8 to 15 are the same dimensions of a second sample. `lane` is the index of the batch's
-/// first lane.
-template <std::size_t kLanes>
-WholeBatch<kLanes> sobol_lanes(std::size_t lane, WholeBatch<kLanes> reversed_index, WholeBatch<kLanes> pixel_low,
-                               WholeBatch<kLanes> pixel_high, std::uint32_t first) {
-    using Batch = WholeBatch<kLanes>;
-    alignas(64) constexpr std::array<std::uint32_t, 16> kPairs{0, 0, 2, 2, 4, 4, 6, 6, 0, 0, 2, 2, 4, 4, 6, 6};
-    alignas(64) constexpr std::array<std::uint32_t, 16> kCoordinates{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
-    const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
-    const Batch seed = dimension_seed(pixel_low, pixel_high, Batch::load_aligned(&kPairs[lane]) + Batch(first));
-    const Batch point = sobol_point(reversed_index, seed);
-    const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
-    return reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate)));
-}
 
-Sampler::Block block_of(const std::uint32_t* bits) {
+/// Computes a block of four Sobol pairs from dimension `first` on, one coordinate in each lane.
+Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
+    using Batch = WholeBatch<kSimdLanes>;
+    alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6},
+        kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
+    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
+    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes) {
+        const Batch coordinate = Batch::load_aligned(&kCoordinates[lane]);
+        const Batch dimension = Batch::load_aligned(&kPairs[lane]) + Batch(first);
+        const Batch seed = dimension_seed(Batch(low_bits(pixel)), Batch(high_bits(pixel)), dimension);
+        const Batch point = sobol_point(Batch(reversed_index), seed);
+        const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
+        reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(&bits[lane]);
+    }
     Sampler::Block numbers;
     for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
     return numbers;
-}
-
-Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
-    using Batch = WholeBatch<kSimdLanes>;
-    alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
-    for (std::size_t lane = 0; lane < Sampler::kBlock; lane += kSimdLanes)
-        sobol_lanes<kSimdLanes>(lane, Batch(reversed_index), Batch(low_bits(pixel)), Batch(high_bits(pixel)), first)
-            .store_aligned(&bits[lane]);
-    return block_of(bits.data());
-}
-
-std::pair<Sampler::Block, Sampler::Block> sobol_blocks(std::array<std::uint32_t, 2> reversed_index,
-                                                       std::array<std::uint64_t, 2> pixel, std::uint32_t first) {
-#if XSIMD_WITH_AVX512F
-    constexpr std::size_t kLanes = 2 * Sampler::kBlock;
-    const auto both = [](std::uint32_t a, std::uint32_t b) { return whole_halves<kLanes>(a, b); };
-    alignas(64) std::array<std::uint32_t, kLanes> bits;
-    sobol_lanes<kLanes>(0, both(reversed_index[0], reversed_index[1]), both(low_bits(pixel[0]), low_bits(pixel[1])),
-                        both(high_bits(pixel[0]), high_bits(pixel[1])), first)
-        .store_aligned(bits.data());
-    return {block_of(bits.data()), block_of(bits.data() + Sampler::kBlock)};
-#else
-    return {sobol_block(reversed_index[0], pixel[0], first), sobol_block(reversed_index[1], pixel[1], first)};
-#endif
 }
 
 /// Moves the lower 16 bits to the even bit positions.
@@ -232,18 +206,6 @@ Sampler::Block Sampler::get_block() {
         numbers[i] = pair.x;
         numbers[i + 1] = pair.y;
     }
-    return numbers;
-}
-
-std::pair<Sampler::Block, Sampler::Block> Sampler::get_blocks(Sampler& a, Sampler& b) {
-    if (!a.is_sobol()) {
-        const Block first = a.get_block();
-        return {first, b.get_block()};
-    }
-    const auto numbers =
-        sobol_blocks({a.reversed_index_, b.reversed_index_}, {a.pixel_hash_, b.pixel_hash_}, a.dimension_);
-    a.dimension_ += kBlock;
-    b.dimension_ += kBlock;
     return numbers;
 }
 

@@ -66,9 +66,6 @@ public:
     /// Returns the next eight dimensions as four pairs. The result equals that of four calls of get_2d(), but costs
     /// little more than one call.
     Block get_block();
-    /// Returns the blocks of two samplers of the same kind, which must be at the same dimension. With AVX-512, this
-    /// takes less time than two calls of get_block().
-    static std::pair<Block, Block> get_blocks(Sampler& a, Sampler& b);
     /// Computes the results of get_2d() for many samplers of the same kind at the given dimensions with SIMD. With n
     /// samplers, numbers[d * n + k] is the pair of sampler k at dimensions[d]. The samplers do not advance.
     static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,

@@ -132,17 +132,6 @@ template <std::size_t N> FloatBatch<N> halves(float low, float high) {
     for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
     return FloatBatch<N>::load_aligned(lanes.data());
 }
-/// Returns a batch of integers with `low` in the lower half of the lanes and `high` in the upper half.
-template <std::size_t N>
-xsimd::make_sized_batch_t<std::uint32_t, N> whole_halves(std::uint32_t low, std::uint32_t high) {
-#if XSIMD_WITH_AVX512F
-    if constexpr (N == 16)
-        return _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(low)), 0xFF00, static_cast<int>(high));
-#endif
-    alignas(64) std::array<std::uint32_t, N> lanes;
-    for (std::size_t i = 0; i < N; ++i) lanes[i] = i < N / 2 ? low : high;
-    return xsimd::make_sized_batch_t<std::uint32_t, N>::load_aligned(lanes.data());
-}
 /// Loads M floats into N lanes. Where M = N / 2, both halves of the batch receive the same floats.
 template <std::size_t N, std::size_t M> FloatBatch<N> repeated(const std::array<float, M>& lanes) {
     static_assert(M == N || 2 * M == N);

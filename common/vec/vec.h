@@ -118,8 +118,9 @@ template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a
 template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
 
 template <typename T> MaskOf<T> is_finite(Vec3T<T> a) { // NaN is below no number
+    const Vec3T<T> size = abs(a);
     const T limit(std::numeric_limits<float>::infinity());
-    return (abs(a.x) < limit) & (abs(a.y) < limit) & (abs(a.z) < limit);
+    return (size.x < limit) & (size.y < limit) & (size.z < limit);
 }
 
 /// Rounds each component to float. There is an overload for batches in widen.h.

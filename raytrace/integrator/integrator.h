@@ -37,11 +37,10 @@ using VertexNumbers = VertexNumbersT<float>;
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
 }
-inline void go_to_vertex(Sampler& sampler, int depth) { sampler.set_dimension(vertex_dimension(depth)); }
-inline VertexNumbers vertex_numbers(const Sampler::Block& u) { return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]}; }
 inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
-    go_to_vertex(sampler, depth);
-    return vertex_numbers(sampler.get_block());
+    sampler.set_dimension(vertex_dimension(depth));
+    const Sampler::Block u = sampler.get_block();
+    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
 }
 
 /// Returns an unbiased estimate of the radiance along a camera ray of unit direction. Its first hit is given, and

@@ -1,6 +1,7 @@
 // The light samples of the paths of a batch.
 #pragma once
 
+#include "common/light/solid_angle.h"
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/wavefront/lanes.h"
 
@@ -8,10 +9,28 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
+/// Draws a light sample for each path of a batch. Choices and samples are copied component by component: if a whole one
+/// were copied right after its components were written, that load would wait for the stores.
 class BatchLightSamples {
 public:
-    /// Draws a light sample for each path, at the points p. The light receiver must be in the path's state.
-    BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p);
+    /// `p` are the points of the paths. Their light receivers must be in the paths' states.
+    BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p) {
+        pdf_.of.fill(1);
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            const auto choice = plan.lights->sample(paths[i].state->departure.receiver, paths[i].numbers->light_choice);
+            if (!choice) continue;
+            chosen_ |= 1u << i;
+            choices_[i].index = choice->index;
+            choices_[i].probability = choice->probability;
+        }
+        const unsigned done = plan.scene.needs.lamp_textures ? 0 : sample_far_rectangles(plan.scene.lights, paths, p);
+        for (unsigned left = chosen_ & ~done; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            if (const auto light = sample_arrival(plan.scene, *plan.lights, paths[i].state->departure.receiver,
+                                                  choices_[i], paths[i].numbers->light))
+                set(i, *light);
+        }
+    }
 
     /// Returns a bit mask of the paths that have a light sample.
     unsigned some() const { return some_; }
@@ -25,21 +44,52 @@ public:
     }
 
 private:
-    // Holds a LightChoice for each path that has one. Choices and samples are copied component by component: if a whole
-    // one were copied right after its components were written, that load would wait for the stores.
-    struct Choices {
-        unsigned some = 0; // bit mask of the paths
-        std::array<std::size_t, kLanes> index;
-        std::array<float, kLanes> probability;
+    void set(std::size_t i, const Arrival& light) {
+        some_ |= 1u << i;
+        wi_.set(i, light.wi);
+        radiance_.set(i, light.radiance);
+        pdf_.of[i] = light.pdf;
+        delta_.of[i] = light.delta ? 1.0f : 0.0f;
+        distance_[i] = light.distance;
+        light_[i] = light.light;
+    }
 
-        LightChoice operator[](std::size_t i) const { return {index[i], probability[i], 0}; }
-    };
+    // Samples the lights of the paths whose light is a rectangle that is sampled by area, all together. Returns a bit
+    // mask of these paths.
+    unsigned sample_far_rectangles(const std::vector<Light>& lights, std::span<const BatchPath> paths, const Vec& p) {
+        unsigned rectangles = 0;
+        Columns corner, edge_u, edge_v;
+        Column ux, uy, two_sided;
+        for (unsigned left = chosen_; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            if (choices_[i].index >= lights.size()) continue;
+            const auto* light = std::get_if<SurfaceLight>(&lights[choices_[i].index]);
+            const Quad* quad = light != nullptr ? std::get_if<Quad>(&light->shape) : nullptr;
+            if (quad == nullptr || !is_rectangle(*quad)) continue;
+            rectangles |= 1u << i;
+            corner.set(i, quad->corner);
+            edge_u.set(i, quad->u);
+            edge_v.set(i, quad->v);
+            ux.of[i] = paths[i].numbers->light.x, uy.of[i] = paths[i].numbers->light.y;
+            two_sided.of[i] = light->two_sided ? 1.0f : 0.0f;
+        }
+        if (rectangles == 0) return 0;
+        const QuadSeen<Doubles> seen(corner.doubles(), edge_u.doubles(), edge_v.doubles(), to_doubles(p));
+        const unsigned far = rectangles & ~lane_bits(seen.near());
+        const SolidAngleSampleT<Doubles> sample = seen.sample({ux.doubles(), uy.doubles()});
+        const auto emits = seen.emits(two_sided.doubles() > Doubles(0.0));
+        const Columns wi(sample.wi);
+        const Column distances(sample.distance), pdfs(sample.pdf);
+        for (unsigned left = far & lane_bits(emits & is_usable_pdf(sample.pdf)); left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const Rgb radiance = std::get<SurfaceLight>(lights[choices_[i].index]).radiance;
+            set(i, arrival({wi.vec(i), distances.of[i], radiance, pdfs.of[i], false}, choices_[i]));
+        }
+        return far;
+    }
 
-    void set(std::size_t i, const Arrival& arrival);
-    unsigned sample_far_rectangles(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p,
-                                   const Choices& choices);
-
-    unsigned some_ = 0;
+    unsigned chosen_ = 0, some_ = 0; // bit masks of the paths that have a choice, and a light sample
+    std::array<LightChoice, kLanes> choices_;
     Columns wi_, radiance_;
     Column pdf_, delta_;
     std::array<float, kLanes> distance_;

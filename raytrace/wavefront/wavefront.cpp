@@ -14,46 +14,28 @@ namespace duet::raytrace {
 
 namespace {
 
-// Draws all random samples of the vertices of the paths `which`, two paths at a time. `numbers` is indexed by path.
-void draw_all_numbers(std::span<Sampler> samplers, std::span<const std::uint32_t> which, int depth,
-                      std::vector<VertexNumbers>& numbers) {
-    std::size_t k = 0;
-    for (const std::uint32_t i : which) go_to_vertex(samplers[i], depth);
-    for (; k + 1 < which.size(); k += 2) {
-        const auto [first, second] = Sampler::get_blocks(samplers[which[k]], samplers[which[k + 1]]);
-        numbers[which[k]] = vertex_numbers(first);
-        numbers[which[k + 1]] = vertex_numbers(second);
-    }
-    if (k < which.size()) numbers[which[k]] = vertex_numbers(samplers[which[k]].get_block());
-}
-
-// Draws only the sample dimensions that the vertices consume.
+// Draws only the random samples that the vertices of paths use.
 class UsedNumbers {
 public:
+    /// `numbers` is indexed by path; `which` are the paths.
     void draw(std::span<const Sampler> samplers, std::span<const std::uint32_t> which, int depth,
               const NumbersUsed& used, std::vector<VertexNumbers>& numbers) {
-        const std::uint32_t first = vertex_dimension(depth);
+        const std::array<bool, 4> is_used{used.direction, used.light, used.light || used.lobe, used.roulette};
         std::array<std::uint32_t, 4> dimensions;
         std::size_t count = 0;
-        const auto add = [&](bool is_used, std::uint32_t dimension) {
-            if (is_used) dimensions[count++] = first + dimension;
-        };
-        add(used.direction, 0);
-        add(used.light, 2);
-        add(used.light || used.lobe, 4);
-        add(used.roulette, 6);
+        for (std::uint32_t pair = 0; pair < 4; ++pair)
+            if (is_used[pair]) dimensions[count++] = vertex_dimension(depth) + 2 * pair;
         pairs_.resize(count * which.size());
         Sampler::pairs(samplers, which, std::span(dimensions).first(count), pairs_);
-        std::span<const Vec2> rest = pairs_;
-        const auto take = [&](bool is_used, const auto& set) {
-            if (!is_used) return;
-            for (std::size_t k = 0; k < which.size(); ++k) set(numbers[which[k]], rest[k]);
-            rest = rest.subspan(which.size());
+        const Vec2* next = pairs_.data();
+        const auto take = [&](std::size_t pair, const auto& set) {
+            if (!is_used[pair]) return;
+            for (const std::uint32_t i : which) set(numbers[i], *next++);
         };
-        take(used.direction, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
-        take(used.light, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
-        take(used.light || used.lobe, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x, u.lobe = pair.y; });
-        take(used.roulette, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
+        take(0, [](VertexNumbers& u, Vec2 pair) { u.bsdf = pair; });
+        take(1, [](VertexNumbers& u, Vec2 pair) { u.light = pair; });
+        take(2, [](VertexNumbers& u, Vec2 pair) { u.light_choice = pair.x, u.lobe = pair.y; });
+        take(3, [](VertexNumbers& u, Vec2 pair) { u.roulette = pair.x; });
     }
 
 private:
@@ -122,10 +104,11 @@ private:
         going_.clear();
         escape(by_class_.of(PlainSurfaces::kNothing), depth);
         const auto others = by_class_.of(PlainSurfaces::kOther);
-        draw_all_numbers(samplers_, others, depth, numbers_);
+        const NumbersUsed all{true, plan_.lights != nullptr, true, plan_.russian_roulette && depth > 0};
+        used_numbers_.draw(samplers_, others, depth, all, numbers_);
         for (const std::uint32_t i : others) advance_alone(i, depth);
         for (std::size_t k = 0; k < Kind::kCount; ++k)
-            if (!by_class_.of(k).empty()) scatter(Kind::of_index(k), by_class_.of(k), depth);
+            if (!by_class_.of(k).empty()) advance_batches(Kind::of_index(k), by_class_.of(k), depth);
     }
     // Ends all paths, which have reached the greatest depth.
     void end(int depth) {
@@ -155,7 +138,7 @@ private:
         const Hit& hit = hits_[i];
         return {i, &rays_[i], &hit, &plan_.plain.shape(hit), &plan_.plain.bsdf(hit), &numbers_[i], &paths_[i].state()};
     }
-    void scatter(Kind kind, std::span<const std::uint32_t> which, int depth) {
+    void advance_batches(Kind kind, std::span<const std::uint32_t> which, int depth) {
         used_numbers_.draw(samplers_, which, depth, numbers_used(plan_, kind.scattering, depth), numbers_);
         for (; which.size() >= kFewest; which = which.subspan(std::min(which.size(), kPathLanes))) {
             std::array<BatchPath, kPathLanes> some;

@@ -92,23 +92,6 @@ TEST_SUITE("unit") {
                 }
     }
 
-    TEST_CASE("the blocks of two samplers at once are those of each") {
-        for (const SamplerKind kind : kAll)
-            for (std::uint32_t index = 0; index < 40; ++index) {
-                std::array<Sampler, 4> s{Sampler(kind, 3, 16), Sampler(kind, 3, 16), Sampler(kind, 3, 16),
-                                         Sampler(kind, 3, 16)};
-                for (std::size_t i = 0; i < 4; ++i) {
-                    s[i].start(static_cast<int>(7 + (i & 1)), -2, index + static_cast<std::uint32_t>(i & 1));
-                    s[i].set_dimension(16);
-                }
-                const auto [first, second] = Sampler::get_blocks(s[0], s[1]);
-                CHECK(first == s[2].get_block());
-                CHECK(second == s[3].get_block());
-                CHECK(s[0].dimension() == s[2].dimension());
-                CHECK(s[1].dimension() == s[3].dimension());
-            }
-    }
-
     TEST_CASE("center: the middle of pixel and lens, time 0, all else as Sobol") {
         Sampler center(SamplerKind::kCenter, 5, 16), sobol(SamplerKind::kSobol, 5, 16);
         center.start(4, 4, 9);
