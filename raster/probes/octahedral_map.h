@@ -57,7 +57,9 @@ template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const
     const Vec2T<Floats> p = octahedral(w);
     const Floats half(0.5f * static_cast<float>(side_)), middle(half + Floats(0.5f));
     const Floats x = p.x * half + middle, y = p.y * half + middle; // counted from the border's texel centers
-    const Ints x0 = truncated(x), y0 = truncated(y);
+    // A lane whose direction is not a number, as in lanes that are not used, reads some texel.
+    const auto cell = [&](const Floats& v) { return xsimd::max(xsimd::min(truncated(v), Ints(side_)), Ints(0)); };
+    const Ints x0 = cell(x), y0 = cell(y);
     const Floats fx = x - xsimd::batch_cast<float>(x0), fy = y - xsimd::batch_cast<float>(y0);
     const Ints first = (y0 * Ints(side_ + 2) + x0) * Ints(static_cast<std::int32_t>(kChannels));
     const int row = (side_ + 2) * static_cast<int>(kChannels);
