@@ -98,6 +98,14 @@ std::vector<std::string> list_approximations(const PreparedData& data, const Set
          "Moving objects stand where they are when the shutter opens: one sample a pixel sees no motion.");
     name(moving && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
     if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
+    if (data.irradiance_probes) {
+        name(true, "Light between surfaces is interpolated from irradiance probes; caustics are left out.");
+        name(!scene.lights.empty() && settings.shadows,
+             "Shadows come from shadow maps; those of area lights use few taps per pixel.");
+        name(data.reflection_probes != nullptr,
+             "Reflections and glass show the image, or probes that see the scene from one point per object.");
+        return result;
+    }
 
     const PartSet& parts = settings.parts;
     const bool environment = settings.environment && needs.environment;

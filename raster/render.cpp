@@ -249,8 +249,12 @@ void render_inked(const Frame& frame, const CameraModel& camera, const View& vie
     if (!frame.control.stopped()) overlay.add_edges(seen);
 }
 
+/// Returns true if deferred shading renders the frame. It does not handle transparent layers, auxiliary images and
+/// multisampling yet; frames with them are shaded sample by sample.
 bool is_deferred(const Frame& frame) {
-    return frame.program == nullptr && frame.settings.quality == Quality::kRealtime;
+    const Settings& settings = frame.settings;
+    return frame.program == nullptr && settings.quality == Quality::kRealtime && frame.layers == nullptr &&
+           !settings.aovs.any() && settings.multisamples == 0;
 }
 
 /// Renders one pass of Shading::kLit by deferred shading, and calls use(radiance) for each sample of a pixel.
@@ -296,7 +300,7 @@ Rendering render_picture(const Frame& frame, const CameraModel& camera, const Vi
             continue;
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
-        if (is_deferred(frame) && !frame.settings.aovs.any()) {
+        if (is_deferred(frame)) {
             render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
                 for_each_pixel(view, frame.settings.threads,
                                [&](int x, int y) { picture.add(x, y, radiance.color_at(x, y)); });
