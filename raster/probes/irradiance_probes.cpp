@@ -92,10 +92,26 @@ void IrradianceProbes::place(const PreparedData& data) {
     probes_.resize(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
 }
 
-Vec3d IrradianceProbes::position(std::size_t probe) const {
+Vec3d IrradianceProbes::grid_point(std::size_t probe) const {
     const auto i = static_cast<int>(probe);
     return origin_ + Vec3d(step_.x * (i % size_[0]), step_.y * (i / size_[0] % size_[1]),
                            step_.z * (i / (size_[0] * size_[1])));
+}
+
+/// Moves a probe that lies inside an object along an axis, by up to three steps. Returns false if all of that is
+/// inside, too.
+bool IrradianceProbes::move_out_of_solids(const PreparedData& data, Vec3d& position) const {
+    if (!inside_solid(data, position)) return true;
+    for (int quarters = 1; quarters <= 12; ++quarters)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (const double side : {1.0, -1.0}) {
+                Vec3d moved = position;
+                moved[axis] += side * 0.25 * quarters * step_[axis];
+                if (inside_solid(data, moved)) continue;
+                position = moved;
+                return true;
+            }
+    return false;
 }
 
 float IrradianceProbes::spacing() const { return static_cast<float>(std::max({step_.x, step_.y, step_.z})); }
@@ -104,8 +120,9 @@ IrradianceProbes::IrradianceProbes(const PreparedData& data, const Settings& set
     place(data);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
-        if (inside_solid(data, position(i))) return;
-        captures[i] = std::make_unique<ProbeCapture>(data, settings, position(i), kSide, data.glass);
+        Vec3d& position = probes_[i].position = grid_point(i);
+        if (!move_out_of_solids(data, position)) return;
+        captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass);
         set_distances(*captures[i], probes_[i]);
     });
     for (int k = 0; k <= kBounces; ++k) {
@@ -117,6 +134,10 @@ IrradianceProbes::IrradianceProbes(const PreparedData& data, const Settings& set
         });
         for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
     }
+    const auto count = static_cast<float>(std::max<std::ptrdiff_t>(
+        std::ranges::count_if(captures, [](const auto& capture) { return capture != nullptr; }), 1));
+    for (const Probe& probe : probes_)
+        for (std::size_t c = 0; c < 9; ++c) mean_[c] += probe.irradiance[c] / count;
 }
 
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
@@ -219,13 +240,15 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
         const std::int32_t base = cells[static_cast<std::size_t>(std::countr_zero(left))];
         const auto own = Ints::load_aligned(cells.data()) == Ints(base);
         left &= ~lane_bits(own);
-        Floats sum(0.0f);
+        // The mean counts where no probe stands about a point, since all would lie within objects.
+        Floats sum(1e-9f);
         RgbT<Floats> light(Floats(0.0f));
+        for (std::size_t c = 0; c < 9; ++c) light += spread<Floats>(mean_[c]) * basis[c] * sum;
         for (int corner = 0; corner < 8; ++corner) {
             const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
             if (probes_[probe].distance.empty()) continue; // inside an object
-            const Vec3 q(position(probe) - eye);
+            const Vec3 q(probes_[probe].position - eye);
             const float bias = kBias * std::min({step.x, step.y, step.z});
             const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
             const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
@@ -233,7 +256,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             sum += c.weight;
             light += c.irradiance * c.weight;
         }
-        const Floats over = Floats(1.0f) / max(sum, Floats(1e-20f));
+        const Floats over = Floats(1.0f) / sum;
         const auto lanes = xsimd::bool_cast(own);
         result = {xsimd::select(lanes, light.r * over, result.r), xsimd::select(lanes, light.g * over, result.g),
                   xsimd::select(lanes, light.b * over, result.b)};

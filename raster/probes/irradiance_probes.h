@@ -33,12 +33,14 @@ private:
     /// Spherical harmonics of the orders 0, 1 and 2, with the constant factors included.
     using Harmonics = std::array<Rgb, 9>;
     struct Probe {
+        Vec3d position;
         Harmonics irradiance{};
         OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
     };
 
     void place(const PreparedData& data);
-    Vec3d position(std::size_t probe) const;
+    Vec3d grid_point(std::size_t probe) const;
+    bool move_out_of_solids(const PreparedData& data, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
     static Harmonics gathered(const ProbeCapture& capture);
     void add_bounce(const ProbeCapture& capture, Harmonics& sum) const;
@@ -48,6 +50,7 @@ private:
     Vec3d step_;                ///< between probes, by axis
     std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
     std::vector<Probe> probes_; ///< x fastest
+    Harmonics mean_{};          ///< irradiance averaged over the probes, for points with none about them
 };
 
 } // namespace duet::raster

@@ -124,8 +124,14 @@ Pattern pattern_of(int x, int y) {
     return {load(turn, 0), load(jitter, 0)};
 }
 
-/// Returns the visibility along one line through each pixel, the one turned by `pattern` about the view.
-SkyVisibility<Floats> search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius,
+/// What a line through each pixel hides of the hemisphere: the cosine-weighted fraction and its directions, and the
+/// line's own share of the hemisphere.
+struct Line {
+    Floats all = Floats(0.0f), lost = Floats(0.0f); // braces would read a list of lanes
+    Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+};
+/// Searches the line turned by `pattern` about the view.
+Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius,
                                   const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
@@ -153,8 +159,7 @@ SkyVisibility<Floats> search_line(const GBuffer& gbuffer, const Vec3s& p, const 
         lost += max(less(open.all, seen.all), none);
         hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
     }
-    // `all` averages to 1 over the directions of a block, whatever the normal, so no line is normalized by itself.
-    return {all - lost, hidden};
+    return {all, lost, hidden};
 }
 
 } // namespace
@@ -163,8 +168,9 @@ void GtaoImage::reset(int width, int height) {
     if (depth_.width() == width && depth_.height() == height) return;
     depth_ = PlaneFloat(width, height);
     normal_ = Planes3(width, height);
-    for (Planes* planes : {&found_, &smooth_})
-        planes->visible = PlaneFloat(width, height), planes->hidden = Planes3(width, height);
+    lost_ = all_ = PlaneFloat(width, height);
+    lost_directions_ = Planes3(width, height);
+    smooth_.visible = PlaneFloat(width, height), smooth_.hidden = Planes3(width, height);
 }
 
 void GtaoImage::compute(const GBuffer& gbuffer, float radius, int threads) {
@@ -190,12 +196,13 @@ void GtaoImage::search_row(int y, float radius) {
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);
-        SkyVisibility<Floats> found;
+        Line found;
         if (radius > 0 && xsimd::any(seen)) {
             found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
         }
-        store(found_.visible, x, y, found.visible);
-        found_.hidden.set(x, y, found.hidden);
+        store(lost_, x, y, found.lost);
+        store(all_, x, y, found.all);
+        lost_directions_.set(x, y, found.directions);
     }
 }
 
@@ -208,7 +215,7 @@ void GtaoImage::filter_row(int y) {
         const Vec3s p = point(x, y, depth), n = normal_.vector(x, y);
         const Floats tolerance =
             Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
-        Floats sum(0.0f), visible(0.0f);
+        Floats all(0.0f), lost(0.0f);
         Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
         for (int dy = -kBlock / 2; dy < kBlock / 2; ++dy)
             for (int dx = -kBlock / 2; dx < kBlock / 2; ++dx) {
@@ -216,12 +223,12 @@ void GtaoImage::filter_row(int y) {
                 const Floats alike = likeness(p, n, tolerance, point(x + dx, y + dy, other),
                                               load_at(normal_, x + dx, y + dy));
                 const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
-                sum += weight;
-                visible += weight * load_at(found_.visible, x + dx, y + dy);
-                hidden += load_at(found_.hidden, x + dx, y + dy) * weight;
+                all += weight * load_at(all_, x + dx, y + dy);
+                lost += weight * load_at(lost_, x + dx, y + dy);
+                hidden += load_at(lost_directions_, x + dx, y + dy) * weight;
             }
-        const Floats over = Floats(1.0f) / max(sum, Floats(1e-6f)); // the pixel itself weighs 1
-        store(smooth_.visible, x, y, clamp(visible * over, Floats(0.0f), Floats(1.0f)));
+        const Floats over = xsimd::select(all > Floats(0.0f), Floats(1.0f) / all, Floats(0.0f));
+        store(smooth_.visible, x, y, clamp(Floats(1.0f) - lost * over, Floats(0.0f), Floats(1.0f)));
         smooth_.hidden.set(x, y, hidden * over);
     }
 }

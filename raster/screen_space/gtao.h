@@ -53,7 +53,11 @@ private:
     const GBuffer* gbuffer_ = nullptr;
     PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
     Planes3 normal_;        ///< likewise
-    Planes found_, smooth_; ///< before and after averaging
+    /// Before averaging: what is hidden along one line, and what there is to hide. Their sums over neighbors are divided
+    /// by each other, since a line's share of the hemisphere depends on its direction.
+    PlaneFloat lost_, all_;
+    Planes3 lost_directions_;
+    Planes smooth_; ///< after averaging
 };
 
 template <typename Irradiance> void GtaoImage::add_irradiance(int threads, const Irradiance& irradiance) {
