@@ -49,9 +49,9 @@ TEST_SUITE("unit") {
                 map.texel(x, y) = {w.x, w.y, w.z, 1};
             }
         map.finish();
-        for (const Vec3 w : directions()) { // measured: 0.0128, at the corners of the square
+        for (const Vec3 w : directions()) { // measured: 0.033, along the square's diagonals
             const auto [x, y, z, one] = map.at<4>(all(w));
-            CHECK(length(Vec3(x.get(0), y.get(0), z.get(0)) - w) < 0.015f);
+            CHECK(length(Vec3(x.get(0), y.get(0), z.get(0)) - w) < 0.04f);
             CHECK(one.get(0) == doctest::Approx(1));
         }
     }
