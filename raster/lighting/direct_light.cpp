@@ -6,48 +6,107 @@
 namespace duet::raster {
 namespace {
 
+constexpr int kTileSide = 16;
+
 /// Computes the direct light of one tile after another, on one thread.
 class TileLighter {
 public:
-    TileLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightClusters& clusters,
+    TileLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
                 const ShadowLookup* shadows, DirectLight& result)
-        : gbuffer_(gbuffer), lights_(lights), clusters_(clusters), shadows_(shadows), result_(result) {}
+        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), result_(result) {}
 
-    void light_tile(int x0, int y0) {
-        clusters_.list(gbuffer_, x0, y0, reaching_);
-        constexpr int kLanes = static_cast<int>(Floats::size), kSide = LightClusters::kTileSide;
-        std::size_t batch = 0;
-        for (int y = y0; y < y0 + kSide; ++y)
-            for (int x = x0; x < x0 + kSide; x += kLanes, ++batch)
-                if (x < gbuffer_.width() && y < gbuffer_.height()) light_batch(x, y, reaching_.batch_slices[batch]);
+    void light_tile(int x, int y) {
+        const Cluster tile{.x = x, .y = y, .columns = kTileSide, .rows = kTileSide};
+        if (lights_.size() <= kNoCulling) return light_pixels(tile, light_set_.lights());
+        std::array<Cluster, kDepthSlices> slices;
+        const std::size_t count = slices_of_depth(gbuffer_, tile, slices);
+        for (std::size_t k = 0; k < count; ++k) light_cluster(slices[k], light_set_, 0);
     }
 
 private:
-    void light_batch(int x, int y, std::uint32_t slices) {
-        const LitBatch batch(gbuffer_, x, y, tables_);
-        RgbT<Floats> unshadowed(Floats(0.0f)), shadowed(Floats(0.0f));
-        for (const TileLights::Entry& entry : reaching_.entries) {
-            if ((entry.slices & slices) == 0 || batch.empty()) continue;
-            const FrameLight& light = lights_[entry.light];
-            const RgbT<Floats> reflected = batch.reflected(light);
-            unshadowed += reflected;
-            if (shadows_ == nullptr) continue;
-            const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
-            if (lane_bits(lit) == 0) continue;
-            const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
-            shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
+    /// For so few lights, culling takes longer than it saves.
+    static constexpr std::size_t kNoCulling = 4;
+    /// Clusters of 16 rows are divided into those of 4, and these into single rows; and up to twice by normals.
+    static constexpr std::size_t kLevels = 5;
+    static constexpr int kDivision = 4;
+
+    /// Finds the lights of a cluster among those of the cluster around it, and divides it as long as they are many.
+    void light_cluster(const Cluster& cluster, const LightSet& around, std::size_t level) {
+        const std::optional<SurfaceBounds> surfaces = surface_bounds(gbuffer_, cluster);
+        if (!surfaces) return;
+        float other = 0;
+        for (const LightField& field : std::span(fields_).first(field_count_))
+            other += average(field.irradiance(surfaces->center(), surfaces->mean_normal()));
+        Level& own = levels_[level];
+        around.reach(*surfaces, other, own.found);
+        own.near.assign(around, own.found.near);
+        const std::size_t distant_before = distant_.size(), fields_before = field_count_;
+        for (const std::uint32_t column : own.found.far) distant_.push_back(around.lights()[column]);
+        if (!own.found.far.empty()) fields_[field_count_++] = own.found.field;
+        if (level + 1 == kLevels || own.near.size() <= LightSet::kFewLights) {
+            light_pixels(cluster, own.near.lights());
+        } else if (const auto parts = split_at_edge(gbuffer_, cluster, *surfaces)) {
+            for (const Cluster& part : *parts) light_cluster(part, own.near, level + 1);
+        } else if (cluster.rows > 1) {
+            Cluster part = cluster;
+            part.rows = cluster.rows / kDivision;
+            for (int i = 0; i < kDivision; ++i, part.y += part.rows) light_cluster(part, own.near, level + 1);
+        } else {
+            light_pixels(cluster, own.near.lights());
         }
-        result_.unshadowed.set(x, y, unshadowed);
-        if (shadows_ != nullptr) result_.shadowed.set(x, y, shadowed);
+        distant_.resize(distant_before), field_count_ = fields_before;
+    }
+
+    void light_pixels(const Cluster& cluster, std::span<const std::uint32_t> near) {
+        constexpr int kBatch = static_cast<int>(Floats::size);
+        for (int y = cluster.y; y < std::min(cluster.y + cluster.rows, gbuffer_.height()); ++y)
+            for (int x = cluster.x; x < std::min(cluster.x + cluster.columns, gbuffer_.width()); x += kBatch) {
+                const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
+                if (lane_bits(lanes) != 0) light_batch(x, y, lanes, near);
+            }
+    }
+
+    void light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const std::uint32_t> near) {
+        const LitBatch batch(gbuffer_, x, y, lanes, tables_);
+        Sum sum;
+        for (const std::uint32_t i : near) add(batch, lights_[i], LitBatch::Lobes::kAll, x, y, sum);
+        for (const LightField& field : std::span(fields_).first(field_count_))
+            sum.add(batch.diffuse(field.irradiance(batch.p(), batch.n())));
+        if (batch.specular())
+            for (const std::uint32_t i : distant_) add(batch, lights_[i], LitBatch::Lobes::kSpecular, x, y, sum);
+        Planes3& unshadowed = result_.unshadowed;
+        unshadowed.set(x, y, unshadowed.color(x, y) + sum.unshadowed); // the batch may be in several clusters
+        if (shadows_ != nullptr) result_.shadowed.set(x, y, result_.shadowed.color(x, y) + sum.shadowed);
+    }
+
+    struct Sum {
+        RgbT<Floats> unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
+
+        void add(const RgbT<Floats>& light) { unshadowed += light, shadowed += light; }
+    };
+    void add(const LitBatch& batch, const FrameLight& light, LitBatch::Lobes lobes, int x, int y, Sum& sum) const {
+        const RgbT<Floats> reflected = batch.reflected(light, lobes);
+        if (shadows_ == nullptr || !shadows_->shadows(light.index)) return sum.add(reflected);
+        const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
+        if (lane_bits(lit) == 0) return;
+        const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
+        sum.unshadowed += reflected, sum.shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
     }
 
     const GBuffer& gbuffer_;
     std::span<const FrameLight> lights_;
-    const LightClusters& clusters_;
+    const LightSet& light_set_;
     const ShadowLookup* shadows_;
     DirectLight& result_;
-    TileLights reaching_;
     LitBatch::Tables tables_;
+    struct Level {
+        LightsOfCluster found;
+        LightSet near;
+    };
+    std::array<Level, kLevels> levels_;
+    std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels
+    std::size_t field_count_ = 0;
+    std::vector<std::uint32_t> distant_;
 };
 
 } // namespace
@@ -61,11 +120,10 @@ DirectLight direct_light(const PreparedData& data, const Settings& settings, con
     if (!settings.parts.direct) return result;
     const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
     if (lights.empty()) return result;
-    const LightClusters clusters(lights);
-    constexpr int kSide = LightClusters::kTileSide;
-    parallel_for(static_cast<std::size_t>((height + kSide - 1) / kSide), settings.threads, [&](std::size_t row) {
-        TileLighter lighter(gbuffer, lights, clusters, shadows, result);
-        for (int x = 0; x < width; x += kSide) lighter.light_tile(x, static_cast<int>(row) * kSide);
+    const LightSet light_set(lights, shadows);
+    parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t row) {
+        TileLighter lighter(gbuffer, lights, light_set, shadows, result);
+        for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, static_cast<int>(row) * kTileSide);
     });
     return result;
 }

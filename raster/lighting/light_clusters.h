@@ -1,64 +1,117 @@
-// Lists the lights that reach a tile of the image, by slices of depth (Olsson, Billeter and Assarsson 2012, "Clustered
-// Deferred and Forward Shading": clusters with explicit bounds of positions and normals; as bits per tile after Harada
-// 2012, "A 2.5D Culling for Forward+").
+// Finds the lights that matter to a cluster of visible surfaces (Olsson, Billeter and Assarsson 2012, "Clustered
+// Deferred and Forward Shading": clusters of a tile's pixels, by depth, with explicit bounds of positions and normals).
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/lighting/frame_lights.h"
+#include "raster/shadows/shadow_lookup.h"
+
+#include <optional>
 
 namespace duet::raster {
 
-/// Holds the lights of one tile. It may be reused for other tiles.
-struct TileLights {
-    struct Entry {
-        std::uint32_t light;  ///< index into the frame's lights
-        std::uint32_t slices; ///< bits of the slices that the light reaches
-    };
-    std::vector<Entry> entries; ///< one per light
-    std::array<std::uint32_t, 64> batch_slices; ///< bits of the slices in which each batch of the tile has surfaces
-    // Scratch memory, one number per light.
-    std::vector<float, CacheAligned<float>> most;
-    std::vector<std::uint32_t> slices;
+/// Selects the surfaces of a cluster: those in a rectangle of pixels whose reversed depth is in (farther, nearer] and
+/// whose normal is in a box. Surfaces that reflect nothing, such as most emitters, belong to no cluster.
+struct Cluster {
+    static constexpr float kAll = 2; ///< no reversed depth and no component of a normal is greater
+
+    int x, y, columns, rows;
+    float nearer = kAll, farther = 0;
+    Vec3 n_low{-kAll, -kAll, -kAll}, n_high{kAll, kAll, kAll}; ///< n_low ≤ n < n_high
+
+    /// Returns the lanes of the batch at column x of row y that belong to the cluster.
+    xsimd::batch_bool<float> lanes(const GBuffer& gbuffer, int x, int y) const;
 };
 
-/// Finds the lights of tiles. Every surface of a tile is in one of the slices of the tile's depth range, each with
-/// exact bounds of its points and normals. A light that lies behind all of a slice's surfaces, that faces away from all
-/// of them, or whose cone misses them is culled exactly: it gives no light there.
-///
-/// Point and area lights have no end, so distant ones are dropped where they do not matter: the bounds of all dropped
-/// lights' irradiance sum to at most kDropped of the irradiance (without shadows) at the slice's center. Lights
-/// are not dropped where a surface is smooth enough to show their highlights.
-class LightClusters {
+/// Bounds the points and normals of a cluster by boxes.
+struct SurfaceBounds {
+    Vec3 p_low, p_high, n_low, n_high;
+
+    Vec3 center() const { return (p_low + p_high) * 0.5f; }
+    Vec3 extent() const { return (p_high - p_low) * 0.5f; }
+    Vec3 mean_normal() const { return (n_low + n_high) / max(length(n_low + n_high), 1e-6f); }
+};
+/// Returns the bounds of a cluster, or nothing if it has no surfaces.
+std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluster& cluster);
+/// Divides a cluster by depth into at most kDepthSlices. Returns their number.
+inline constexpr std::size_t kDepthSlices = 4;
+std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std::array<Cluster, kDepthSlices>& slices);
+/// Divides a cluster by its normals if they change abruptly, as at the edge of a box.
+std::optional<std::array<Cluster, 2>> split_at_edge(const GBuffer& gbuffer, const Cluster& cluster,
+                                                    const SurfaceBounds& surfaces);
+
+/// Holds the irradiance from distant lights together, as a vector per color (Gershun 1939, "The Light Field") that is
+/// linear in the position. If no light is below the horizon, the irradiance is exactly the vector's dot product with
+/// the normal.
+struct LightField {
+    Vec3 center, inverse_extent;
+    std::array<std::array<Vec3, 4>, 3> colors{}; ///< per color the vector at the center, and its change per extent
+
+    template <typename T> RgbT<T> irradiance(const Vec3T<T>& p, const Vec3T<T>& n) const {
+        const Vec3T<T> q = (p - spread<T>(center)) * spread<T>(inverse_extent);
+        const auto channel = [&](const std::array<Vec3, 4>& v) {
+            const auto axis = [&](float Vec3::*c) {
+                return fused(T(v[1].*c), q.x, fused(T(v[2].*c), q.y, fused(T(v[3].*c), q.z, T(v[0].*c))));
+            };
+            return max(T(dot(Vec3T<T>(axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)), n)), T(0));
+        };
+        return {channel(colors[0]), channel(colors[1]), channel(colors[2])};
+    }
+};
+
+/// Holds how lights reach a cluster. It may be reused, which saves allocations.
+struct LightsOfCluster {
+    std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
+    LightField field;
+    std::vector<float, CacheAligned<float>> error, distant; ///< scratch memory, one number per light
+};
+
+/// Holds bounds of lights as a structure of arrays.
+class LightSet {
 public:
-    static constexpr int kTileSide = 16, kSlices = 4;
-    static constexpr float kDropped = 1.0f / 64;
-    /// Surfaces whose lobes are at least this wide reflect at most about 1 / (4 alpha²) = 4 times as much of a light as
-    /// a white diffuse surface.
-    static constexpr float kSmoothest = 0.25f;
-    /// For so few lights, a list takes longer than it saves.
-    static constexpr std::size_t kFewLights = 4;
+    /// A field takes longer than it saves for so few lights, and would show where clusters meet.
+    static constexpr std::size_t kFewLights = 16;
+    /// Greatest error of the field for one light, as a fraction of the irradiance at the cluster's center.
+    static constexpr float kError = 1.0f / 512;
 
-    explicit LightClusters(std::span<const FrameLight> lights);
+    LightSet() = default;
+    /// Lights that `shadows`, which may be null, shadows one by one never count as far.
+    LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows);
+    /// Makes this a copy of the given columns of another set.
+    void assign(const LightSet& other, std::span<const std::uint32_t> columns);
 
-    /// Lists the lights of the tile whose first pixel is (x0, y0), multiples of kTileSide.
-    void list(const GBuffer& gbuffer, int x0, int y0, TileLights& result) const;
+    /// Returns the lights' indices among the frame's lights.
+    std::span<const std::uint32_t> lights() const { return lights_; }
+    std::size_t size() const { return lights_.size(); }
+
+    /// Finds the lights that reach a cluster. A light is left out only where it gives no light: where it is behind all
+    /// surfaces or faces away from them, or its cone misses them.
+    ///
+    /// Many lights are divided into near and far. Lights have no end, so all of them reach every cluster, and together
+    /// the distant ones may outshine the near ones; but their sum varies slowly. A light is far if it is above the
+    /// horizon of all surfaces and the error of a linear field is small enough. `other_irradiance` is the irradiance
+    /// from lights that are not in the set.
+    void reach(const SurfaceBounds& surfaces, float other_irradiance, LightsOfCluster& result) const;
 
 private:
-    struct Slice;
-    void list_all(TileLights& result) const;
-    void cull(const Slice& slice, std::uint32_t bit, TileLights& result) const;
-
-    /// Rows of bounds_, which has one column per light.
     enum Row {
-        kLowX, kLowY, kLowZ, kHighX, kHighY, kHighZ,   ///< box around the light
-        kAxisX, kAxisY, kAxisZ, kPlane,                ///< front: axis·p > plane
-        kConeCosine, kConeSine,                        ///< of a spot's outer angle; both 0 for others
-        kIntensity,                                    ///< W/sr, as in common/light/light_bounds.h
-        kMost,                                         ///< greatest irradiance, W/m²
+        kLowX, kLowY, kLowZ, kHighX, kHighY, kHighZ, ///< box around the light
+        kAxisX, kAxisY, kAxisZ, kPlane,              ///< front: axis·p > plane
+        kConeCosine, kConeSine,                      ///< of a spot's outer angle; both 0 for others
+        kRadius,                                     ///< of the box
+        kIntensity,                                  ///< W/sr, as in common/light/light_bounds.h; 0 in unused columns
+        kMost,                                       ///< greatest irradiance, W/m²
+        kRed, kGreen, kBlue,                         ///< intensity in W/sr, or 0 if the light never counts as far
         kRows
     };
-    std::size_t count_;
-    PlaneFloat bounds_;
+    void resize(std::size_t count);
+    const float* row(int r) const { return bounds_.data() + static_cast<std::size_t>(r) * stride_; }
+    float* row(int r) { return bounds_.data() + static_cast<std::size_t>(r) * stride_; }
+    LightField sum(const SurfaceBounds& surfaces, std::span<const float> distant) const;
+
+    std::vector<std::uint32_t> lights_;
+    std::size_t stride_ = 0;
+    std::vector<float, CacheAligned<float>> bounds_; ///< kRows rows with a column per light, and padding
 };
 
 } // namespace duet::raster

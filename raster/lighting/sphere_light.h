@@ -45,17 +45,21 @@ template <typename T> T greatest_root(T q) {
 
 } // namespace sphere
 
+/// Spheres whose cone has at most this half angle (as a tangent) after the transformation count as small. The error is
+/// then below 1 % of the lobe's greatest value.
+inline constexpr float kSmallCone = 1.0f / 16;
+
 /// Returns π times the fraction of a lobe that a sphere fills. The direction `d` to its center is unit, in the frame of
 /// the lobe; sine2 is as above. Transformed to the cosine's space, the sphere's cone is elliptic; the horizon clips it
 /// as it would clip the circular cone of the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting:
-/// a Journey from Research to Production"). A cone that is small after the transformation counts as circular.
+/// a Journey from Research to Production"). A small cone counts as circular.
 template <typename T> T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
     const Vec3T<T> u = lobe(d);
     const T squared = dot(u, u), inverse = inverse_sqrt(squared);
     // The form factor of a small cone is its solid angle over π, which the transformation scales by its determinant.
     T form_factor = sine2 * lobe.determinant * (inverse * inverse * inverse), c = u.z * inverse;
-    constexpr float kSmall = 1.0f / 256; // a relative error below 1 %
-    const MaskOf<T> large = form_factor > T(kSmall);
+    const T stretch2 = lobe.gram_xx + lobe.gram_yy + lobe.gram_zz; // bounds the square of the greatest stretch
+    const MaskOf<T> large = sine2 * stretch2 > T(kSmallCone * kSmallCone) * squared;
     if (any_lane(large & lanes)) {
         // The directions w of the cone have (w·d)² ≥ cos²σ w²; the dual cone's matrix B = u uᵀ − sin²σ M Mᵀ has one
         // positive eigenvalue. It is found by Cardano's formula from B less a third of its trace.
