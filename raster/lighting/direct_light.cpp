@@ -39,22 +39,28 @@ private:
             other += average(field.irradiance(surfaces->center(), surfaces->mean_normal()));
         Level& own = levels_[level];
         around.reach(*surfaces, other, own.found);
-        own.near.assign(around, own.found.near);
         const std::size_t distant_before = distant_.size(), fields_before = field_count_;
         for (const std::uint32_t column : own.found.far) distant_.push_back(around.lights()[column]);
         if (!own.found.far.empty()) fields_[field_count_++] = own.found.field;
-        if (level + 1 == kLevels || own.near.size() <= LightSet::kFewLights) {
-            light_pixels(cluster, own.near.lights());
-        } else if (const auto parts = split_at_edge(gbuffer_, cluster, *surfaces)) {
-            for (const Cluster& part : *parts) light_cluster(part, own.near, level + 1);
-        } else if (cluster.rows > 1) {
-            Cluster part = cluster;
-            part.rows = cluster.rows / kDivision;
-            for (int i = 0; i < kDivision; ++i, part.y += part.rows) light_cluster(part, own.near, level + 1);
+        const bool many = own.found.near.size() > LightSet::kFewLights && level + 1 < kLevels;
+        const auto edge = many ? split_at_edge(gbuffer_, cluster, *surfaces) : std::nullopt;
+        if (!edge && (!many || cluster.rows == 1)) {
+            own.lights.clear();
+            for (const std::uint32_t column : own.found.near) own.lights.push_back(around.lights()[column]);
+            light_pixels(cluster, own.lights);
         } else {
-            light_pixels(cluster, own.near.lights());
+            own.near.assign(around, own.found.near);
+            if (edge)
+                for (const Cluster& part : *edge) light_cluster(part, own.near, level + 1);
+            else
+                light_rows(cluster, own.near, level + 1);
         }
         distant_.resize(distant_before), field_count_ = fields_before;
+    }
+
+    void light_rows(Cluster cluster, const LightSet& around, std::size_t level) {
+        cluster.rows /= kDivision;
+        for (int i = 0; i < kDivision; ++i, cluster.y += cluster.rows) light_cluster(cluster, around, level);
     }
 
     void light_pixels(const Cluster& cluster, std::span<const std::uint32_t> near) {
@@ -101,7 +107,8 @@ private:
     LitBatch::Tables tables_;
     struct Level {
         LightsOfCluster found;
-        LightSet near;
+        LightSet near;                     ///< what `found` lists, for the parts of the cluster
+        std::vector<std::uint32_t> lights; ///< the same as indices of lights
     };
     std::array<Level, kLevels> levels_;
     std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels

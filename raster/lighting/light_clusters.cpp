@@ -122,8 +122,14 @@ void LightSet::resize(std::size_t count) {
 void LightSet::assign(const LightSet& other, std::span<const std::uint32_t> columns) {
     resize(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) lights_[i] = other.lights_[columns[i]];
-    for (int r = 0; r < kRows; ++r)
-        for (std::size_t i = 0; i < columns.size(); ++i) row(r)[i] = other.row(r)[columns[i]];
+    for (std::size_t i = 0; i < stride_; i += kBatch) {
+        const std::size_t count = std::min(kBatch, columns.size() - i);
+        alignas(64) std::array<std::int32_t, kBatch> from{};
+        std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(i), count, from.begin());
+        const Floats used = xsimd::select(load(kLanesAsFloats, 0) < Floats(static_cast<float>(count)), Floats(1.0f), kNone);
+        for (int r = 0; r < kRows; ++r)
+            (gather(other.row(r), Ints::load_aligned(from.data())) * used).store_aligned(row(r) + i);
+    }
 }
 
 LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows) {
