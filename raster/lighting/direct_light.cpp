@@ -6,26 +6,40 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kTileSide = 16;
+constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 
-/// Computes the direct light of one tile after another, on one thread.
-class TileLighter {
+/// Computes the direct light of one part of the image after another, on one thread.
+class PixelLighter {
 public:
-    TileLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
+    PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
                 const ShadowLookup* shadows, DirectLight& result)
         : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), result_(result) {}
 
+    /// Lights a row of pixels by all lights.
+    void light_row(int y) {
+        for (int x = 0; x < gbuffer_.width(); x += kBatch)
+            if (const auto lanes = gbuffer_.visible(x, y); lane_bits(lanes) != 0)
+                store(x, y, light_batch(x, y, lanes, light_set_.lights()));
+    }
+
+    /// Lights the tile that starts at column x of row y by the lights that reach it.
     void light_tile(int x, int y) {
         const Cluster tile{.x = x, .y = y, .columns = kTileSide, .rows = kTileSide};
-        if (lights_.size() <= kNoCulling) return light_pixels(tile, light_set_.lights());
         std::array<Cluster, kDepthSlices> slices;
         const std::size_t count = slices_of_depth(gbuffer_, tile, slices);
+        if (count == 0) return;
+        sums_.fill({});
         for (std::size_t k = 0; k < count; ++k) light_cluster(slices[k], light_set_, 0);
+        for_each_batch_of(gbuffer_, tile, [&](int column, int row) { store(column, row, sum_at(column, row)); });
     }
 
 private:
-    /// For so few lights, culling takes longer than it saves.
-    static constexpr std::size_t kNoCulling = 4;
+    struct Sum {
+        RgbT<Floats> unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
+
+        void add(const RgbT<Floats>& light) { unshadowed += light, shadowed += light; }
+    };
+
     /// Clusters of 16 rows are divided into those of 4, and these into single rows; and up to twice by normals.
     static constexpr std::size_t kLevels = 5;
     static constexpr int kDivision = 4;
@@ -64,15 +78,16 @@ private:
     }
 
     void light_pixels(const Cluster& cluster, std::span<const std::uint32_t> near) {
-        constexpr int kBatch = static_cast<int>(Floats::size);
-        for (int y = cluster.y; y < std::min(cluster.y + cluster.rows, gbuffer_.height()); ++y)
-            for (int x = cluster.x; x < std::min(cluster.x + cluster.columns, gbuffer_.width()); x += kBatch) {
-                const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
-                if (lane_bits(lanes) != 0) light_batch(x, y, lanes, near);
-            }
+        for_each_batch_of(gbuffer_, cluster, [&](int x, int y) {
+            const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
+            if (lane_bits(lanes) == 0) return;
+            const Sum sum = light_batch(x, y, lanes, near);
+            Sum& total = sum_at(x, y); // the batch may be in several clusters
+            total.unshadowed += sum.unshadowed, total.shadowed += sum.shadowed;
+        });
     }
 
-    void light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const std::uint32_t> near) {
+    Sum light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const std::uint32_t> near) {
         const LitBatch batch(gbuffer_, x, y, lanes, tables_);
         Sum sum;
         for (const std::uint32_t i : near) add(batch, lights_[i], LitBatch::Lobes::kAll, x, y, sum);
@@ -80,16 +95,9 @@ private:
             sum.add(batch.diffuse(field.irradiance(batch.p(), batch.n())));
         if (batch.specular())
             for (const std::uint32_t i : distant_) add(batch, lights_[i], LitBatch::Lobes::kSpecular, x, y, sum);
-        Planes3& unshadowed = result_.unshadowed;
-        unshadowed.set(x, y, unshadowed.color(x, y) + sum.unshadowed); // the batch may be in several clusters
-        if (shadows_ != nullptr) result_.shadowed.set(x, y, result_.shadowed.color(x, y) + sum.shadowed);
+        return sum;
     }
 
-    struct Sum {
-        RgbT<Floats> unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
-
-        void add(const RgbT<Floats>& light) { unshadowed += light, shadowed += light; }
-    };
     void add(const LitBatch& batch, const FrameLight& light, LitBatch::Lobes lobes, int x, int y, Sum& sum) const {
         const RgbT<Floats> reflected = batch.reflected(light, lobes);
         if (shadows_ == nullptr || !shadows_->shadows(light.index)) return sum.add(reflected);
@@ -97,6 +105,14 @@ private:
         if (lane_bits(lit) == 0) return;
         const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
         sum.unshadowed += reflected, sum.shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
+    }
+
+    Sum& sum_at(int x, int y) {
+        return sums_[static_cast<std::size_t>((y % kTileSide * kTileSide + x % kTileSide) / kBatch)];
+    }
+    void store(int x, int y, const Sum& sum) {
+        result_.unshadowed.set(x, y, sum.unshadowed);
+        if (shadows_ != nullptr) result_.shadowed.set(x, y, sum.shadowed);
     }
 
     const GBuffer& gbuffer_;
@@ -114,6 +130,7 @@ private:
     std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels
     std::size_t field_count_ = 0;
     std::vector<std::uint32_t> distant_;
+    std::array<Sum, kTileSide * kTileSide / Floats::size> sums_; ///< of the tile
 };
 
 } // namespace
@@ -128,9 +145,12 @@ DirectLight direct_light(const PreparedData& data, const Settings& settings, con
     const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
     if (lights.empty()) return result;
     const LightSet light_set(lights, shadows);
-    parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t row) {
-        TileLighter lighter(gbuffer, lights, light_set, shadows, result);
-        for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, static_cast<int>(row) * kTileSide);
+    const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
+    parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
+        PixelLighter lighter(gbuffer, lights, light_set, shadows, result);
+        const int first = static_cast<int>(i) * kTileSide;
+        for (int y = first; few && y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);
+        for (int x = 0; !few && x < width; x += kTileSide) lighter.light_tile(x, first);
     });
     return result;
 }

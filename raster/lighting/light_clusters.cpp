@@ -23,13 +23,6 @@ struct Box {
     Vec3 highest() const { return {duet::highest(high.x), duet::highest(high.y), duet::highest(high.z)}; }
 };
 
-template <typename Visit> void for_each_batch_of(const GBuffer& gbuffer, const Cluster& cluster, const Visit& visit) {
-    for (int y = cluster.y; y < std::min(cluster.y + cluster.rows, gbuffer.height()); ++y)
-        for (int x = cluster.x; x < std::min(cluster.x + cluster.columns, gbuffer.width());
-             x += static_cast<int>(kBatch))
-            visit(x, y, cluster.lanes(gbuffer, x, y));
-}
-
 /// Holds the least and the greatest value of a dot product of vectors from two boxes.
 struct Range {
     Floats low, high;
@@ -63,7 +56,8 @@ Lanes Cluster::lanes(const GBuffer& gbuffer, int column, int row) const {
 std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluster& cluster) {
     Box points, normals;
     bool any = false;
-    for_each_batch_of(gbuffer, cluster, [&](int x, int y, const Lanes& lanes) {
+    for_each_batch_of(gbuffer, cluster, [&](int x, int y) {
+        const Lanes lanes = cluster.lanes(gbuffer, x, y);
         if (lane_bits(lanes) == 0) return;
         points.extend(gbuffer.points(x, y), lanes), normals.extend(gbuffer.normal.vector(x, y), lanes);
         any = true;
@@ -74,7 +68,8 @@ std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluste
 
 std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std::array<Cluster, kDepthSlices>& slices) {
     Floats nearest = kNone, farthest(kHuge);
-    for_each_batch_of(gbuffer, cluster, [&](int x, int y, const Lanes& lanes) {
+    for_each_batch_of(gbuffer, cluster, [&](int x, int y) {
+        const Lanes lanes = cluster.lanes(gbuffer, x, y);
         const Floats depth = load(gbuffer.reversed_depth, x, y);
         nearest = max(nearest, xsimd::select(lanes, depth, kNone));
         farthest = min(farthest, xsimd::select(lanes, depth, Floats(kHuge)));

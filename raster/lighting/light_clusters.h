@@ -23,6 +23,14 @@ struct Cluster {
     xsimd::batch_bool<float> lanes(const GBuffer& gbuffer, int x, int y) const;
 };
 
+/// Calls visit(x, y) for each batch of a cluster's rectangle that lies in the image.
+template <typename Visit> void for_each_batch_of(const GBuffer& gbuffer, const Cluster& cluster, const Visit& visit) {
+    for (int y = cluster.y; y < std::min(cluster.y + cluster.rows, gbuffer.height()); ++y)
+        for (int x = cluster.x; x < std::min(cluster.x + cluster.columns, gbuffer.width());
+             x += static_cast<int>(Floats::size))
+            visit(x, y);
+}
+
 /// Bounds the points and normals of a cluster by boxes.
 struct SurfaceBounds {
     Vec3 p_low, p_high, n_low, n_high;
