@@ -1,6 +1,6 @@
 #include "raster/lighting/direct_light.h"
 
-#include "raster/lighting/light_clusters.h"
+#include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 
 namespace duet::raster {
@@ -149,8 +149,10 @@ DirectLight direct_light(const PreparedData& data, const Settings& settings, con
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
         PixelLighter lighter(gbuffer, lights, light_set, shadows, result);
         const int first = static_cast<int>(i) * kTileSide;
-        for (int y = first; few && y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);
-        for (int x = 0; !few && x < width; x += kTileSide) lighter.light_tile(x, first);
+        if (few)
+            for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);
+        else
+            for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });
     return result;
 }

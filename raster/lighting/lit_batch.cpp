@@ -20,16 +20,17 @@ Color black_outside(const Lanes& lanes, const Color& c) {
     return {xsimd::select(lanes, c.r, kNone), xsimd::select(lanes, c.g, kNone), xsimd::select(lanes, c.b, kNone)};
 }
 
-/// Returns the BRDF, times π, of the light that leaves after several reflections between microfacets, for light from
-/// all around: ggx_multiple·lost(wo)·(mean of lost(wi)). `normal` is the reflectance at normal incidence.
+/// Returns ggx_multiple(…)·lost(wo): the BRDF of the light that leaves after several reflections between microfacets,
+/// over lost(wi). `normal` is the reflectance at normal incidence.
 Color several_reflections(const Color& normal, const LobeTables& tables) {
     constexpr float kLeast = 0.004f; // as in ggx_multiple: what narrow lobes lose is neglected
-    const Lanes lossy = tables.mean_lost >= Floats(kLeast);
-    if (lane_bits(lossy) == 0) return Color(kNone);
-    const Floats lost = xsimd::select(lossy, kOne - tables.energy, kNone), kept = kOne - tables.mean_lost;
+    const Floats mean = max(tables.mean_lost, Floats(kLeast));
+    const Floats lost = xsimd::select(tables.mean_lost < Floats(kLeast), kNone, kOne - tables.energy);
+    if (lane_bits(lost > kNone) == 0) return Color(kNone);
+    const Floats factor = lost * (kOne - mean) * Floats(kInvPi) / mean;
     const auto channel = [&](const Floats& r) {
         const Floats average = r + (kOne - r) * Floats(1.0f / 21); // schlick_average
-        return average * average * kept / (kOne - average * tables.mean_lost) * lost;
+        return average * average * factor / (kOne - average * mean);
     };
     return {channel(normal.r), channel(normal.g), channel(normal.b)};
 }
@@ -38,7 +39,7 @@ Color several_reflections(const Color& normal, const LobeTables& tables) {
 
 LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tables& tables)
     : p_(gbuffer.points(x, y)), z_(gbuffer.normal.vector(x, y)), lanes_(lanes),
-      diffuse_(gbuffer.diffuse.color(x, y)) {
+      diffuse_(gbuffer.diffuse.color(x, y) * Floats(kInvPi)) {
     constexpr float kRounding = 1e-5f; // of the distance; floats of the depth and the light's plane leave a tenth
     rounding_ = xsimd::sqrt(dot(p_, p_)) * Floats(kRounding);
     const Vec3T<Floats> v = gbuffer.projection.to_viewer(p_);
@@ -62,27 +63,23 @@ LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tab
     if (!gbuffer.coat.empty()) coat = load(gbuffer.coat, x, y);
     if (const Lanes coated = lanes_ & (coat > kNone); lane_bits(coated) != 0) {
         const Floats width = load(gbuffer.coat_alpha, x, y);
-        const LobeTables table = tables.coat(width, wo_.z, coated);
-        Lobe& lobe = add_lobe(table, Color(Floats(LayeredBsdf::kCoatNormal)), width, coated);
-        const Color several = several_reflections(lobe.normal, table);
-        under = kOne - coat * min(lobe.albedo.r * Floats(kPi) + several.r * table.mean_lost, kOne);
-        lobe.weight = coat, lobe.albedo *= coat;
-        diffuse_ += black_outside(coated, several * coat);
+        const Lobe& lobe = add_lobe(tables.coat, Color(Floats(LayeredBsdf::kCoatNormal)), width, coat, coated);
+        under = kOne - (lobe.albedo.r + lobe.several.r * lobe.mean_lost) * Floats(kPi);
     }
-    if (lane_bits(specular) != 0) {
-        const LobeTables table = tables.specular(alpha, wo_.z, specular);
-        Lobe& lobe = add_lobe(table, normal, alpha, specular);
-        lobe.weight = under, lobe.albedo *= under;
-        diffuse_ += black_outside(specular, several_reflections(normal, table) * under);
-    }
-    diffuse_ *= Floats(kInvPi);
+    if (lane_bits(specular) != 0) add_lobe(tables.specular, normal, alpha, under, specular);
+    uniform_ = diffuse_;
+    for (std::size_t i = 0; i < lobe_count_; ++i)
+        uniform_ += black_outside(lobes_[i].lanes, lobes_[i].several * lobes_[i].mean_lost);
 }
 
-LitBatch::Lobe& LitBatch::add_lobe(const LobeTables& t, const Color& normal, const Floats& alpha, const Lanes& lanes) {
+const LitBatch::Lobe& LitBatch::add_lobe(LobeLookup& lookup, const Color& normal, const Floats& alpha,
+                                         const Floats& weight, const Lanes& lanes) {
+    const LobeTables t = lookup(alpha, wo_.z, lanes);
     Lobe& lobe = lobes_[lobe_count_++];
-    lobe.cosine_space = CosineSpaceT<Floats>::of(t.m11, t.m13, t.m22, t.m31, t.m33);
-    lobe.alpha = alpha, lobe.normal = normal, lobe.lanes = lanes;
-    lobe.albedo = (normal + (Color(kOne) - normal) * t.share) * (t.energy * Floats(kInvPi));
+    lobe.lookup = &lookup, lobe.cosine_space = CosineSpaceT<Floats>::of(t.m11, t.m13, t.m22, t.m31, t.m33);
+    lobe.alpha = alpha, lobe.normal = normal, lobe.weight = weight, lobe.lanes = lanes, lobe.mean_lost = t.mean_lost;
+    lobe.albedo = (normal + (Color(kOne) - normal) * t.share) * (t.energy * weight * Floats(kInvPi));
+    lobe.several = several_reflections(normal, t) * weight;
     return lobe;
 }
 
@@ -103,7 +100,7 @@ template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light, c
     };
     Color sum(kNone);
     if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
-        sum += diffuse_ * form_factor(polygon, diffuse);
+        sum += uniform_ * form_factor(polygon, diffuse);
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         const Lobe& lobe = lobes_[i];
         const auto& to_cosine = lobe.cosine_space;
@@ -126,7 +123,7 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     const Floats sine2 = min(radius2 * inverse * inverse, Floats(1 - 1e-6f));
     Color sum(kNone);
     if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
-        sum += diffuse_ * xsimd::select(inside, Floats(kPi),
+        sum += uniform_ * xsimd::select(inside, Floats(kPi),
                                         sphere_form_factor_times_pi(height * inverse, sine2, diffuse));
     if (lobe_count_ == 0) return black_outside(lanes, sum) * spread_color(light.emitted);
     const Vec3T<Floats> d = local(way * inverse);
@@ -148,7 +145,10 @@ Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance
         const Vec3T<Floats> w(dot(wi, x_), dot(wi, y_), max(cosine, Floats(1e-6f)));
         const MicrofacetT<Floats> h = microfacet(wo_, w);
         const Color fresnel = fresnel_schlick(lobe.normal, h.cosine);
-        sum += black_outside(lobe.lanes, fresnel * (ggx_reflection(wo_, w, h.normal, lobe.alpha) * lobe.weight));
+        Color reflected = fresnel * (ggx_reflection(wo_, w, h.normal, lobe.alpha) * lobe.weight);
+        const Lanes lossy = lanes & lobe.lanes & (max_component(lobe.several) > kNone);
+        if (lane_bits(lossy) != 0) reflected += lobe.several * lobe.lookup->lost(lobe.alpha, w.z, lossy);
+        sum += black_outside(lobe.lanes, reflected);
     }
     return black_outside(lanes, sum * (cosine * irradiance));
 }
@@ -167,7 +167,7 @@ Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lane
 }
 
 Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
-    const Lanes diffuse = lobes == Lobes::kAll ? lanes_ & (max_component(diffuse_) > kNone) : Lanes(false);
+    const Lanes diffuse = lobes == Lobes::kAll ? lanes_ & (max_component(uniform_) > kNone) : Lanes(false);
     switch (light.kind) {
     case FrameLight::Kind::kTriangle: return from_polygon<3>(light, diffuse);
     case FrameLight::Kind::kQuad: return from_polygon<4>(light, diffuse);
@@ -180,6 +180,6 @@ Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
     return Color(kNone);
 }
 
-Color LitBatch::diffuse(const Color& irradiance) const { return black_outside(lanes_, diffuse_ * irradiance); }
+Color LitBatch::diffuse(const Color& irradiance) const { return black_outside(lanes_, uniform_ * irradiance); }
 
 } // namespace duet::raster

@@ -34,16 +34,20 @@ public:
 
 private:
     struct Lobe {
+        LobeLookup* lookup;
         CosineSpaceT<Floats> cosine_space;
         Floats alpha;
-        RgbT<Floats> normal;    ///< reflectance at normal incidence
-        Floats weight;          ///< fraction of the lobe's light that is seen
-        RgbT<Floats> albedo;    ///< fraction of uniform light that is reflected once, times weight / π
-        Lanes lanes;            ///< where the lobe exists
+        RgbT<Floats> normal;  ///< reflectance at normal incidence
+        Floats weight;        ///< fraction of the lobe's light that is seen
+        RgbT<Floats> albedo;  ///< fraction of uniform light that is reflected once, times weight / π
+        RgbT<Floats> several; ///< BRDF of light that is reflected several times, over the lost fraction of its direction
+        Floats mean_lost;
+        Lanes lanes;          ///< where the lobe exists
     };
 
     Vec3T<Floats> local(const Vec3T<Floats>& v) const { return {dot(x_, v), dot(y_, v), dot(z_, v)}; }
-    Lobe& add_lobe(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha, const Lanes& lanes);
+    const Lobe& add_lobe(LobeLookup& lookup, const RgbT<Floats>& normal, const Floats& alpha, const Floats& weight,
+                         const Lanes& lanes);
     template <std::size_t N> RgbT<Floats> from_polygon(const FrameLight& light, const Lanes& diffuse_lanes) const;
     RgbT<Floats> from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const;
     RgbT<Floats> from_position(const FrameLight& light, const Lanes& diffuse_lanes) const;
@@ -53,7 +57,8 @@ private:
     Vec3T<Floats> wo_;            ///< local unit direction to the viewer
     Floats rounding_;               ///< greatest error of a point's position, m
     Lanes lanes_;
-    RgbT<Floats> diffuse_;        ///< BRDF of all light that is nearly uniform over directions
+    RgbT<Floats> diffuse_;        ///< BRDF of the diffuse lobe
+    RgbT<Floats> uniform_;        ///< with light that is reflected several times, for light from an area
     std::array<Lobe, 2> lobes_;
     std::size_t lobe_count_ = 0;
 };
