@@ -12,7 +12,7 @@ constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
-                const ShadowLookup* shadows, DirectLight& result)
+                 const ShadowLookup* shadows, DirectLight& result)
         : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), result_(result) {}
 
     /// Lights a row of pixels by all lights.

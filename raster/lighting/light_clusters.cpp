@@ -30,7 +30,7 @@ Lanes Cluster::lanes(const GBuffer& gbuffer, int column, int row) const {
     const auto reflects = [&](const Planes3& c) { return max_component(c.color(column, row)) > kNone; };
     Lanes in_box = reflects(gbuffer.diffuse) | reflects(gbuffer.specular);
     for (const auto& [axis, plane] : {std::pair(&Vec3::x, &gbuffer.normal.x), std::pair(&Vec3::y, &gbuffer.normal.y),
-                                     std::pair(&Vec3::z, &gbuffer.normal.z)}) {
+                                      std::pair(&Vec3::z, &gbuffer.normal.z)}) {
         if (n_low.*axis == -kAll && n_high.*axis == kAll) continue;
         const Floats n = load(*plane, column, row);
         in_box = in_box & (n >= Floats(n_low.*axis)) & (n < Floats(n_high.*axis));

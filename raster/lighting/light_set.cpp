@@ -40,9 +40,10 @@ void LightSet::assign(const LightSet& other, std::span<const std::uint32_t> colu
         const std::size_t count = std::min(kBatch, columns.size() - i);
         alignas(64) std::array<std::int32_t, kBatch> from{};
         std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(i), count, from.begin());
-        const Floats used = xsimd::select(load(kLanesAsFloats, 0) < Floats(static_cast<float>(count)), Floats(1.0f), kNone);
+        const Lanes exists = load(kLanesAsFloats, 0) < Floats(static_cast<float>(count));
         for (int r = 0; r < kRows; ++r)
-            (gather(other.row(r), Ints::load_aligned(from.data())) * used).store_aligned(row(r) + i);
+            xsimd::select(exists, gather(other.row(r), Ints::load_aligned(from.data())), kNone)
+                .store_aligned(row(r) + i);
     }
 }
 
@@ -78,7 +79,8 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
             area = kPi * sqr(light.radius), most = kPi * power;
             break;
         }
-        case FrameLight::Kind::kPoint: break;
+        case FrameLight::Kind::kPoint:
+            break;
         case FrameLight::Kind::kSpot:
             axis = light.axis, plane = light.cos_outer >= 0 ? dot(axis, light.position) : -kHuge;
             set(kConeCosine, light.cos_outer), set(kConeSine, safe_sqrt(1 - sqr(light.cos_outer)));

@@ -63,13 +63,24 @@ public:
 
 private:
     enum Row {
-        kLowX, kLowY, kLowZ, kHighX, kHighY, kHighZ, ///< box around the light
-        kAxisX, kAxisY, kAxisZ, kPlane,              ///< front: axis·p > plane
-        kConeCosine, kConeSine,                      ///< of a spot's outer angle; both 0 for others
-        kRadius,                                     ///< of the box
-        kIntensity,                                  ///< W/sr, as in common/light/light_bounds.h; 0 in unused columns
-        kMost,                                       ///< greatest irradiance, W/m²
-        kRed, kGreen, kBlue,                         ///< intensity in W/sr, or 0 if the light never counts as far
+        kLowX,
+        kLowY,
+        kLowZ,
+        kHighX,
+        kHighY,
+        kHighZ, ///< box around the light
+        kAxisX,
+        kAxisY,
+        kAxisZ,
+        kPlane, ///< front: axis·p > plane
+        kConeCosine,
+        kConeSine,  ///< of a spot's outer angle; both 0 for others
+        kRadius,    ///< of the box
+        kIntensity, ///< W/sr, as in common/light/light_bounds.h; 0 in unused columns
+        kMost,      ///< greatest irradiance, W/m²
+        kRed,
+        kGreen,
+        kBlue, ///< intensity in W/sr, or 0 if the light never counts as far
         kRows
     };
     void resize(std::size_t count);

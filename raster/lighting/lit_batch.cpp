@@ -123,8 +123,8 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     const Floats sine2 = min(radius2 * inverse * inverse, Floats(1 - 1e-6f));
     Color sum(kNone);
     if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
-        sum += uniform_ * xsimd::select(inside, Floats(kPi),
-                                        sphere_form_factor_times_pi(height * inverse, sine2, diffuse));
+        sum += uniform_ *
+               xsimd::select(inside, Floats(kPi), sphere_form_factor_times_pi(height * inverse, sine2, diffuse));
     if (lobe_count_ == 0) return black_outside(lanes, sum) * spread_color(light.emitted);
     const Vec3T<Floats> d = local(way * inverse);
     for (std::size_t i = 0; i < lobe_count_; ++i)
@@ -133,8 +133,7 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     return black_outside(lanes, sum) * spread_color(light.emitted);
 }
 
-Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance,
-                               const Lanes& diffuse_lanes) const {
+Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const {
     const Floats cosine = dot(wi, z_);
     const Lanes lanes = lanes_ & (cosine > kNone) & (irradiance > kNone);
     if (lane_bits(lanes) == 0) return Color(kNone);
@@ -169,11 +168,15 @@ Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lane
 Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
     const Lanes diffuse = lobes == Lobes::kAll ? lanes_ & (max_component(uniform_) > kNone) : Lanes(false);
     switch (light.kind) {
-    case FrameLight::Kind::kTriangle: return from_polygon<3>(light, diffuse);
-    case FrameLight::Kind::kQuad: return from_polygon<4>(light, diffuse);
-    case FrameLight::Kind::kSphere: return from_sphere(light, diffuse);
+    case FrameLight::Kind::kTriangle:
+        return from_polygon<3>(light, diffuse);
+    case FrameLight::Kind::kQuad:
+        return from_polygon<4>(light, diffuse);
+    case FrameLight::Kind::kSphere:
+        return from_sphere(light, diffuse);
     case FrameLight::Kind::kPoint:
-    case FrameLight::Kind::kSpot: return from_position(light, diffuse);
+    case FrameLight::Kind::kSpot:
+        return from_position(light, diffuse);
     case FrameLight::Kind::kSun:
         return from_direction(spread<Floats>(light.axis), kOne, diffuse) * spread_color(light.emitted);
     }

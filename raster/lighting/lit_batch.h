@@ -22,8 +22,8 @@ public:
 
     /// Selects the lobes that reflect.
     enum class Lobes { kAll, kSpecular };
-    /// Returns the radiance that the lobes reflect of one light without shadows, 0 in other lanes. Only light from above
-    /// the plane of the shading normal counts. An emitter does not light points in its own plane.
+    /// Returns the radiance that the lobes reflect of one light without shadows, 0 in other lanes. Only light from
+    /// above the plane of the shading normal counts. An emitter does not light points in its own plane.
     RgbT<Floats> reflected(const FrameLight& light, Lobes lobes = Lobes::kAll) const;
     /// Returns the radiance that all but the specular lobes reflect of an irradiance.
     RgbT<Floats> diffuse(const RgbT<Floats>& irradiance) const;
@@ -37,12 +37,13 @@ private:
         LobeLookup* lookup;
         CosineSpaceT<Floats> cosine_space;
         Floats alpha;
-        RgbT<Floats> normal;  ///< reflectance at normal incidence
-        Floats weight;        ///< fraction of the lobe's light that is seen
-        RgbT<Floats> albedo;  ///< fraction of uniform light that is reflected once, times weight / π
-        RgbT<Floats> several; ///< BRDF of light that is reflected several times, over the lost fraction of its direction
+        RgbT<Floats> normal; ///< reflectance at normal incidence
+        Floats weight;       ///< fraction of the lobe's light that is seen
+        RgbT<Floats> albedo; ///< fraction of uniform light that is reflected once, times weight / π
+        RgbT<Floats>
+            several; ///< BRDF of light that is reflected several times, over the lost fraction of its direction
         Floats mean_lost;
-        Lanes lanes;          ///< where the lobe exists
+        Lanes lanes; ///< where the lobe exists
     };
 
     Vec3T<Floats> local(const Vec3T<Floats>& v) const { return {dot(x_, v), dot(y_, v), dot(z_, v)}; }
@@ -55,10 +56,10 @@ private:
 
     Vec3T<Floats> p_, x_, y_, z_; ///< the point relative to the eye; the axes of the frame
     Vec3T<Floats> wo_;            ///< local unit direction to the viewer
-    Floats rounding_;               ///< greatest error of a point's position, m
+    Floats rounding_;             ///< greatest error of a point's position, m
     Lanes lanes_;
-    RgbT<Floats> diffuse_;        ///< BRDF of the diffuse lobe
-    RgbT<Floats> uniform_;        ///< with light that is reflected several times, for light from an area
+    RgbT<Floats> diffuse_; ///< BRDF of the diffuse lobe
+    RgbT<Floats> uniform_; ///< with light that is reflected several times, for light from an area
     std::array<Lobe, 2> lobes_;
     std::size_t lobe_count_ = 0;
 };
