@@ -49,7 +49,7 @@ struct PreparedData {
     /// spheres.
     bool unsampled_emitters = false;
     std::int64_t memory_bytes = 0;
-    std::shared_ptr<const Shadows> shadows{};         ///< null if the settings or the scene need none
+    std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
