@@ -182,11 +182,24 @@ void Account::add(const Screen& screen, GeometryPool& pool) {
     look_bytes = std::max(look_bytes, screen.memory_bytes() + pool.memory_bytes());
 }
 
+void Account::add_stage(std::string_view stage, double seconds) {
+    const auto found = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.first == stage; });
+    if (found == stages.end())
+        stages.emplace_back(stage, seconds);
+    else
+        found->second += seconds;
+}
+
 std::vector<std::pair<std::string, double>> Account::seconds() const {
     const double cover = static_cast<double>(cover_work), work = cover + static_cast<double>(shade_work);
     const double covering = work > 0 ? tiles * cover / work : 0;
-    return {{"transform", transform},    {"setup", setup},    {"bin", bin}, {"prepass", prepass}, {"cover", covering},
-            {"shade", tiles - covering}, {"resolve", resolve}};
+    std::vector<std::pair<std::string, double>> result{{"transform", transform}, {"setup", setup}, {"bin", bin}};
+    if (stages.empty())
+        result.insert(result.end(), {{"prepass", prepass}, {"cover", covering}, {"shade", tiles - covering}});
+    else
+        result.insert(result.end(), stages.begin(), stages.end());
+    result.emplace_back("resolve", resolve);
+    return result;
 }
 
 void Progress::step() {

@@ -16,6 +16,7 @@ namespace duet::raster {
 
 /// Accumulates the statistics during a rendering. Several threads may add to the atomic members.
 struct Account {
+    std::vector<std::pair<std::string, double>> stages; ///< of deferred shading, in order: seconds of wall-clock time
     double transform = 0, setup = 0, bin = 0, prepass = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
     std::atomic<std::int64_t> cover_work{0}, shade_work{0};           ///< nanoseconds, summed over threads
     std::atomic<std::size_t> tiles_done{0};                           ///< over all passes
@@ -25,6 +26,8 @@ struct Account {
     std::size_t picture_bytes = 0;
 
     void add(const Geometry& geometry);
+    /// Adds to the seconds of a stage of deferred shading.
+    void add_stage(std::string_view stage, double seconds);
     /// Adds a G-buffer and the memory that its pass returned to the pool.
     void add(const Screen& screen, GeometryPool& pool);
     /// Returns the wall-clock seconds by stage. Coverage and shading alternate in each tile, so the time of the

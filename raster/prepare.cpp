@@ -2,8 +2,13 @@
 
 #include "raster/geometry/geometry.h"
 #include "raster/light/prefiltered.h"
+#include "raster/probes/glass_shapes.h"
+#include "raster/probes/irradiance_probes.h"
+#include "raster/probes/reflection_probes.h"
 #include "raster/screen/surroundings.h"
+#include "raster/shading/deferred.h"
 #include "raster/shadow/shadows.h"
+#include "raster/shadows/map_shadows.h"
 
 #include "common/system/error.h"
 
@@ -126,6 +131,25 @@ void prepare_glossy(const Settings& settings, PreparedData& data) {
     }
 }
 
+/// Renders the probes of deferred shading.
+void prepare_probes(const Settings& settings, PreparedData& data) {
+    const Scene& scene = data.scene;
+    if (settings.indirect_light) {
+        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
+    if (std::ranges::none_of(scene.materials, reflects)) return;
+    const int side = std::holds_alternative<ImageEnvironment>(scene.environment) ? 256 : 32;
+    const bool shown = settings.environment && scene.needs.environment;
+    data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
+        return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), Rgb(), kInfinity};
+    }, settings.threads);
+    data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
+    data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
+    data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
+                                                   data.reflection_probes->memory_bytes());
+}
+
 } // namespace
 
 Prepared prepare(const Scene& scene, const Settings& settings) {
@@ -160,6 +184,7 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
         static_cast<std::int64_t>(packed + sizeof(PreparedData) + data.objects.size() * sizeof(PreparedObject) +
                                   scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<GeometryPool>();
+    data.deferred_frames = std::make_shared<DeferredFramePool>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMostCells)
@@ -170,8 +195,11 @@ Prepared prepare(const Scene& scene, const Settings& settings) {
     if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();
+        if (settings.quality == Quality::kRealtime)
+            data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
     }
     if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
+    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime) prepare_probes(settings, data);
     return Prepared(std::make_shared<const PreparedData>(std::move(data)));
 }
 

@@ -23,8 +23,14 @@ struct PreparedObject {
     bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };
 
+class DeferredFramePool; // raster/shading/deferred.h
 class GeometryPool; // raster/geometry/geometry.h
+class SoftShadowMaps; // raster/shadows/map_shadows.h
 class Shadows;      // raster/shadow/shadows.h
+class IrradianceProbes; // raster/probes/irradiance_probes.h
+class RadianceMap; // raster/probes/radiance_map.h
+class ReflectionProbes; // raster/probes/reflection_probes.h
+class GlassShapes; // raster/probes/glass_shapes.h
 class Prefiltered;  // raster/light/prefiltered.h
 
 struct PreparedData {
@@ -50,9 +56,15 @@ struct PreparedData {
     bool unsampled_emitters = false;
     std::int64_t memory_bytes = 0;
     std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
+    std::shared_ptr<const SoftShadowMaps> soft_shadows{}; ///< likewise
+    std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
+    std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
+    std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
+    std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
     std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !open_polygonal.empty() || !open_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
+    std::shared_ptr<DeferredFramePool> deferred_frames{}; ///< likewise
 };
 
 } // namespace duet::raster

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     std::string shading_name = "lit", quality_name = "high", occlusion_name = "gtao";
     double occlusion_radius = 0;
     bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
-    bool screen_reflections = true, screen_refractions = true, prefiltered = true, transformed_cosines = true;
+    bool indirect = true, screen_reflections = true, screen_refractions = true, prefiltered = true, transformed_cosines = true;
     int multisamples = 0;
     int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
     RenderProgram program;
@@ -53,6 +53,8 @@ int main(int argc, char** argv) {
                      "Smooth and moderately rough metal mirrors what the picture shows (default: on)");
         app.add_flag("--screen-refractions,!--no-screen-refractions", screen_refractions,
                      "Glass shows what the picture shows without it (default: on)");
+        app.add_flag("--indirect,!--no-indirect", indirect,
+                     "With --quality realtime: light between surfaces, by irradiance probes (default: on)");
         app.add_flag("--no-culling", no_culling,
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
@@ -74,6 +76,7 @@ int main(int argc, char** argv) {
         settings.screen_reflections = screen_reflections;
         settings.screen_refractions = screen_refractions;
         settings.shadows = shadows;
+        settings.indirect_light = indirect;
         settings.shadow_map_side = shadow_map_side;
         settings.shadow_cells = shadow_cells;
         settings.skips.frustum = settings.skips.back_faces = !no_culling;

@@ -261,10 +261,16 @@ void render_deferred(const Frame& frame, const CameraModel& camera, const View& 
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
     frame.account.add(frame.geometry);
     const Stopwatch watch;
-    for (const SampleOffset offset : pass.samples)
-        if (!frame.control.stopped())
-            use(shade_deferred(frame.data, frame.settings, frame.geometry, pass_view, frame.grid, offset,
-                               frame.control));
+    DeferredFramePool& pool = *frame.data.deferred_frames;
+    std::unique_ptr<DeferredFrame> images = pool.take();
+    for (const SampleOffset offset : pass.samples) {
+        if (frame.control.stopped()) break;
+        shade_deferred(frame.data, frame.settings, frame.geometry, pass_view, frame.grid, offset, frame.control,
+                       *images);
+        for (const auto& [stage, seconds] : images->seconds) frame.account.add_stage(stage, seconds);
+        use(images->radiance);
+    }
+    pool.give_back(std::move(images));
     frame.account.tiles += watch.seconds();
     for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.account.tiles_done += 1, frame.progress.step();
 }

@@ -77,6 +77,7 @@ struct Settings : RenderSettings {
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
     AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: on diffuse surfaces
+    bool indirect_light = true; ///< Shading::kLit, Quality::kRealtime: light between surfaces, from irradiance probes
     /// Occluders of the environment are at most this far away, in meters. 0 stands for half (with SSAO an eighth) of
     /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point.
     double occlusion_radius = 0;

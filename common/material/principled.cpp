@@ -18,14 +18,16 @@ LayeredBsdf Principled::at(const TextureSet& textures, const SurfacePoint& point
                         evaluate_unit(textures, clearcoat_roughness, point)});
 }
 
+/// The boundary reflects 1 − (1 − F̅)/η², because only 1/η² of the directions can leave (Kubelka's relation; Egan and
+/// Hilgeman 1973).
+float Coated::back() const { return 1 - (1 - schlick_average(Rgb(normal_reflectance(ior))).r) / sqr(ior); }
+
 LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) const {
     const Rgb bare = evaluate_reflectance(textures, albedo, point);
     const float normal = normal_reflectance(ior);
-    // The boundary reflects the fraction 1 − (1 − F̅)/η² of diffuse light from below: only 1/η² of the
-    // directions can leave (Kubelka's relation; Egan and Hilgeman 1973). `deep` sums the series of all such
-    // reflections; white stays white.
-    const float back = 1 - (1 - schlick_average(Rgb(normal)).r) / sqr(ior);
-    const auto deep = [back](float x) { return x * (1 - back) / (1 - x * back); };
+    // `deep` sums the series of all reflections from below; white stays white.
+    const float reflected = back();
+    const auto deep = [reflected](float x) { return x * (1 - reflected) / (1 - x * reflected); };
     return LayeredBsdf(
         {{deep(bare.r), deep(bare.g), deep(bare.b)}, 0, normal, evaluate_unit(textures, roughness, point), 0, 0});
 }

@@ -30,6 +30,8 @@ struct Coated {
     float ior = 1.5f;           ///< index of refraction of the coat, in [1, 4]
 
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the fraction of diffuse light from below that the coat reflects back down.
+    float back() const;
 };
 
 } // namespace duet

@@ -2,8 +2,7 @@
 
 #include "raster/gbuffer/surface_lobes.h"
 #include "raster/shader/one_sample.h"
-#include "raster/shader/strip_shader.h"
-#include "raster/shadings/shadings.h"
+#include "raster/shader/program.h"
 #include "raster/visibility/cover.h"
 #include "raster/visibility/strip_samples.h"
 
@@ -16,33 +15,37 @@
 namespace duet::raster {
 namespace {
 
-/// Describes how a material's lobes follow from the base color alone, so that they need no surface point.
-struct ColorToLobes {
-    enum class Kind { kDiffuse, kMetal, kOther };
-    Kind kind = Kind::kOther;
-    float alpha = 1;
+/// Computes the attributes that vary over a surface.
+struct AttributeShader : NormalVaryings {
+    static constexpr bool kDirections = false;
+    template <typename T, typename F> NormalAndColor<T> fragment(const F& f) const {
+        return {f.normal(f.at.n).unit(), f.base_color()};
+    }
 };
 
-ColorToLobes color_to_lobes(const Material& material) {
-    if (const auto* diffuse = std::get_if<Diffuse>(&material); diffuse != nullptr && !diffuse->rough())
-        return {ColorToLobes::Kind::kDiffuse, 1};
-    if (std::holds_alternative<Emissive>(material)) return {ColorToLobes::Kind::kDiffuse, 1};
-    if (const auto* metal = std::get_if<Metal>(&material);
-        metal != nullptr && metal->roughness.constant() && !metal->conductor.exists())
-        return {ColorToLobes::Kind::kMetal, sqr(clamp(metal->roughness.value, 0.0f, 1.0f))};
-    return {};
+/// Stores a packet's values, two rows of eight pixels, in a plane. The row below the image is left out.
+template <typename T> void store_packet(const StripOf<T>& packet, int x, int y, Plane<T>& plane) {
+    std::copy_n(packet.at(0), kStripWidth, plane.row(y) + x);
+    if (y + 1 < plane.height()) std::copy_n(packet.at(kStripWidth), kStripWidth, plane.row(y + 1) + x);
 }
+
+/// Holds what all tiles share.
+struct Frame {
+    const PreparedData& data;
+    const Geometry& geometry;
+    const PassView& view;
+    std::vector<std::optional<LobesOfColor>> of_color; ///< by material
+    std::vector<bool> emits;                           ///< by material
+    AttributeShader shader{};
+};
 
 /// Fills the G-buffer of one tile, packet by packet.
 class TileFiller {
 public:
-    TileFiller(const PreparedData& data, const Geometry& geometry, const PassView& view,
-               std::span<const ColorToLobes> shortcuts, const Program& normals, const Program& colors,
-               const DepthTile& tile, GBuffer& gbuffer, Planes3& emission)
-        : data_(data), scene_(data.scene), geometry_(geometry), view_(view), shortcuts_(shortcuts), tile_(tile),
-          gbuffer_(gbuffer), emission_(emission), reader_(geometry.triangles),
-          normals_(normals.for_tile(data, geometry, view, tile.rect())),
-          colors_(colors.for_tile(data, geometry, view, tile.rect())) {}
+    TileFiller(const Frame& frame, const DepthTile& tile, GBuffer& gbuffer, Planes3& emission)
+        : scene_(frame.data.scene), geometry_(frame.geometry), view_(frame.view), of_color_(frame.of_color),
+          emits_(frame.emits), tile_(tile), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
+          shader_(frame.data, geometry_, view_, tile.rect(), frame.shader) {}
 
     void run() {
         const PixelRect& rect = tile_.rect();
@@ -51,53 +54,139 @@ public:
     }
 
 private:
-    void fill_packet(int x0, int y0) {
-        const StripPlace place = strip_place(tile_, x0, y0);
-        StripSamples samples;
-        reader_.read(place.ids, samples);
-        if (samples.seen == 0) return;
-        StripColors n, color;
-        normals_->shade(place, n);
-        colors_->shade(place, color);
+    void fill_packet(int x, int y) {
+        const StripPlace place = strip_place(tile_, x, y);
+        reader_.read(place.ids, samples_);
+        if (samples_.seen == 0) return clear_packet(x, y);
+        shader_.shade(place, shaded_);
+        find_materials();
+        store_packet(object_, x, y, gbuffer_.object);
+        store_packet(material_, x, y, gbuffer_.material);
+        clear_emission(x, y);
+        store_depths_and_normals(place);
+        const auto of_packet = static_cast<std::uint32_t>(material_[static_cast<std::size_t>(
+            std::countr_zero(samples_.seen))]);
+        if (one_material_ && of_color_[of_packet])
+            fill_lobes(place, *of_color_[of_packet]);
+        else
+            for_each_seen(place, [&](int column, int row, std::size_t i) { fill_lobes(column, row, i, place); });
+        if (emits_[of_packet] || !one_material_)
+            for_each_seen(place, [&](int column, int row, std::size_t i) { add_emission(column, row, i, place); });
+    }
+
+    /// Marks a packet as background; its other attributes are not read.
+    void clear_packet(int x, int y) {
+        static const StripOf<float> kZero{};
+        StripOf<std::int32_t> none;
+        none.fill(-1);
+        store_packet(kZero, x, y, gbuffer_.reversed_depth);
+        store_packet(none, x, y, gbuffer_.object);
+        store_packet(none, x, y, gbuffer_.material);
+        clear_emission(x, y);
+    }
+    void clear_emission(int x, int y) {
+        static const StripOf<float> kZero{};
+        for (PlaneFloat* plane : {&emission_.x, &emission_.y, &emission_.z}) store_packet(kZero, x, y, *plane);
+    }
+
+    template <typename Visit> void for_each_seen(const StripPlace& place, const Visit& visit) const {
         const PixelRect& rect = tile_.rect();
-        for (std::uint32_t left = samples.seen; left != 0; left &= left - 1) {
+        for (std::uint32_t left = samples_.seen; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
-            if (x >= rect.x1 || y >= rect.y1) continue;
-            const Vec3 normal(2 * n.r[i] - 1, 2 * n.g[i] - 1, 2 * n.b[i] - 1);
-            gbuffer_.reversed_depth(x, y) = place.nearness[i];
-            fill_pixel(x, y, samples.id(i), normal / max(length(normal), 1e-6f),
-                       Rgb(color.r[i], color.g[i], color.b[i]), place.position(i));
+            const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
+            if (x < rect.x1 && y < rect.y1) visit(x, y, i);
         }
     }
 
-    void fill_pixel(int x, int y, std::uint32_t id, Vec3 normal, Rgb color, Vec2d pixel) {
-        const auto [object, primitive] = object_and_primitive(id);
-        const std::uint32_t material = material_index(scene_, object, primitive);
-        gbuffer_.object(x, y) = static_cast<std::int32_t>(object);
-        gbuffer_.material(x, y) = static_cast<std::int32_t>(material);
-        gbuffer_.normal.set_at(x, y, normal);
-        if (emitter(scene_.materials[material]) != nullptr)
-            emission_.set_at(x, y, hit_emission(scene_, view_, find_hit(geometry_, view_, id, pixel), pixel, 1));
-        const SurfaceLobes lobes = lobes_of(material, color, id, normal, pixel);
+    /// Finds each sample's object and material. Most packets see one object with one material.
+    void find_materials() {
+        one_material_ = true;
+        if (samples_.object != nullptr) {
+            const std::uint32_t object = samples_.object->object;
+            if (const auto& materials = scene_.objects[object].materials; materials.size() == 1) {
+                object_.fill(static_cast<std::int32_t>(object));
+                material_.fill(static_cast<std::int32_t>(materials.front()));
+                return;
+            }
+        }
+        object_.fill(-1), material_.fill(-1);
+        std::int32_t first = -1;
+        for (std::uint32_t left = samples_.seen; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const auto [object, primitive] = object_and_primitive(samples_.id(i));
+            object_[i] = static_cast<std::int32_t>(object);
+            material_[i] = static_cast<std::int32_t>(material_index(scene_, object, primitive));
+            if (first < 0) first = material_[i];
+            one_material_ = one_material_ && material_[i] == first;
+        }
+    }
+
+    void store_depths_and_normals(const StripPlace& place) {
+        StripOf<float> depth;
+        for (std::size_t i = 0; i < kStrip; i += Floats::size)
+            store(depth, i, xsimd::select(lanes_from<float>(samples_.seen >> i),
+                                          Floats::load_aligned(place.nearness + i), Floats(0.0f)));
+        store_packet(depth, place.x, place.y, gbuffer_.reversed_depth);
+        store_packet(shaded_.normal.x, place.x, place.y, gbuffer_.normal.x);
+        store_packet(shaded_.normal.y, place.x, place.y, gbuffer_.normal.y);
+        store_packet(shaded_.normal.z, place.x, place.y, gbuffer_.normal.z);
+    }
+
+    /// Fills the lobes of a packet of one material, in lanes.
+    void fill_lobes(const StripPlace& place, const LobesOfColor& lobes) {
+        StripColors diffuse, specular;
+        StripOf<float> constant;
+        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
+            const StripColors& base = shaded_.color;
+            const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
+            const RgbT<Floats> d = lobes.diffuse(color, cosines(place, i)), s = lobes.specular(color);
+            store(diffuse.r, i, d.r), store(diffuse.g, i, d.g), store(diffuse.b, i, d.b);
+            store(specular.r, i, s.r), store(specular.g, i, s.g), store(specular.b, i, s.b);
+        }
+        store_packet(diffuse.r, place.x, place.y, gbuffer_.diffuse.x);
+        store_packet(diffuse.g, place.x, place.y, gbuffer_.diffuse.y);
+        store_packet(diffuse.b, place.x, place.y, gbuffer_.diffuse.z);
+        store_packet(specular.r, place.x, place.y, gbuffer_.specular.x);
+        store_packet(specular.g, place.x, place.y, gbuffer_.specular.y);
+        store_packet(specular.b, place.x, place.y, gbuffer_.specular.z);
+        constant.fill(lobes.alpha), store_packet(constant, place.x, place.y, gbuffer_.alpha);
+        if (gbuffer_.coat.empty()) return;
+        constant.fill(lobes.coat), store_packet(constant, place.x, place.y, gbuffer_.coat);
+        constant.fill(lobes.coat_alpha), store_packet(constant, place.x, place.y, gbuffer_.coat_alpha);
+    }
+
+    /// Returns the cosines between shading normal and viewer.
+    Floats cosines(const StripPlace& place, std::size_t i) const {
+        const auto at = [&](const StripOf<float>& offsets, int start) {
+            return load(offsets, i) + Floats(static_cast<float>(start));
+        };
+        const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, place.x), at(kRows<float>, place.y),
+                                                          Floats(gbuffer_.projection.near()));
+        return dot(Vec3T<Floats>{load(shaded_.normal.x, i), load(shaded_.normal.y, i), load(shaded_.normal.z, i)}, gbuffer_.projection.to_viewer(p));
+    }
+
+    void add_emission(int x, int y, std::size_t i, const StripPlace& place) {
+        if (!emits_[static_cast<std::size_t>(material_[i])]) return;
+        const Vec2d pixel = place.position(i);
+        const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
+        emission_.set_at(x, y, hit_emission(scene_, view_, hit, pixel, 1));
+    }
+
+    /// Fills the lobes of one pixel, whose material has parameters that vary over the surface.
+    void fill_lobes(int x, int y, std::size_t i, const StripPlace& place) {
+        const Vec2d pixel = place.position(i);
+        const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
+        const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
+        const RayFootprint footprint =
+            scene_.needs.footprints ? PixelFootprint(view_.pinhole, 1).at(ray, hit.t) : RayFootprint{};
+        const SurfacePoint point = surface_point(scene_, ray, hit, &footprint);
+        const float cosine = clamp(-dot(gbuffer_.normal.vector_at(x, y), ray.direction), 1e-4f, 1.0f);
+        const SurfaceLobes lobes =
+            surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine);
         gbuffer_.diffuse.set_at(x, y, lobes.diffuse);
         gbuffer_.specular.set_at(x, y, lobes.specular);
         gbuffer_.alpha(x, y) = lobes.alpha;
         if (!gbuffer_.coat.empty()) gbuffer_.coat(x, y) = lobes.coat, gbuffer_.coat_alpha(x, y) = lobes.coat_alpha;
-    }
-
-    SurfaceLobes lobes_of(std::uint32_t material, Rgb color, std::uint32_t id, Vec3 normal, Vec2d pixel) const {
-        const ColorToLobes& shortcut = shortcuts_[material];
-        if (shortcut.kind == ColorToLobes::Kind::kDiffuse) return {.diffuse = color, .specular = {}};
-        if (shortcut.kind == ColorToLobes::Kind::kMetal)
-            return {.diffuse = {}, .specular = color, .alpha = shortcut.alpha};
-        const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
-        const Hit hit = find_hit(geometry_, view_, id, pixel);
-        const RayFootprint footprint =
-            scene_.needs.footprints ? PixelFootprint(view_.pinhole, 1).at(ray, hit.t) : RayFootprint{};
-        const SurfacePoint point = surface_point(scene_, ray, hit, &footprint);
-        const float cosine = clamp(-dot(normal, ray.direction), 1e-4f, 1.0f);
-        return surface_lobes(bsdf_at(scene_.materials[material], scene_.textures, point), cosine);
     }
 
     struct Primitive {
@@ -111,16 +200,21 @@ private:
                 static_cast<std::uint32_t>(triangles.packed(run).primitive(Triangles::index(run, id)))};
     }
 
-    const PreparedData& data_;
     const Scene& scene_;
     const Geometry& geometry_;
     const PassView& view_;
-    std::span<const ColorToLobes> shortcuts_; ///< parallel to Scene::materials
+    const std::vector<std::optional<LobesOfColor>>& of_color_;
+    const std::vector<bool>& emits_;
     const DepthTile& tile_;
     GBuffer& gbuffer_;
     Planes3& emission_;
     StripReader reader_;
-    std::unique_ptr<StripShader> normals_, colors_;
+    ShadedStrips<AttributeShader> shader_;
+    // The current packet:
+    StripSamples samples_;
+    StripNormalsAndColors shaded_;
+    StripOf<std::int32_t> object_, material_;
+    bool one_material_ = false;
 };
 
 } // namespace
@@ -135,14 +229,16 @@ bool any_clear_coat(const Scene& scene) {
 void fill_gbuffer(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
                   const TileGrid& grid, SampleOffset offset, const Control& control, GBuffer& gbuffer,
                   Planes3& emission) {
-    std::vector<ColorToLobes> shortcuts;
-    for (const Material& material : data.scene.materials) shortcuts.push_back(color_to_lobes(material));
-    const std::unique_ptr<Program> normals = normal_program(), colors = albedo_program();
+    Frame frame{data, geometry, view, {}, {}};
+    for (const Material& material : data.scene.materials) {
+        frame.of_color.push_back(LobesOfColor::of(material));
+        frame.emits.push_back(emitter(material) != nullptr);
+    }
     parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
         if (control.stopped()) return;
         DepthTile tile;
         cover(geometry, view, offset, grid.tile(i), i, tile);
-        TileFiller(data, geometry, view, shortcuts, *normals, *colors, tile, gbuffer, emission).run();
+        TileFiller(frame, tile, gbuffer, emission).run();
     });
 }
 

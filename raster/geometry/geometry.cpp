@@ -195,10 +195,21 @@ Objects common_to(const Objects& objects, const Objects& others) {
 
 } // namespace
 
+void process_without(const PreparedData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
+                     const PassView& view, const Settings& settings, Geometry& result) {
+    process(data, without(data.polygonal, excluded), without(data.spheres, excluded), grid, view, settings, true,
+            result);
+}
+
+void process_only(const PreparedData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
+                  const PassView& view, const Settings& settings, Geometry& result) {
+    process(data, common_to(data.polygonal, objects), common_to(data.spheres, objects), grid, view, settings, true,
+            result);
+}
+
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
                            const Settings& settings, Geometry& result) {
-    process(data, without(data.polygonal, data.glass), without(data.spheres, data.glass), grid, view, settings, true,
-            result);
+    process_without(data, data.glass, grid, view, settings, result);
 }
 
 void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,

@@ -41,6 +41,12 @@ struct Geometry {
 /// Throws Error if there are more triangles in view than ids (2^31).
 void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
                       Geometry& result);
+/// Processes the objects of process_geometry() except those listed, in order.
+void process_without(const PreparedData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
+                     const PassView& view, const Settings& settings, Geometry& result);
+/// Processes those objects of process_geometry() that are listed, in order.
+void process_only(const PreparedData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
+                  const PassView& view, const Settings& settings, Geometry& result);
 /// Processes the objects of process_geometry() except PreparedData::glass.
 void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
                            const Settings& settings, Geometry& result);

@@ -77,6 +77,20 @@ Rgb Irradiance::at(const Environment& environment, Vec3 n, const SkySeen& seen) 
     return positive(Rgb(sum));
 }
 
+std::array<Rgb, 9> Irradiance::scaled_coefficients(const Environment& environment) const {
+    std::array<Rgb, 9> result{};
+    if (closed_form_) {
+        const Rgb up = at(environment, Vec3(0, 1, 0)), down = at(environment, Vec3(0, -1, 0));
+        result[0] = (up + down) * 0.5f, result[1] = (up - down) * 0.5f; // both forms are linear in the normal's height
+        return result;
+    }
+    const Harmonics constants = {0.28209479177387814, 0.4886025119029199,  0.4886025119029199,
+                                 0.4886025119029199,  1.0925484305920792,  1.0925484305920792,
+                                 0.31539156525252005, 1.0925484305920792,  0.5462742152960396};
+    for (std::size_t i = 0; i < 9; ++i) result[i] = Rgb(coefficients_[i] * constants[i]);
+    return result;
+}
+
 Rgb Irradiance::at(const Environment& environment, Vec3 n) const {
     if (closed_form_) return irradiance_closed_form(environment, n).value_or(Rgb());
     const Harmonics y = harmonics(Vec3d(n));

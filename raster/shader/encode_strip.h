@@ -12,6 +12,12 @@ namespace duet::raster {
 /// Stores sixteen linear colors.
 using StripColors = RgbT<StripOf<float>>;
 
+/// Stores the shading normals and base colors of sixteen samples.
+struct StripNormalsAndColors {
+    Vec3T<StripOf<float>> normal;
+    StripColors color;
+};
+
 /// Stores sixteen sRGB pixels, in one cache line.
 using StripCodes = StripOf<Rgba8>;
 

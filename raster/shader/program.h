@@ -14,9 +14,41 @@
 #include <vector>
 
 namespace duet::raster {
-/// Shades the packets of one tile with shader S.
 
-template <Shader S> class ShadedStrips final : public StripShader {
+inline void store(StripColors& to, std::size_t i, const RgbT<Floats>& c) {
+    store(to.r, i, c.r), store(to.g, i, c.g), store(to.b, i, c.b);
+}
+inline void store(StripNormalsAndColors& to, std::size_t i, const NormalAndColor<Floats>& c) {
+    store(to.normal.x, i, c.normal.x), store(to.normal.y, i, c.normal.y), store(to.normal.z, i, c.normal.z);
+    store(to.color, i, c.color);
+}
+/// Copies the marked samples of a packet's components.
+inline void copy_lanes(std::uint32_t lanes, const StripOf<float>& from, StripOf<float>& to) {
+    for (std::size_t i = 0; i < kStrip; i += Floats::size)
+        store(to, i, xsimd::select(lanes_from<float>(lanes >> i), load(from, i), load(to, i)));
+}
+inline void copy_lanes(std::uint32_t lanes, const StripColors& from, StripColors& to) {
+    for (StripOf<float> StripColors::*c : {&StripColors::r, &StripColors::g, &StripColors::b})
+        copy_lanes(lanes, from.*c, to.*c);
+}
+inline void copy_lanes(std::uint32_t lanes, const StripNormalsAndColors& from, StripNormalsAndColors& to) {
+    using Vector = Vec3T<StripOf<float>>;
+    for (StripOf<float> Vector::*c : {&Vector::x, &Vector::y, &Vector::z})
+        copy_lanes(lanes, from.normal.*c, to.normal.*c);
+    copy_lanes(lanes, from.color, to.color);
+}
+
+/// Returns the packet type of a shader's output.
+template <Shader S>
+using ColorsOf = std::conditional_t<
+    std::same_as<decltype(std::declval<const S&>().template fragment<Floats>(
+                     std::declval<const FragmentOf<S, Floats>&>())), RgbT<Floats>>,
+    StripColors, StripNormalsAndColors>;
+
+/// Shades the packets of one tile with shader S.
+template <Shader S> class ShadedStrips final : public StripShaderOf<ColorsOf<S>> {
+    using Colors = ColorsOf<S>;
+
 public:
     ShadedStrips(const PreparedData& data, const Geometry& geometry, const PassView& view, const PixelRect& tile,
                  const S& shader)
@@ -30,8 +62,8 @@ public:
             eyes_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
     }
 
-    using StripShader::shade;
-    void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) override {
+    using StripShaderOf<Colors>::shade;
+    void shade(std::span<const StripPlace> places, Colors* colors, std::uint32_t* seen) override {
         parts_.clear();
         shade_strips(places, colors, seen);
         if (!parts_.empty()) shade_parts();
@@ -45,10 +77,10 @@ private:
     struct Part {
         StripOf<std::int32_t> ids;
         StripPlace place;
-        StripColors* colors = nullptr;
+        Colors* colors = nullptr;
     };
 
-    void shade_strips(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) {
+    void shade_strips(std::span<const StripPlace> places, Colors* colors, std::uint32_t* seen) {
         solver_.solve(places, true, [&](std::size_t first, std::span<const Solved> strips) {
             for (std::size_t s = 0; s < strips.size(); ++s) seen[first + s] = strips[s].samples->seen;
             for (std::size_t s = 0, end; s < strips.size(); s = end) {
@@ -74,7 +106,7 @@ private:
     }
 
     /// Shades one packet, or several for which alike() holds.
-    void shade_solved(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) {
+    void shade_solved(const StripPlace* places, std::span<const Solved> strips, Colors* colors) {
         const Solved& strip = strips.front();
         const SampleOffset offset = places->offsets != nullptr ? SampleOffset{0, 0} : places->offset;
         ways_.use(offset);
@@ -85,7 +117,7 @@ private:
     }
 
     /// Shades a packet that sees several objects: spheres immediately, triangles later by shade_parts().
-    void shade_objects(const StripPlace& place, const StripSamples& samples, StripColors& colors) {
+    void shade_objects(const StripPlace& place, const StripSamples& samples, Colors& colors) {
         for (std::uint32_t left = samples.seen; left != 0;) {
             const Run& run = solver_.run_of(samples.id(static_cast<std::size_t>(std::countr_zero(left))));
             const Triangles::Numbers own = geometry_.triangles.of_object(run);
@@ -102,7 +134,7 @@ private:
         }
     }
 
-    void add_part(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, StripColors& colors) {
+    void add_part(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, Colors& colors) {
         Part& part = parts_.emplace_back();
         part.place = place;
         part.colors = &colors;
@@ -113,16 +145,16 @@ private:
     }
 
     void shade_sphere(const StripPlace& place, std::uint32_t lanes, const StripSamples& among, const DrawSphere& sphere,
-                      StripColors& colors) {
+                      Colors& colors) {
         StripSamples samples{.ids = among.ids, .seen = lanes};
         if (!sphere_view_ || sphere_view_->object != sphere.object) sphere_view_.emplace(data_, view_, sphere.object);
         Solved strip;
         strip.samples = &samples;
         solve_sphere(SphereStrip(view_, place, sphere, wants_derivatives<S>()), sphere.sphere, shader_, *sphere_view_,
                      strip);
-        StripColors own;
+        Colors own;
         shade_solved(&place, std::span(&strip, 1), &own);
-        copy(lanes, own, colors);
+        copy_lanes(lanes, own, colors);
     }
 
     /// Shades the collected parts. Each sees one object, so no further parts result.
@@ -135,19 +167,11 @@ private:
         colors_of_parts_.resize(parts_.size());
         seen_of_parts_.resize(parts_.size());
         shade_strips(places_of_parts_, colors_of_parts_.data(), seen_of_parts_.data());
-        for (std::size_t i = 0; i < parts_.size(); ++i) copy(seen_of_parts_[i], colors_of_parts_[i], *parts_[i].colors);
-    }
-
-    static void copy(std::uint32_t lanes, const StripColors& from, StripColors& to) {
-        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const auto here = lanes_from<float>(lanes >> i);
-            for (StripOf<float> StripColors::*c : {&StripColors::r, &StripColors::g, &StripColors::b})
-                store(to.*c, i, xsimd::select(here, load(from.*c, i), load(to.*c, i)));
-        }
+        for (std::size_t i = 0; i < parts_.size(); ++i) copy_lanes(seen_of_parts_[i], colors_of_parts_[i], *parts_[i].colors);
     }
 
     template <bool kPlain>
-    void shade_as(const StripPlace* places, std::span<const Solved> strips, StripColors* colors) const {
+    void shade_as(const StripPlace* places, std::span<const Solved> strips, Colors* colors) const {
         if constexpr (wants_directions<S>())
             if (strips.front().directions) return shade_together<kPlain, true>(places, strips, colors);
         shade_together<kPlain, false>(places, strips, colors);
@@ -156,16 +180,12 @@ private:
     /// `colors` is __restrict, so what packets share is loaded only once.
     template <bool kPlain, bool kFacing>
     void shade_together(const StripPlace* places, std::span<const Solved> strips,
-                        StripColors* __restrict colors) const {
+                        Colors* __restrict colors) const {
         const ObjectView& object = *strips.front().object_view;
         for (std::size_t s = 0; s < strips.size(); ++s)
-            for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-                const RgbT<Floats> c =
-                    shader_.template fragment<Floats>(fragment<kPlain, kFacing>(places[s], strips[s], object, i));
-                store(colors[s].r, i, c.r);
-                store(colors[s].g, i, c.g);
-                store(colors[s].b, i, c.b);
-            }
+            for (std::size_t i = 0; i < kStrip; i += Floats::size)
+                store(colors[s], i,
+                      shader_.template fragment<Floats>(fragment<kPlain, kFacing>(places[s], strips[s], object, i)));
     }
 
     template <bool kPlain, bool kFacing>
@@ -236,7 +256,7 @@ private:
     std::optional<LinearInTile> eyes_; ///< or an origin per pixel in an orthographic view
     std::vector<Part> parts_;
     std::vector<StripPlace> places_of_parts_; ///< arguments of shade_strips() for the parts
-    std::vector<StripColors> colors_of_parts_;
+    std::vector<Colors> colors_of_parts_;
     std::vector<std::uint32_t> seen_of_parts_;
     std::optional<ObjectView> sphere_view_; ///< view of the last sphere shaded
     bool only_suns_;                   ///< true if all lights of the scene are suns

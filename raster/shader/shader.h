@@ -292,12 +292,20 @@ template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, 
         return std::bit_cast<VaryingsOf<S, T>>(numbers);
 }
 
+/// Holds what a shader of the G-buffer returns for a sample: the unit shading normal and the base color.
+template <typename T> struct NormalAndColor {
+    Vec3T<T> normal;
+    RgbT<T> color;
+};
+
 /// A VertexShader has varyings and a vertex function, for single points and SIMD batches.
 template <typename S>
 concept VertexShader = requires(const S& s, const VertexInput<float>& one, const VertexInput<Floats>& many) {
     { s.vertex(one) } -> std::same_as<VaryingsOf<S, float>>;
     { s.vertex(many) } -> std::same_as<VaryingsOf<S, Floats>>;
 };
+template <typename O, typename T>
+concept FragmentOutput = std::same_as<O, RgbT<T>> || std::same_as<O, NormalAndColor<T>>;
 /// A Shader is a vertex shader with a fragment function. It returns linear radiance, in W/(m² sr) if it is to be
 /// compared with light.
 template <typename S>
@@ -305,10 +313,10 @@ concept Shader = VertexShader<S> &&
     requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many,
              const FragmentOf<S, Floats, true>& plain,
              const FragmentOf<S, Floats, true, wants_directions<S>()>& facing) {
-    { s.template fragment<float>(one) } -> std::same_as<Rgb>;
-    { s.template fragment<Floats>(many) } -> std::same_as<RgbT<Floats>>;
-    { s.template fragment<Floats>(plain) } -> std::same_as<RgbT<Floats>>;
-    { s.template fragment<Floats>(facing) } -> std::same_as<RgbT<Floats>>;
+    { s.template fragment<float>(one) } -> FragmentOutput<float>;
+    { s.template fragment<Floats>(many) } -> FragmentOutput<Floats>;
+    { s.template fragment<Floats>(plain) } -> FragmentOutput<Floats>;
+    { s.template fragment<Floats>(facing) } -> FragmentOutput<Floats>;
 };
 
 } // namespace duet::raster

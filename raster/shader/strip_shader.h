@@ -12,20 +12,23 @@
 
 namespace duet::raster {
 
-/// Shades the packets of one tile, in any order.
-class StripShader {
+/// Shades the packets of one tile, in any order. `Colors` is what a shader returns for a packet, StripColors or
+/// StripNormalsAndColors.
+template <typename Colors> class StripShaderOf {
 public:
-    virtual ~StripShader() = default;
+    virtual ~StripShaderOf() = default;
     /// Shades packets. colors[k] receives the colors of the samples of places[k], and seen[k] one bit per sample
     /// with a visible surface; the colors of the others are unspecified. Shading many packets in one call is faster
     /// than one by one.
-    virtual void shade(std::span<const StripPlace> places, StripColors* colors, std::uint32_t* seen) = 0;
-    std::uint32_t shade(const StripPlace& place, StripColors& colors) {
+    virtual void shade(std::span<const StripPlace> places, Colors* colors, std::uint32_t* seen) = 0;
+    std::uint32_t shade(const StripPlace& place, Colors& colors) {
         std::uint32_t seen = 0;
         shade(std::span(&place, 1), &colors, &seen);
         return seen;
     }
 };
+
+using StripShader = StripShaderOf<StripColors>;
 
 /// Holds a shader that can shade any tile.
 class Program {

@@ -69,6 +69,8 @@ public:
     static constexpr double kContactsShade = 0.75;
     static constexpr double kLeastKnown = 0.25; ///< filter weight: texels of less total weight do not decide alone
 
+    const Pinhole& view() const { return view_; }
+    bool orthographic() const { return orthographic_; }
     int side() const { return nearness_.width(); }
     /// Returns the reversed depth, near / depth, at a texel's center; 0 where nothing is visible.
     float nearness(int x, int y) const { return nearness_(x, y); }

@@ -265,6 +265,13 @@ CubeMap Shadows::draw_cube(const Prepared& casters, Vec3d center, const Emitter*
     return cube;
 }
 
+std::size_t Shadows::moment_at(float time) const {
+    if (moments_.size() == 1) return 0;
+    const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
+    return static_cast<std::size_t>(
+        std::clamp((static_cast<double>(time) - open) / (close - open) * kMoments, 0.0, kMoments - 1.0));
+}
+
 float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const {
     if (source_of_[light] == sources_.size()) return 1;
     const Source& source = sources_[source_of_[light]];

@@ -33,11 +33,6 @@ public:
     bool coarser() const { return coarser_; }
     std::int64_t memory_bytes() const { return memory_bytes_; }
 
-    static constexpr int kMoments = 8;
-    static constexpr std::size_t kMostSources = 64;
-    static constexpr int kMostCells = 8; ///< along each side of a light
-
-private:
     /// Holds a light's maps at one moment; a light without maps has all vectors empty. Views are tried in order; a
     /// point light has one cube.
     struct Maps {
@@ -53,6 +48,17 @@ private:
         bool lamp = false; ///< its object only emits and is excluded from its own maps
         std::vector<Maps> moments;      ///< parallel to moments_
     };
+    const std::vector<Source>& sources() const { return sources_; }
+    /// Returns the index of a light's source; sources().size() if it has no maps.
+    std::size_t source_of(std::size_t light) const { return source_of_[light]; }
+    /// Returns the index of the moment whose maps serve a time.
+    std::size_t moment_at(float time) const;
+
+    static constexpr int kMoments = 8;
+    static constexpr std::size_t kMostSources = 64;
+    static constexpr int kMostCells = 8; ///< along each side of a light
+
+private:
     std::vector<Source> find_sources(const Scene& scene, int cells);
     /// `seen` holds the points visible to the scene's camera if there is a sun.
     std::vector<Camera> views_of(const PreparedData& data, const std::vector<SeenPoint>& seen,

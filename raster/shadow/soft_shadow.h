@@ -36,6 +36,7 @@ public:
     float visibility(const Receiver& receiver, TapRange taps) const;
 
     std::int64_t memory_bytes() const;
+    const CubeMap& cube() const { return cube_; }
 
     static constexpr int kSearchedSide = 16, kSearchedRows = 8;
     static constexpr double kConcave = 0.25; ///< facets that meet at up to 14° do not shade each other

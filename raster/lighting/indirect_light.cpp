@@ -1,0 +1,47 @@
+#include "raster/lighting/indirect_light.h"
+
+namespace duet::raster {
+namespace {
+
+/// Returns how much light reaches a surface of this albedo through occluders as bright as itself (Jimenez et al. 2016,
+/// "Practical Realtime Strategies for Accurate Indirect Occlusion", §5).
+Floats with_bounces(const Floats& visible, const Floats& albedo) {
+    const Floats a = Floats(2.0404f) * albedo - Floats(0.3324f), b = Floats(-4.7951f) * albedo + Floats(0.6417f),
+                 c = Floats(2.7552f) * albedo + Floats(0.6903f);
+    return max(visible, ((visible * a + b) * visible + c) * visible);
+}
+
+/// Adds albedo/π times what irradiance(x, y, lanes) returns for each batch.
+template <typename Irradiance>
+void add_reflected(const Settings& settings, const GBuffer& gbuffer, Planes3& radiance, const Irradiance& irradiance) {
+    for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
+        const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
+        const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
+        if (!xsimd::any(lit)) return;
+        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit);
+        radiance.set(x, y, radiance.color(x, y) + light * xsimd::select(lit, Floats(kInvPi), Floats(0.0f)));
+    });
+}
+
+} // namespace
+
+void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                        Planes3& radiance) {
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {
+        return probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
+    });
+}
+
+void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                        GtaoImage& half, Planes3& radiance) {
+    half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
+        return probes.irradiance(gbuffer.projection.eye(), p, n, lanes);
+    });
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto&) {
+        const auto [visible, irradiance] = half.lit_at(x, y);
+        return irradiance * RgbT<Floats>{with_bounces(visible, albedo.r), with_bounces(visible, albedo.g),
+                                         with_bounces(visible, albedo.b)};
+    });
+}
+
+} // namespace duet::raster

@@ -1,0 +1,42 @@
+// Looks up the radiance that arrives at points from given directions: from the image where it shows what the ray meets,
+// else from probes, else from the environment.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/prepare.h"
+#include "raster/probes/reflection_probes.h"
+
+namespace duet::raster {
+
+/// Returns `a` in the lanes of `where` and `b` elsewhere.
+inline RgbT<Floats> blend(const xsimd::batch_bool<float>& where, const RgbT<Floats>& a, const RgbT<Floats>& b) {
+    return {xsimd::select(where, a.r, b.r), xsimd::select(where, a.g, b.g), xsimd::select(where, a.b, b.b)};
+}
+
+/// Serves one batch of pixels, whose objects select the probes.
+class RadianceLookup {
+public:
+    /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is looked
+    /// up here.
+    RadianceLookup(const PreparedData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
+                   const Planes3& image, int x, int y);
+
+    /// Returns what arrives at points p relative to the eye from about the unit direction w, filtered by a GGX lobe of
+    /// width alpha on a surface of normal n. Mirrors see the lights, wider lobes do not.
+    RgbT<Floats> operator()(const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Vec3T<Floats>& w, const Floats& alpha,
+                            const xsimd::batch_bool<float>& lanes) const;
+
+private:
+    struct Query;
+    RgbT<Floats> from_probe(std::size_t probe, const Query& query) const;
+    RgbT<Floats> on_screen(const Vec3T<Floats>& q, const xsimd::batch_bool<float>& lanes,
+                           const RgbT<Floats>& otherwise) const;
+
+    const PreparedData& data_;
+    const GBuffer& gbuffer_;
+    const ReflectionProbes* probes_;
+    const Planes3& image_;
+    alignas(64) std::array<std::int32_t, Ints::size> objects_;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,75 @@
+#include "raster/lighting/reflections.h"
+
+#include "raster/lighting/radiance_lookup.h"
+#include "raster/lighting/specular_lobe.h"
+
+#include "common/material/metal.h"
+
+#include <algorithm>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+using Rgbs = RgbT<Floats>;
+
+/// Returns the fraction of uniform light that a lobe reflects to the viewer, all scattering included. A mirror's is
+/// Schlick's term.
+Rgbs albedo(const LobeTables& tables, const Rgbs& normal, const Floats& alpha, const Floats& cosine) {
+    const Floats one(1.0f), grazing = one - cosine, square = grazing * grazing;
+    const Mask mirror = alpha < Floats(MetalBsdf::kSmoothAlpha);
+    const Floats energy = xsimd::select(mirror, one, tables.energy),
+                 share = xsimd::select(mirror, square * square * grazing, tables.share);
+    const auto channel = [&](const Floats& f0) {
+        const Floats once = energy * (f0 + (one - f0) * share);
+        // Light scattered more than once (ggx_multiple in common/material/ggx_albedo.h, times the lost fractions).
+        const Floats mean = f0 + (one - f0) * Floats(1.0f / 21);
+        return once + mean * mean * (one - tables.mean_lost) / (one - mean * tables.mean_lost) * (one - energy);
+    };
+    return {channel(normal.r), channel(normal.g), channel(normal.b)};
+}
+
+} // namespace
+
+void add_reflections(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer,
+                     const ReflectionProbes* probes, Planes3& radiance) {
+    const Planes3 before = probes != nullptr ? radiance : Planes3(); // reflections read other pixels
+    constexpr int kBandRows = 8;
+    parallel_for(static_cast<std::size_t>((gbuffer.height() + kBandRows - 1) / kBandRows), settings.threads,
+                 [&](std::size_t band) {
+        LobeLookup lobe, coat_lobe;
+        const int first = static_cast<int>(band) * kBandRows;
+        for (int y = first; y < std::min(first + kBandRows, gbuffer.height()); ++y)
+            for (int x = 0; x < gbuffer.width(); x += static_cast<int>(Floats::size)) {
+                const Mask seen = gbuffer.visible(x, y);
+                const Floats zero(0.0f), one(1.0f);
+                const Rgbs f0 = gbuffer.specular.color(x, y);
+                const Mask lanes = seen & (f0.r + f0.g + f0.b > zero);
+                const Floats coat = gbuffer.coat.empty() ? zero : load(gbuffer.coat, x, y);
+                const Mask coated = seen & (coat > zero);
+                if (!xsimd::any(lanes | coated)) continue;
+                const Vec3s n = gbuffer.normal.vector(x, y), wo = gbuffer.projection.to_viewer(gbuffer.points(x, y));
+                const Floats cosine = max(dot(n, wo), Floats(1e-4f));
+                const Vec3s mirrored = n * (Floats(2.0f) * cosine) - wo;
+                const Vec3s p = gbuffer.points(x, y);
+                const RadianceLookup lookup(data, gbuffer, probes, before, x, y);
+                const Floats alpha = load(gbuffer.alpha, x, y);
+                Rgbs sum(zero);
+                if (xsimd::any(lanes))
+                    sum = lookup(p, n, mirrored, alpha, lanes) *
+                          albedo(lobe(alpha, cosine, lanes), f0, alpha, cosine);
+                sum = blend(lanes, sum, Rgbs(zero));
+                if (xsimd::any(coated)) {
+                    const Floats width = load(gbuffer.coat_alpha, x, y);
+                    const Floats reflected = coat * albedo(coat_lobe(width, cosine, coated), Rgbs(Floats(0.04f)), width,
+                                                           cosine).r;
+                    const Rgbs above = lookup(p, n, mirrored, width, coated) * reflected;
+                    sum = blend(coated, sum * (one - reflected) + above, sum);
+                }
+                radiance.set(x, y, radiance.color(x, y) + sum);
+            }
+    });
+}
+
+} // namespace duet::raster

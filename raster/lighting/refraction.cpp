@@ -1,0 +1,98 @@
+#include "raster/lighting/refraction.h"
+
+#include "raster/lighting/radiance_lookup.h"
+#include "raster/probes/glass_shapes.h"
+#include "raster/shader/shader.h"
+
+#include "common/material/fresnel.h"
+
+#include <bit>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+using Rgbs = RgbT<Floats>;
+
+/// A refracted direction, and the fraction of light that the interface lets through: 0 at total reflection, where the
+/// direction is the mirrored one.
+struct Refracted {
+    Vec3s w;
+    Floats through;
+};
+/// Refracts the unit direction w at a unit normal n on the side that w comes from. `eta` is the index beyond the
+/// interface over the index before it.
+Refracted refract(const Vec3s& w, const Vec3s& n, const Floats& eta) {
+    const Floats zero(0.0f), cosine = clamp(-dot(w, n), zero, Floats(1.0f));
+    const Floats cos2 = cos2_refracted(cosine, eta), cos_t = xsimd::sqrt(max(cos2, zero));
+    const Floats over = Floats(1.0f) / eta;
+    const Mask total = cos2 <= zero;
+    const Vec3s through = w * over + n * (cosine * over - cos_t), mirrored = w + n * (Floats(2.0f) * cosine);
+    return {select(total, mirrored, through), Floats(1.0f) - fresnel_dielectric(cosine, eta)};
+}
+
+/// Shows what arrives through the glass of one object in a batch of pixels.
+class GlassBatch {
+public:
+    GlassBatch(const PreparedData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
+        : data_(data), gbuffer_(gbuffer), lookup_(lookup), p_(gbuffer.points(x, y)), n_(gbuffer.normal.vector(x, y)),
+          w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)) {}
+
+    Rgbs through(std::int32_t object, const Dielectric& glass, const Mask& lanes) const {
+        const Rgbs tint = spread<Floats>(glass.tint.value);
+        const Floats eta(glass.ior), alpha = glass.thin ? Floats(0.0f) : alpha_;
+        const Refracted in = refract(w_, n_, eta);
+        const auto exit = glass.thin ? std::nullopt : data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
+        if (!exit) { // a sheet, in which the light leaves in the direction it came from
+            const Floats reflected = Floats(1.0f) - in.through;
+            return lookup_(p_, n_, w_, alpha, lanes) * (in.through / (Floats(1.0f) + reflected)) *
+                   (glass.thin ? tint : tint * tint);
+        }
+        // All light that does not leave at once leaves later; most of it in about the same direction.
+        const Refracted out = refract(in.w, exit->n * Floats(-1.0f), Floats(1 / glass.ior));
+        const auto absorbed = [&](float per_meter) { return xsimd::exp(exit->length * Floats(-per_meter)); };
+        const Rgbs inside{absorbed(glass.absorption.r), absorbed(glass.absorption.g), absorbed(glass.absorption.b)};
+        return lookup_(exit->p, exit->n, out.w, alpha, lanes) * in.through * (tint * tint) * inside;
+    }
+
+private:
+    const PreparedData& data_;
+    const GBuffer& gbuffer_;
+    const RadianceLookup& lookup_;
+    Vec3s p_, n_, w_; ///< w_ is the direction of the camera's rays
+    Floats alpha_;
+};
+
+} // namespace
+
+void add_refraction(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer, Planes3& radiance) {
+    const Planes3 before = radiance;
+    for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
+        alignas(64) std::array<std::int32_t, Ints::size> objects, materials;
+        load(gbuffer.object, x, y).store_aligned(objects.data());
+        load(gbuffer.material, x, y).store_aligned(materials.data());
+        std::uint32_t left = lane_bits(gbuffer.visible(x, y));
+        Rgbs sum(Floats(0.0f));
+        bool any = false;
+        std::optional<RadianceLookup> lookup;
+        while (left != 0) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            std::uint32_t own = 0;
+            for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
+                const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+                if (objects[k] == objects[i] && materials[k] == materials[i]) own |= 1u << k;
+            }
+            left &= ~own;
+            const auto* glass = std::get_if<Dielectric>(&data.scene.materials[static_cast<std::size_t>(materials[i])]);
+            if (glass == nullptr) continue;
+            if (!lookup) lookup.emplace(data, gbuffer, data.reflection_probes.get(), before, x, y);
+            const Mask lanes = lanes_from<float>(own);
+            sum = blend(lanes, GlassBatch(data, gbuffer, *lookup, x, y).through(objects[i], *glass, lanes), sum);
+            any = true;
+        }
+        if (any) radiance.set(x, y, radiance.color(x, y) + sum);
+    });
+}
+
+} // namespace duet::raster

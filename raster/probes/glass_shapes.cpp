@@ -1,0 +1,75 @@
+#include "raster/probes/glass_shapes.h"
+
+#include "raster/probes/probe_capture.h"
+
+#include "common/system/parallel.h"
+
+#include <algorithm>
+
+namespace duet::raster {
+namespace {
+
+using Vec3s = Vec3T<Floats>;
+
+constexpr int kSteps = 4; ///< from sphere to sphere, as in ReflectionProbes::trace
+
+OctahedralMap shape_of(const PreparedData& data, const Settings& settings, std::uint32_t object, Vec3d center) {
+    const ProbeCapture capture(data, settings, center, object, GlassShapes::kSide / 2);
+    const float missing = length(data.objects[object].bounds.diagonal()) / 2;
+    OctahedralMap map(GlassShapes::kSide);
+    for (int y = 0; y < map.side(); ++y)
+        for (int x = 0; x < map.side(); ++x) {
+            const Vec3 w = map.direction(x, y);
+            const ProbeCapture::Pixel pixel = capture.pixel(w);
+            const float distance = capture.distance(pixel);
+            // The surface is seen from within, so its normals face the center.
+            const Vec3 n = distance < kInfinity
+                               ? -capture.faces()[pixel.face].gbuffer.normal.vector_at(pixel.x, pixel.y) : w;
+            map.texel(x, y) = {n.x, n.y, n.z, min(distance, missing)};
+        }
+    map.finish();
+    return map;
+}
+
+} // namespace
+
+GlassShapes::GlassShapes(const PreparedData& data, const Settings& settings) {
+    std::vector<std::uint32_t> objects = data.glass;
+    const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
+    std::stable_sort(objects.begin(), objects.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
+    if (objects.size() > kMost) objects.resize(kMost);
+    shapes_.resize(objects.size());
+    of_object_.assign(data.scene.objects.size(), shapes_.size());
+    parallel_for(objects.size(), settings.threads, [&](std::size_t i) {
+        const Vec3d center(data.objects[objects[i]].bounds.center());
+        shapes_[i] = {center, shape_of(data, settings, objects[i], center)};
+    });
+    for (std::size_t i = 0; i < objects.size(); ++i) of_object_[objects[i]] = i;
+}
+
+std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Vec3d& eye, const Vec3s& p,
+                                                   const Vec3s& w) const {
+    const std::size_t index = of_object_[static_cast<std::size_t>(object)];
+    if (index == shapes_.size()) return std::nullopt;
+    const Shape& shape = shapes_[index];
+    const Vec3 offset(eye - shape.center);
+    const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
+    const Floats none(0.0f), across = dot(start, w);
+    Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
+    for (int i = 0; i < kSteps; ++i) {
+        const Floats radius = shape.map.at<4>(start + w * t)[3];
+        t = max(xsimd::sqrt(max(radius * radius - dot(start, start) + across * across, none)) - across, none);
+    }
+    const auto [x, y, z, distance] = shape.map.at<4>(start + w * t);
+    const Vec3s n{x, y, z};
+    return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
+}
+
+std::size_t GlassShapes::memory_bytes() const {
+    std::size_t sum = 0;
+    for (const Shape& shape : shapes_) sum += shape.map.memory_bytes();
+    return sum;
+}
+
+} // namespace duet::raster

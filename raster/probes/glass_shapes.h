@@ -1,0 +1,41 @@
+// The shapes of glass objects as seen from within: how far the surface is and which way it faces, in each direction from
+// the object's center. A refracted ray finds there where it leaves.
+#pragma once
+
+#include "raster/prepare.h"
+#include "raster/probes/octahedral_map.h"
+
+#include <optional>
+
+namespace duet::raster {
+
+/// Holds the shapes of a scene's glass objects. A shape is exact if each ray from the center leaves it once, up to the
+/// map's resolution.
+class GlassShapes {
+public:
+    GlassShapes(const PreparedData& data, const Settings& settings);
+
+    struct Exit {
+        Vec3T<Floats> p;  ///< where the ray leaves, relative to the eye
+        Vec3T<Floats> n;  ///< unit outward normal there
+        Floats length;    ///< of the ray inside, in meters
+    };
+    /// Returns where a ray from the surface point p, relative to the eye at `eye`, in the unit direction w leaves an
+    /// object; nothing for objects without a shape.
+    std::optional<Exit> exit(std::int32_t object, const Vec3d& eye, const Vec3T<Floats>& p,
+                             const Vec3T<Floats>& w) const;
+    std::size_t memory_bytes() const;
+
+    static constexpr int kSide = 128;       ///< texels of a map
+    static constexpr std::size_t kMost = 24; ///< objects with a shape; the largest
+
+private:
+    struct Shape {
+        Vec3d center;
+        OctahedralMap map; ///< outward normal and distance
+    };
+    std::vector<Shape> shapes_;
+    std::vector<std::size_t> of_object_; ///< shapes_.size() if it has none
+};
+
+} // namespace duet::raster

@@ -1,0 +1,248 @@
+#include "raster/probes/irradiance_probes.h"
+
+#include "raster/probes/solid_test.h"
+#include "raster/shader/shader.h"
+
+#include "common/system/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+
+/// The time to render probes grows with their number times the triangles. These bounds keep it within about a second.
+constexpr double kMostTriangles = 1e8;
+constexpr int kMostProbes = 512, kFewestProbes = 27;
+constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
+/// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
+/// judged, as the maps of distances are coarse (Majercik et al., §5.2).
+constexpr float kBias = 0.4f;
+
+/// The polynomials of the real spherical harmonics of orders 0, 1 and 2, without constant factors (Ramamoorthi and
+/// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 3).
+template <typename T> std::array<T, 9> harmonics(const Vec3T<T>& w) {
+    return {T(1),      w.y,       w.z, w.x, w.x * w.y, w.y * w.z, T(3) * w.z * w.z - T(1), w.x * w.z,
+            w.x * w.x - w.y * w.y};
+}
+/// For each harmonic, the square of its constant factor times that of the clamped cosine (eq. 8): what projection and
+/// evaluation apply together.
+constexpr std::array<float, 9> kFactors = [] {
+    constexpr std::array<double, 9> constants = {0.28209479177387814, 0.4886025119029199,  0.4886025119029199,
+                                                 0.4886025119029199,  1.0925484305920792,  1.0925484305920792,
+                                                 0.31539156525252005, 1.0925484305920792,  0.5462742152960396};
+    std::array<float, 9> result{};
+    for (std::size_t i = 0; i < 9; ++i)
+        result[i] = static_cast<float>(constants[i] * constants[i] * kPiDouble *
+                                       (i == 0 ? 1.0 : i < 4 ? 2.0 / 3 : 0.25));
+    return result;
+}();
+
+template <typename Visit> void for_each_pixel(const ProbeCapture& capture, const Visit& visit) {
+    for (std::size_t face = 0; face < 6; ++face)
+        for (int y = 0; y < capture.side(); ++y)
+            for (int x = 0; x < capture.side(); ++x) visit(ProbeCapture::Pixel{face, x, y});
+}
+
+/// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
+/// at. Points outside use the nearest probes.
+Box3d region_of(const PreparedData& data) {
+    const Scene& scene = data.scene;
+    const Camera& camera = scene.camera;
+    const double view = length(camera.look_at - camera.eye), reach = 2 * view;
+    Box3 bounds;
+    for (const PreparedObject& object : data.objects)
+        if (static_cast<double>(length(object.bounds.diagonal())) < 10 * view) bounds.extend(object.bounds);
+    if (bounds.empty()) bounds = scene.bounds;
+    Box3d box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto low = static_cast<double>(bounds.low[axis]), high = static_cast<double>(bounds.high[axis]);
+        box.low[axis] = std::clamp(camera.look_at[axis] - reach, low, high);
+        box.high[axis] = std::clamp(camera.look_at[axis] + reach, low, high);
+        // A flat scene, too, has room above and below.
+        const double least = 0.05 * view, short_of = least - (box.high[axis] - box.low[axis]);
+        if (short_of > 0) box.low[axis] -= short_of / 2, box.high[axis] += short_of / 2;
+    }
+    return box;
+}
+
+} // namespace
+
+/// Spreads the probes so that cells are close to cubes. The outermost probes stand half a cell within the region, so
+/// that none lies in an outer wall.
+void IrradianceProbes::place(const PreparedData& data) {
+    const Box3d box = region_of(data);
+    const Vec3d extent = box.high - box.low;
+    const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
+                                   static_cast<double>(kFewestProbes), static_cast<double>(kMostProbes));
+    double cell = std::cbrt(extent.x * extent.y * extent.z / most);
+    const auto count = [&](std::size_t axis) {
+        return std::clamp(static_cast<int>(std::lround(extent[axis] / cell)), 2, 64);
+    };
+    while (count(0) * count(1) * count(2) > static_cast<int>(1.2 * most)) cell *= 1.1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        size_[axis] = count(axis);
+        step_[axis] = extent[axis] / size_[axis];
+        origin_[axis] = box.low[axis] + step_[axis] / 2;
+    }
+    probes_.resize(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
+}
+
+Vec3d IrradianceProbes::position(std::size_t probe) const {
+    const auto i = static_cast<int>(probe);
+    return origin_ + Vec3d(step_.x * (i % size_[0]), step_.y * (i / size_[0] % size_[1]),
+                           step_.z * (i / (size_[0] * size_[1])));
+}
+
+float IrradianceProbes::spacing() const { return static_cast<float>(std::max({step_.x, step_.y, step_.z})); }
+
+IrradianceProbes::IrradianceProbes(const PreparedData& data, const Settings& settings) {
+    place(data);
+    std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
+    parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+        if (inside_solid(data, position(i))) return;
+        captures[i] = std::make_unique<ProbeCapture>(data, settings, position(i), kSide, data.glass);
+        set_distances(*captures[i], probes_[i]);
+    });
+    for (int k = 0; k <= kBounces; ++k) {
+        std::vector<Harmonics> next(probes_.size());
+        parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+            if (!captures[i]) return;
+            next[i] = gathered(*captures[i]);
+            if (k > 0) add_bounce(*captures[i], next[i]);
+        });
+        for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
+    }
+}
+
+void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
+    // A point may be interpolated from probes up to a cell's diagonal away; beyond, distances make no difference.
+    const float farthest = 1.5f * static_cast<float>(length(step_));
+    probe.distance = OctahedralMap(kDistanceSide);
+    Image<Vec3> sums(kDistanceSide, kDistanceSide); // of distance, its square, and solid angle
+    for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
+        const Vec2 at = octahedral(capture.direction(pixel));
+        const auto cell = [](float v) {
+            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0, kDistanceSide - 1);
+        };
+        const float distance = min(capture.distance(pixel), farthest), weight = capture.solid_angle(pixel);
+        sums(cell(at.x), cell(at.y)) += Vec3(distance, distance * distance, 1) * weight;
+    });
+    for (int y = 0; y < kDistanceSide; ++y)
+        for (int x = 0; x < kDistanceSide; ++x) {
+            const Vec3 sum = sums(x, y);
+            probe.distance.texel(x, y) = {sum.x / sum.z, sum.y / sum.z, 0, 0};
+        }
+    probe.distance.finish();
+}
+
+/// Projects the light that arrives at a probe, without what lights emit, to the harmonics of the irradiance.
+IrradianceProbes::Harmonics IrradianceProbes::gathered(const ProbeCapture& capture) {
+    Harmonics sum{};
+    for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
+        const Rgb light = capture.faces()[pixel.face].direct.color_at(pixel.x, pixel.y) * capture.solid_angle(pixel);
+        const std::array<float, 9> y = harmonics(capture.direction(pixel));
+        for (std::size_t i = 0; i < 9; ++i) sum[i] += light * (y[i] * kFactors[i]);
+    });
+    return sum;
+}
+
+/// Adds the light that the surfaces around a probe reflect of the last bounce, as the probes hold it.
+void IrradianceProbes::add_bounce(const ProbeCapture& capture, Harmonics& sum) const {
+    for (std::size_t face = 0; face < 6; ++face) {
+        const GBuffer& gbuffer = capture.faces()[face].gbuffer;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; x += static_cast<int>(Floats::size)) {
+                const Mask seen = gbuffer.visible(x, y);
+                if (!xsimd::any(seen)) continue;
+                const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y) + gbuffer.specular.color(x, y);
+                const RgbT<Floats> reflected = albedo * irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
+                                                                   gbuffer.normal.vector(x, y), seen) *
+                                               Floats(kInvPi);
+                StripOf<float> r, g, b;
+                store(r, 0, reflected.r), store(g, 0, reflected.g), store(b, 0, reflected.b);
+                for (std::uint32_t left = lane_bits(seen); left != 0; left &= left - 1) {
+                    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+                    const ProbeCapture::Pixel pixel{face, x + static_cast<int>(i), y};
+                    const Rgb light = Rgb(r[i], g[i], b[i]) * capture.solid_angle(pixel);
+                    const std::array<float, 9> basis = harmonics(capture.direction(pixel));
+                    for (std::size_t c = 0; c < 9; ++c) sum[c] += light * (basis[c] * kFactors[c]);
+                }
+            }
+    }
+}
+
+/// The weight of one of the eight probes about a batch of points, and its irradiance.
+struct IrradianceProbes::Corner {
+    Floats weight;
+    RgbT<Floats> irradiance;
+
+    Corner(const Probe& probe, const Vec3s& to_probe, const Vec3s& n, const std::array<Floats, 9>& basis,
+           const Floats& trilinear) {
+        const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
+        const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
+        // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al., §5.2).
+        const Floats front = (cosine + one) * half;
+        const auto [mean, mean_square] = probe.distance.at<2>(-to_probe);
+        const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
+        const Floats behind = max(distance - mean, Floats(0.0f));
+        const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
+        weight = trilinear * (front * front + Floats(0.2f)) * max(seen * seen * seen, Floats(1e-4f));
+        irradiance = RgbT<Floats>(Floats(0.0f));
+        for (std::size_t i = 0; i < 9; ++i) irradiance += spread<Floats>(probe.irradiance[i]) * basis[i];
+        const Floats none(0.0f);
+        irradiance = {max(irradiance.r, none), max(irradiance.g, none), max(irradiance.b, none)};
+    }
+};
+
+RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {
+    const Vec3 first(origin_ - eye), step(step_);
+    std::array<Ints, 3> cell;
+    std::array<Floats, 3> f;
+    const std::array<Floats, 3> at{p.x, p.y, p.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Floats g = clamp((at[axis] - Floats(first[axis])) * Floats(1 / step[axis]), Floats(0.0f),
+                               Floats(static_cast<float>(size_[axis] - 1)));
+        cell[axis] = xsimd::min(truncated(g), Ints(size_[axis] - 2));
+        f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
+    }
+    alignas(64) std::array<std::int32_t, Ints::size> cells;
+    (cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2])).store_aligned(cells.data());
+    const std::array<Floats, 9> basis = harmonics(n);
+    RgbT<Floats> result(Floats(0.0f));
+    // Cells are large, so a batch mostly lies in one.
+    for (std::uint32_t left = lane_bits(mask); left != 0;) {
+        const std::int32_t base = cells[static_cast<std::size_t>(std::countr_zero(left))];
+        const auto own = Ints::load_aligned(cells.data()) == Ints(base);
+        left &= ~lane_bits(own);
+        Floats sum(0.0f);
+        RgbT<Floats> light(Floats(0.0f));
+        for (int corner = 0; corner < 8; ++corner) {
+            const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+            const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
+            if (probes_[probe].distance.empty()) continue; // inside an object
+            const Vec3 q(position(probe) - eye);
+            const float bias = kBias * std::min({step.x, step.y, step.z});
+            const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
+            const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
+                           part(0, dx) * part(1, dy) * part(2, dz) + Floats(1e-4f));
+            sum += c.weight;
+            light += c.irradiance * c.weight;
+        }
+        const Floats over = Floats(1.0f) / max(sum, Floats(1e-20f));
+        const auto lanes = xsimd::bool_cast(own);
+        result = {xsimd::select(lanes, light.r * over, result.r), xsimd::select(lanes, light.g * over, result.g),
+                  xsimd::select(lanes, light.b * over, result.b)};
+    }
+    return result;
+}
+
+std::size_t IrradianceProbes::memory_bytes() const {
+    return probes_.empty() ? 0 : probes_.size() * (sizeof(Probe) + probes_.front().distance.memory_bytes());
+}
+
+} // namespace duet::raster

@@ -1,0 +1,53 @@
+// Indirect diffuse light: a grid of probes that hold the irradiance of all light but that of the lights themselves,
+// as spherical harmonics, and what each probe sees, so that no light leaks through walls (Majercik et al. 2019,
+// "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields").
+#pragma once
+
+#include "raster/prepare.h"
+#include "raster/probes/octahedral_map.h"
+#include "raster/probes/probe_capture.h"
+
+#include <array>
+
+namespace duet::raster {
+
+/// Holds the probes of a scene, which no view changes.
+class IrradianceProbes {
+public:
+    /// Renders the probes and lets light bounce kBounces times. The result is the same for any number of threads.
+    IrradianceProbes(const PreparedData& data, const Settings& settings);
+
+    /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that
+    /// `mask` leaves out.
+    RgbT<Floats> irradiance(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
+                            const xsimd::batch_bool<float>& mask) const;
+    /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
+    float spacing() const;
+    std::size_t count() const { return probes_.size(); }
+    std::size_t memory_bytes() const;
+
+    static constexpr int kSide = 16;    ///< pixels of a face of a probe's cube
+    static constexpr int kBounces = 3;
+
+private:
+    /// Spherical harmonics of the orders 0, 1 and 2, with the constant factors included.
+    using Harmonics = std::array<Rgb, 9>;
+    struct Probe {
+        Harmonics irradiance{};
+        OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
+    };
+
+    void place(const PreparedData& data);
+    Vec3d position(std::size_t probe) const;
+    void set_distances(const ProbeCapture& capture, Probe& probe) const;
+    static Harmonics gathered(const ProbeCapture& capture);
+    void add_bounce(const ProbeCapture& capture, Harmonics& sum) const;
+    struct Corner;
+
+    Vec3d origin_;              ///< position of the first probe
+    Vec3d step_;                ///< between probes, by axis
+    std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
+    std::vector<Probe> probes_; ///< x fastest
+};
+
+} // namespace duet::raster

@@ -1,0 +1,74 @@
+// Maps the sphere of directions to a square without poles or seams (Engelhardt and Dachsbacher 2008, "Octahedron
+// Environment Maps"; Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
+#pragma once
+
+#include "raster/lanes.h"
+
+#include <vector>
+
+namespace duet::raster {
+
+/// Returns the position of a direction of any length in the square [−1, 1]².
+template <typename T> Vec2T<T> octahedral(const Vec3T<T>& w) {
+    const T one(1.0f), zero(0.0f);
+    const T over = one / (abs(w.x) + abs(w.y) + abs(w.z));
+    const T x = w.x * over, y = w.y * over;
+    const auto sign = [&](const T& v) { return select(v < zero, -one, one); };
+    const auto below = w.z < zero;
+    return {select(below, (one - abs(y)) * sign(x), x), select(below, (one - abs(x)) * sign(y), y)};
+}
+/// Returns the unit direction of a position in the square; the inverse of octahedral().
+Vec3 octahedral_direction(Vec2 p);
+
+/// Holds values of up to four channels for all directions: side × side texels in the octahedral square, with a border
+/// of one texel that continues across the square's edges, so that bilinear lookups need no special cases.
+class OctahedralMap {
+public:
+    static constexpr std::size_t kChannels = 4; ///< interleaved, so that a lookup touches few cache lines
+    using Texel = std::array<float, kChannels>;
+
+    OctahedralMap() = default;
+    explicit OctahedralMap(int side);
+
+    int side() const { return side_; }
+    bool empty() const { return side_ == 0; }
+    Texel& texel(int x, int y) { return texels_[index(x, y)]; }
+    const Texel& texel(int x, int y) const { return texels_[index(x, y)]; }
+    /// Returns the direction at a texel's center.
+    Vec3 direction(int x, int y) const;
+    /// Copies the border from the opposite texels; to be called after the texels have changed.
+    void finish();
+
+    /// Looks up the first `count` channels bilinearly in directions of any length.
+    template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w) const;
+    /// Looks up one channel at the nearest texel.
+    Floats nearest(const Vec3T<Floats>& w, std::size_t channel) const;
+    std::size_t memory_bytes() const { return texels_.size() * sizeof(Texel); }
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(side_ + 2) + static_cast<std::size_t>(x + 1);
+    }
+    int side_ = 0;
+    std::vector<Texel> texels_;
+};
+
+template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const Vec3T<Floats>& w) const {
+    const Vec2T<Floats> p = octahedral(w);
+    const Floats half(0.5f * static_cast<float>(side_)), middle(half + Floats(0.5f));
+    const Floats x = p.x * half + middle, y = p.y * half + middle; // counted from the border's texel centers
+    const Ints x0 = truncated(x), y0 = truncated(y);
+    const Floats fx = x - xsimd::batch_cast<float>(x0), fy = y - xsimd::batch_cast<float>(y0);
+    const Ints first = (y0 * Ints(side_ + 2) + x0) * Ints(static_cast<std::int32_t>(kChannels));
+    const int row = (side_ + 2) * static_cast<int>(kChannels);
+    std::array<Floats, kCount> result;
+    for (std::size_t c = 0; c < kCount; ++c) {
+        const float* from = texels_.data()->data() + c;
+        const auto corner = [&](int offset) { return gather(from + offset, first); };
+        const Floats low = lerp(corner(0), corner(static_cast<int>(kChannels)), fx);
+        result[c] = lerp(low, lerp(corner(row), corner(row + static_cast<int>(kChannels)), fx), fy);
+    }
+    return result;
+}
+
+} // namespace duet::raster

@@ -1,0 +1,125 @@
+#include "raster/probes/probe_capture.h"
+
+#include "raster/gbuffer/gbuffer_pass.h"
+#include "raster/lighting/background.h"
+#include "raster/lighting/direct_light.h"
+#include "raster/shadow/cube_map.h"
+#include "raster/shadow/light_views.h"
+#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_filter.h"
+
+#include "common/system/control.h"
+
+namespace duet::raster {
+namespace {
+
+/// Selects what a capture renders: all objects but some, with their light, or one object alone.
+struct Selection {
+    const std::vector<std::uint32_t>& objects;
+    bool excluded;
+};
+
+ProbeCapture::Face capture(const PreparedData& data, const Settings& settings, const Camera& camera, int side,
+                           const Selection& selection) {
+    const View view{camera, side, side};
+    const Pinhole pinhole = CameraModel(view).through();
+    const std::vector<SampleOffset> samples{SampleOffset{}};
+    const PassView pass{.pinhole = pinhole,
+                        .time = static_cast<float>(camera.shutter_open),
+                        .viewport = viewport_of(view, pinhole),
+                        .samples = samples};
+    const TileGrid grid{{0, 0, side, side}};
+    GeometryLoan geometry(*data.geometries);
+    if (selection.excluded)
+        process_without(data, selection.objects, grid, pass, settings, *geometry);
+    else
+        process_only(data, selection.objects, grid, pass, settings, *geometry);
+    ProbeCapture::Face face{GBuffer(ScreenProjection(pinhole, samples.front()), side, side, any_clear_coat(data.scene)),
+                            Planes3(side, side), Planes3(side, side)};
+    fill_gbuffer(data, settings, *geometry, pass, grid, samples.front(), Control{}, face.gbuffer, face.emission);
+    if (!selection.excluded) return face;
+    draw_background(data, settings, face.gbuffer, face.direct);
+    if (data.scene.lights.empty()) return face;
+    if (settings.shadows && data.soft_shadows) {
+        const MapShadows shadows(*data.shadows, *data.soft_shadows, face.gbuffer.projection.eye(), pass.time);
+        add_filtered(face.gbuffer, direct_light(data, settings, face.gbuffer, &shadows), 1, face.direct);
+    } else {
+        add(direct_light(data, settings, face.gbuffer, nullptr), 1, face.direct);
+    }
+    return face;
+}
+
+Settings single_threaded(Settings settings) {
+    settings.threads = 1;
+    settings.parts = {};
+    return settings;
+}
+/// Back faces are visible from within.
+Settings with_all_faces(const Settings& settings) {
+    Settings result = single_threaded(settings);
+    result.skips.back_faces = false;
+    return result;
+}
+
+template <std::size_t... kFaces>
+std::array<ProbeCapture::Face, 6> capture_all(const PreparedData& data, const Settings& settings,
+                                              const std::vector<Camera>& views, int side,
+                                              const Selection& selection, std::index_sequence<kFaces...>) {
+    return {capture(data, settings, views[kFaces], side, selection)...};
+}
+
+std::vector<Camera> views_about(const PreparedData& data, Vec3d center) {
+    const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
+    std::vector<Camera> views = cube_views(center, {}, size, 1, 0);
+    for (Camera& view : views) view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
+    return views;
+}
+
+} // namespace
+
+ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
+                           const std::vector<std::uint32_t>& excluded)
+    : center_(center), side_(side),
+      faces_(capture_all(data, single_threaded(settings), views_about(data, center), side, {excluded, true},
+                         std::make_index_sequence<6>())) {}
+
+ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object,
+                           int side)
+    : center_(center), side_(side),
+      faces_(capture_all(data, with_all_faces(settings), views_about(data, center), side, {{object}, false},
+                         std::make_index_sequence<6>())) {}
+
+ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
+    const std::size_t face = cube_face(w);
+    const Vec3 f = to_face(face, w);
+    const auto cell = [&](float tangent) {
+        return std::clamp(static_cast<int>((tangent + 1) * 0.5f * static_cast<float>(side_)), 0, side_ - 1);
+    };
+    return {face, cell(f.x / f.z), cell(-f.y / f.z)};
+}
+
+Vec3 ProbeCapture::direction(const Pixel& p) const {
+    const auto tangent = [&](int i) { return (2 * static_cast<float>(i) + 1) / static_cast<float>(side_) - 1; };
+    return normalize(from_face(p.face, {tangent(p.x), -tangent(p.y), 1}));
+}
+
+float ProbeCapture::solid_angle(const Pixel& p) const {
+    const Vec3 f = to_face(p.face, direction(p));
+    return f.z * f.z * f.z * 4 / static_cast<float>(side_ * side_); // of a unit square at distance 1: cos³ dA
+}
+
+float ProbeCapture::distance(const Pixel& p) const {
+    const GBuffer& gbuffer = faces_[p.face].gbuffer;
+    const float reversed = gbuffer.reversed_depth(p.x, p.y);
+    if (!(reversed > 0)) return kInfinity;
+    return gbuffer.projection.near() / reversed / to_face(p.face, direction(p)).z;
+}
+
+std::size_t ProbeCapture::memory_bytes() const {
+    std::size_t sum = 0;
+    for (const Face& face : faces_)
+        sum += face.gbuffer.memory_bytes() + face.emission.memory_bytes() + face.direct.memory_bytes();
+    return sum;
+}
+
+} // namespace duet::raster

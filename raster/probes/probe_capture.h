@@ -1,0 +1,51 @@
+// Renders what a point of the scene sees, by the rasterizer itself: six square views, whose G-buffers are kept so that
+// light can bounce between probes without rendering again.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/prepare.h"
+
+#include <array>
+
+namespace duet::raster {
+
+/// Holds the six faces of a cube about a point. Directions and faces are those of raster/shadow/cube_map.h.
+class ProbeCapture {
+public:
+    struct Face {
+        GBuffer gbuffer;
+        Planes3 emission; ///< of the visible surfaces
+        Planes3 direct;   ///< direct light that the surfaces reflect, and the background
+    };
+    /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, in order, are left
+    /// out.
+    ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
+                 const std::vector<std::uint32_t>& excluded);
+
+    /// Renders one object alone, without light: its surface as seen from within or from outside.
+    ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object, int side);
+
+    Vec3d center() const { return center_; }
+    int side() const { return side_; }
+    std::array<Face, 6>& faces() { return faces_; }
+    const std::array<Face, 6>& faces() const { return faces_; }
+    /// Returns the face, column and row of the pixel in a direction of any length.
+    struct Pixel {
+        std::size_t face;
+        int x, y;
+    };
+    Pixel pixel(Vec3 w) const;
+    /// Returns the unit direction of a pixel, and the solid angle that the pixel subtends.
+    Vec3 direction(const Pixel& pixel) const;
+    float solid_angle(const Pixel& pixel) const;
+    /// Returns the distance of the surface at a pixel, in meters; infinity for the background.
+    float distance(const Pixel& pixel) const;
+    std::size_t memory_bytes() const;
+
+private:
+    Vec3d center_;
+    int side_;
+    std::array<Face, 6> faces_;
+};
+
+} // namespace duet::raster

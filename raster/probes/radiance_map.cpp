@@ -1,0 +1,136 @@
+#include "raster/probes/radiance_map.h"
+
+#include "common/material/ggx.h"
+#include "common/sampling/hash.h"
+#include "common/sampling/sobol.h"
+#include "common/system/parallel.h"
+#include "common/vec/frame.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr int kSamples = 64; ///< of a lobe; a multiple of any batch
+
+/// Samples of the GGX lobe about +z, each with its weight and the mip level whose texels subtend what it represents
+/// (Křivánek and Colbert 2008, "Real-time Shading with Filtered Importance Sampling").
+struct LobeSamples {
+    std::array<Vec3, kSamples> w{};
+    std::array<float, kSamples> weight{};
+    std::array<std::size_t, kSamples> level{};
+
+    LobeSamples(float alpha, int side, std::size_t levels) {
+        const Vec3 n(0, 0, 1);
+        const float texel = 4 * kPi / static_cast<float>(side * side);
+        float sum = 0;
+        for (std::size_t i = 0; i < kSamples; ++i) {
+            const Vec2 u(unit_float(reverse_bits(static_cast<std::uint32_t>(i))),
+                         (static_cast<float>(i) + 0.5f) / kSamples);
+            const Vec3 h = ggx_sample_visible_normal(n, alpha, u);
+            w[i] = normalize(reflect(n, h));
+            weight[i] = std::max(w[i].z, 0.0f);
+            const float solid_angle = 1 / (kSamples * ggx_reflection_pdf(n, h, alpha));
+            const float mip = 0.5f * std::log2(std::max(solid_angle / texel, 1.0f)) + 0.5f; // slightly blurred
+            level[i] = std::min(static_cast<std::size_t>(mip), levels - 1);
+            sum += weight[i];
+        }
+        for (float& x : weight) x /= sum;
+    }
+};
+
+/// Halves a map. Texels of the octahedral square differ in solid angle by a factor of up to 5, but neighbors hardly do.
+OctahedralMap halved(const OctahedralMap& fine) {
+    OctahedralMap coarse(fine.side() / 2);
+    for (int y = 0; y < coarse.side(); ++y)
+        for (int x = 0; x < coarse.side(); ++x)
+            for (std::size_t c = 0; c < OctahedralMap::kChannels; ++c)
+                coarse.texel(x, y)[c] = 0.25f * (fine.texel(2 * x, 2 * y)[c] + fine.texel(2 * x + 1, 2 * y)[c] +
+                                                 fine.texel(2 * x, 2 * y + 1)[c] + fine.texel(2 * x + 1, 2 * y + 1)[c]);
+    coarse.finish();
+    return coarse;
+}
+
+OctahedralMap::Texel filtered(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, Vec3 axis) {
+    const Frame frame = frame_from_normal(axis);
+    Rgb sum;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+        if (samples.weight[i] == 0) continue;
+        const Vec3 w = frame.to_world(samples.w[i]);
+        const OctahedralMap& map = mips[samples.level[i]];
+        const Vec2 p = octahedral(w);
+        const auto cell = [&](float v) {
+            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(map.side())), 0, map.side() - 1);
+        };
+        const OctahedralMap::Texel& texel = map.texel(cell(p.x), cell(p.y));
+        sum += Rgb(texel[0], texel[1], texel[2]) * samples.weight[i];
+    }
+    return {sum.r, sum.g, sum.b, 0};
+}
+
+template <typename Value> void for_each_texel(OctahedralMap& map, int threads, const Value& value) {
+    parallel_for(static_cast<std::size_t>(map.side()), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < map.side(); ++x) map.texel(x, y) = value(map.direction(x, y));
+    });
+    map.finish();
+}
+
+} // namespace
+
+RadianceMap::RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads)
+    : sharp_(side), bright_(side) {
+    std::atomic<bool> emits = false;
+    parallel_for(static_cast<std::size_t>(side), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < side; ++x) {
+            const Arriving a = arriving(sharp_.direction(x, y));
+            const Rgb rest = a.radiance - a.emitted;
+            // Distances stay finite, so that steps along a ray do.
+            const float distance = min(a.distance, 1e15f);
+            sharp_.texel(x, y) = {rest.r, rest.g, rest.b, distance};
+            bright_.texel(x, y) = {a.radiance.r, a.radiance.g, a.radiance.b, distance};
+            if (!is_black(a.emitted)) emits = true;
+        }
+    });
+    sharp_.finish(), bright_.finish();
+    if (!emits) bright_ = {};
+    std::vector<OctahedralMap> mips{sharp_};
+    while (mips.back().side() > 4) mips.push_back(halved(mips.back()));
+    for (int k = 0; k < kLevels; ++k) {
+        const float roughness = static_cast<float>(k + 1) / kLevels;
+        OctahedralMap& map = rough_[static_cast<std::size_t>(k)];
+        map = OctahedralMap(std::clamp(side >> (k + 1), 8, 64));
+        const LobeSamples samples(sqr(roughness), side, mips.size());
+        for_each_texel(map, threads, [&](Vec3 w) { return filtered(mips, samples, w); });
+    }
+}
+
+RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& w) const {
+    const auto [r, g, b] = (bright_.empty() ? sharp_ : bright_).at<3>(w);
+    return {r, g, b};
+}
+
+RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& axis, const Floats& alpha) const {
+    const Floats level = xsimd::sqrt(alpha) * Floats(static_cast<float>(kLevels)); // 0: sharp
+    RgbT<Floats> sum;
+    for (int k = 0; k <= kLevels; ++k) {
+        // Linear interpolation between levels: a tent of width 2 about each.
+        const Floats weight = max(Floats(1.0f) - abs(level - Floats(static_cast<float>(k))), Floats(0.0f));
+        if (!xsimd::any(weight > Floats(0.0f))) continue;
+        const OctahedralMap& map = k == 0 ? sharp_ : rough_[static_cast<std::size_t>(k - 1)];
+        const auto [r, g, b] = map.at<3>(axis);
+        sum += RgbT<Floats>{r, g, b} * weight;
+    }
+    return sum;
+}
+
+std::size_t RadianceMap::memory_bytes() const {
+    std::size_t sum = sharp_.memory_bytes() + bright_.memory_bytes();
+    for (const OctahedralMap& map : rough_) sum += map.memory_bytes();
+    return sum;
+}
+
+} // namespace duet::raster

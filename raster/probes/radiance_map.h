@@ -1,0 +1,54 @@
+// The radiance that arrives at a point from all directions, prefiltered for rough reflections: the first factor of the
+// split sum (Karis 2013, "Real Shading in Unreal Engine 4").
+#pragma once
+
+#include "raster/probes/octahedral_map.h"
+
+#include "common/image/rgb.h"
+
+#include <functional>
+
+namespace duet::raster {
+
+/// Holds octahedral maps for several widths of the GGX lobe. The first is sharp; the k-th of the others is filtered by
+/// the lobe of roughness k / kLevels about each direction, with viewer and normal on the lobe's axis.
+class RadianceMap {
+public:
+    static constexpr int kLevels = 5;
+
+    RadianceMap() = default;
+    /// What arrives from a direction: the radiance, how much of it lights emit, and the distance of where it comes from.
+    struct Arriving {
+        Rgb radiance, emitted;
+        float distance = kInfinity;
+    };
+    /// Samples `arriving`, a function of a unit direction, at side × side texels (a power of 2, at least 8), then
+    /// filters what lights do not emit: their reflection on rough surfaces is direct light. The result is the same for
+    /// any number of threads.
+    RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads);
+
+    bool empty() const { return sharp_.empty(); }
+    /// Returns the radiance, without what lights emit, filtered by lobes of GGX width alpha about directions of any
+    /// length.
+    RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
+    /// Returns the sharp radiance, with what lights emit.
+    RgbT<Floats> at(const Vec3T<Floats>& w) const;
+    /// Returns the distance of what is visible in directions of any length.
+    Floats distance(const Vec3T<Floats>& w) const { return sharp_.nearest(w, 3); }
+    const OctahedralMap& sharp() const { return sharp_; }
+    std::size_t memory_bytes() const;
+
+private:
+    OctahedralMap sharp_, bright_; ///< without and with what lights emit; bright_ is empty if there is none
+    std::array<OctahedralMap, kLevels> rough_; ///< rough_[k] has roughness (k + 1) / kLevels
+};
+
+/// Returns the dominant direction of a GGX lobe: between the mirrored direction and the normal, and nearer to the
+/// normal the rougher the surface (Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based Rendering",
+/// §4.9.3). The vectors are unit; the result is not.
+template <typename T> Vec3T<T> dominant_direction(const Vec3T<T>& normal, const Vec3T<T>& mirrored, const T& alpha) {
+    const T smooth = T(1) - alpha;
+    return lerp(normal, mirrored, smooth * (sqrt(smooth) + alpha));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,43 @@
+// What mirrors, metal and glass reflect: radiance maps at points of the scene, looked up where the reflected ray meets
+// the surfaces that the map saw (Szirmay-Kalos et al. 2005, "Approximate Ray-Tracing on the GPU with Distance
+// Impostors").
+#pragma once
+
+#include "raster/prepare.h"
+#include "raster/probes/probe_capture.h"
+#include "raster/probes/radiance_map.h"
+
+namespace duet::raster {
+
+/// Holds the reflection probes of a scene, which no view changes. The largest objects that reflect have a probe at their
+/// center, which does not see them; all others use the nearest probe.
+class ReflectionProbes {
+public:
+    /// `data` must have its irradiance probes, if the settings want them.
+    ReflectionProbes(const PreparedData& data, const Settings& settings);
+
+    /// Returns the probe of an object.
+    std::size_t probe_of(std::int32_t object) const { return of_object_[static_cast<std::size_t>(object)]; }
+    /// Returns the vector from a probe's center to what a ray from the point p, relative to the eye at `eye`, meets in
+    /// the unit direction w. It is very long where that is the background.
+    Vec3T<Floats> trace(std::size_t probe, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& w) const;
+    const RadianceMap& map(std::size_t probe) const { return probes_[probe].map; }
+    Vec3d center(std::size_t probe) const { return probes_[probe].center; }
+    std::size_t memory_bytes() const;
+
+    static constexpr int kMostProbes = 24;
+    static constexpr int kSide = 128; ///< texels of the sharp maps
+
+private:
+    struct Probe {
+        Vec3d center;
+        RadianceMap map;
+    };
+    std::vector<Probe> probes_;
+    std::vector<std::size_t> of_object_;
+};
+
+/// Returns whether a material reflects more than a diffuse surface does.
+bool reflects(const Material& material);
+
+} // namespace duet::raster

@@ -1,0 +1,259 @@
+#include "raster/screen_space/gtao.h"
+
+#include "raster/gbuffer/neighbors.h"
+
+#include "common/vec/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+
+/// A height above the plane below this fraction of the distance between two points is rounding error.
+constexpr float kSlack = 1e-3f;
+/// The direction to a point nearer than this fraction of the distance from the eye is dominated by rounding.
+constexpr float kClosest = 3e-4f;
+constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horizons begin to fade
+constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated normals may face away
+constexpr int kBlock = 4;             ///< pixels of half resolution along a side, each with a direction of its own
+
+/// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
+Floats arc_cosine(const Floats& x) {
+    const Floats a = min(abs(x), Floats(1.0f));
+    const Floats polynomial = Floats(1.5707288f) +
+        a * (Floats(-0.2121144f) + a * (Floats(0.0742610f) + a * Floats(-0.0187293f)));
+    const Floats result = xsimd::sqrt(Floats(1.0f) - a) * polynomial;
+    return xsimd::select(x < Floats(0.0f), Floats(kPi) - result, result);
+}
+
+Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
+
+/// The integrals over the open arc from the viewer's direction, θ = 0, to a horizon, in the plane of v and t. The
+/// projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; the others have the factors cos θ and sin θ.
+struct Arc {
+    Floats all, along_v, along_t;
+};
+Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Floats& cos_gamma,
+        const Floats& sin_gamma) {
+    const Floats third(1.0f / 3), cube = sine * sine * sine * third;
+    return {Floats(0.5f) * (cos_gamma * sine * sine + sin_gamma * (angle - sine * cosine)),
+            cos_gamma * (third - cosine * cosine * cosine * third) + sin_gamma * cube,
+            cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
+}
+
+/// Finds horizons: the greatest cosine to the viewer of the surfaces along a line from each point.
+class HorizonSearch {
+public:
+    HorizonSearch(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer, float radius)
+        : gbuffer_(gbuffer), p_(p), n_(n), to_viewer_(to_viewer), home_(gbuffer.projection.homogeneous(p)),
+          radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
+        const Floats over_w = Floats(1.0f) / home_[3];
+        x_ = home_[0] * over_w, y_ = home_[1] * over_w;
+    }
+
+    /// Returns the horizon towards the unit vector t, which is perpendicular to the view; at least `lowest`.
+    Floats operator()(const Vec3s& t, const Floats& lowest, const Floats& jitter) const {
+        const std::array<Floats, 4> change = gbuffer_.projection.homogeneous_change(t);
+        const Floats over_w = Floats(1.0f) / home_[3];
+        Floats step_x = (change[0] - x_ * change[3]) * over_w, step_y = (change[1] - y_ * change[3]) * over_w;
+        const Floats speed = xsimd::sqrt(step_x * step_x + step_y * step_y),
+                     per_pixel = Floats(1.0f) / max(speed, Floats(1e-20f));
+        step_x *= per_pixel, step_y *= per_pixel;
+        const Floats width(static_cast<float>(gbuffer_.width())), height(static_cast<float>(gbuffer_.height()));
+        const Floats pixels =
+            min(speed * Floats(radius_), min(to_edge(x_, step_x, width), to_edge(y_, step_y, height)));
+        Floats highest = lowest;
+        for (int i = 0; i < GtaoImage::kSteps; ++i) {
+            const Floats s = (Floats(static_cast<float>(i)) + jitter) * Floats(1.0f / GtaoImage::kSteps);
+            const Floats reach = Floats(1.0f) + s * s * pixels; // denser near the point, where occluders block most
+            highest = max(highest, horizon_at(xsimd::floor(x_ + step_x * reach + Floats(0.5f)),
+                                              xsimd::floor(y_ + step_y * reach + Floats(0.5f)), lowest));
+        }
+        return highest;
+    }
+
+private:
+    /// Returns the cosine to the viewer of the surface at a pixel, or `lowest` if it does not count as an occluder.
+    Floats horizon_at(const Floats& x, const Floats& y, const Floats& lowest) const {
+        const Floats none(0.0f), right(static_cast<float>(gbuffer_.width() - 1)),
+            bottom(static_cast<float>(gbuffer_.height() - 1));
+        const Mask inside = (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
+        const Ints index = truncated(clamp(y, none, bottom)) * Ints(gbuffer_.reversed_depth.stride()) +
+                           truncated(clamp(x, none, right));
+        const Floats depth = gather(gbuffer_.reversed_depth.row(0), index);
+        const Vec3s to = gbuffer_.projection.point(x, y, depth) - p_;
+        const Floats squared = dot(to, to), over = inverse_sqrt(squared), distance = squared * over;
+        const Mask counts = inside & (depth > none) & (squared > closest_) & (distance < Floats(radius_)) &
+                            (dot(n_, to) >= Floats(kSlack) * distance);
+        const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) -
+                                    Floats(kFadeFrom / (1 - kFadeFrom)), none);
+        return xsimd::select(counts, lerp(dot(to, to_viewer_) * over, lowest, fade), lowest);
+    }
+    /// Returns the distance in pixels to the image's edge in a unit direction.
+    static Floats to_edge(const Floats& at, const Floats& step, const Floats& size) {
+        const Floats end = xsimd::select(step > Floats(0.0f), size, Floats(0.0f));
+        return max(xsimd::select(step == Floats(0.0f), Floats(1e9f), (end - at) / step), Floats(0.0f));
+    }
+
+    const GBuffer& gbuffer_;
+    const Vec3s &p_, &n_, &to_viewer_;
+    std::array<Floats, 4> home_;
+    Floats x_, y_;
+    float radius_;
+    Floats closest_;
+};
+
+/// The direction and the step jitter of each pixel of a block, in [0, 1). The sixteen directions are all multiples of
+/// 1/16, ordered so that neighbors differ (Bayer 1973), and jitters are spread likewise.
+struct Pattern {
+    Floats turn, jitter;
+};
+Pattern pattern_of(int x, int y) {
+    static constexpr std::array<float, 16> kTurn{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+    StripOf<float> turn, jitter;
+    for (std::size_t i = 0; i < Floats::size; ++i) {
+        const auto column = static_cast<std::size_t>(x + static_cast<int>(i)) % kBlock;
+        const std::size_t cell = static_cast<std::size_t>(y % kBlock) * kBlock + column;
+        turn[i] = (kTurn[cell] + 0.5f) / 16;
+        jitter[i] = (kTurn[(cell * 5 + 3) % 16] + 0.5f) / 16;
+    }
+    return {load(turn, 0), load(jitter, 0)};
+}
+
+/// Returns the visibility along one line through each pixel, the one turned by `pattern` about the view.
+SkyVisibility<Floats> search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius,
+                                  const Pattern& pattern) {
+    const Floats one(1.0f), none(0.0f);
+    const Vec3s v = gbuffer.projection.to_viewer(p);
+    const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
+    const HorizonSearch search(gbuffer, p, n, v, radius);
+    const FrameT<Floats> frame = frame_from_normal(v);
+    const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
+    const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
+    const Vec3s in_plane = n - across * dot(n, across); // the normal projected to the plane of v and t
+    const Floats size = xsimd::sqrt(dot(in_plane, in_plane)), over = one / max(size, Floats(1e-6f));
+    const Floats cos_gamma = min(dot(in_plane, v) * over, one), sin_gamma = dot(in_plane, t) * over;
+    const Floats turned = arc_cosine(cos_gamma), gamma = xsimd::select(sin_gamma < none, -turned, turned);
+    const Floats all = size * (cos_gamma + gamma * sin_gamma);
+    Floats lost = none;
+    Vec3s hidden{none, none, none};
+    for (const float side : {1.0f, -1.0f}) {
+        const Floats s = Floats(side) * sin_gamma, lowest = -s; // the tangent plane's horizon, π/2 from the normal
+        const Floats highest = search(t * Floats(side), lowest, pattern.jitter);
+        const Arc open = arc(Floats(kPi / 2) + Floats(side) * gamma, lowest, cos_gamma, cos_gamma, s);
+        const Arc seen = arc(arc_cosine(highest), highest, xsimd::sqrt(max(one - highest * highest, none)), cos_gamma,
+                             s);
+        const auto less = [&](const Floats& whole, const Floats& rest) { // exactly 0 if nothing is hidden
+            return xsimd::select(highest > lowest, size * (whole - rest), none);
+        };
+        lost += max(less(open.all, seen.all), none);
+        hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
+    }
+    // `all` averages to 1 over the directions of a block, whatever the normal, so no line is normalized by itself.
+    return {all - lost, hidden};
+}
+
+} // namespace
+
+void GtaoImage::reset(int width, int height) {
+    if (depth_.width() == width && depth_.height() == height) return;
+    depth_ = PlaneFloat(width, height);
+    normal_ = Planes3(width, height);
+    for (Planes* planes : {&found_, &smooth_})
+        planes->visible = PlaneFloat(width, height), planes->hidden = Planes3(width, height);
+}
+
+void GtaoImage::compute(const GBuffer& gbuffer, float radius, int threads) {
+    gbuffer_ = &gbuffer;
+    reset((gbuffer.width() + 1) / 2, (gbuffer.height() + 1) / 2);
+    const auto rows = static_cast<std::size_t>(depth_.height());
+    parallel_for(rows, threads, [&](std::size_t y) { search_row(static_cast<int>(y), radius); });
+    parallel_for(rows, threads, [&](std::size_t y) { filter_row(static_cast<int>(y)); });
+}
+
+/// Returns the points of a batch of half-resolution pixels, relative to the eye.
+Vec3s GtaoImage::point(int x, int y, const Floats& depth) const {
+    return gbuffer_->projection.point(Floats(static_cast<float>(2 * x)) + load(kLanesAsFloats, 0) * Floats(2.0f),
+                                      Floats(static_cast<float>(2 * y)), max(depth, Floats(1e-30f)));
+}
+
+void GtaoImage::search_row(int y, float radius) {
+    const auto halved = [&](const PlaneFloat& from, PlaneFloat& to) {
+        for (int x = 0; x < to.width(); ++x) to(x, y) = from(2 * x, 2 * y);
+    };
+    halved(gbuffer_->reversed_depth, depth_);
+    halved(gbuffer_->normal.x, normal_.x), halved(gbuffer_->normal.y, normal_.y), halved(gbuffer_->normal.z, normal_.z);
+    for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
+        const Floats depth = load(depth_, x, y);
+        const Mask seen = depth > Floats(0.0f);
+        SkyVisibility<Floats> found;
+        if (radius > 0 && xsimd::any(seen)) {
+            found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
+        }
+        store(found_.visible, x, y, found.visible);
+        found_.hidden.set(x, y, found.hidden);
+    }
+}
+
+/// Averages a row over the 4 × 4 pixels about each, which together hold all directions.
+void GtaoImage::filter_row(int y) {
+    const ScreenProjection& projection = gbuffer_->projection;
+    for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
+        const Floats depth = load(depth_, x, y);
+        if (!xsimd::any(depth > Floats(0.0f))) continue;
+        const Vec3s p = point(x, y, depth), n = normal_.vector(x, y);
+        const Floats tolerance =
+            Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
+        Floats sum(0.0f), visible(0.0f);
+        Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+        for (int dy = -kBlock / 2; dy < kBlock / 2; ++dy)
+            for (int dx = -kBlock / 2; dx < kBlock / 2; ++dx) {
+                const Floats other = load_at(depth_, x + dx, y + dy);
+                const Floats alike = likeness(p, n, tolerance, point(x + dx, y + dy, other),
+                                              load_at(normal_, x + dx, y + dy));
+                const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
+                sum += weight;
+                visible += weight * load_at(found_.visible, x + dx, y + dy);
+                hidden += load_at(found_.hidden, x + dx, y + dy) * weight;
+            }
+        const Floats over = Floats(1.0f) / max(sum, Floats(1e-6f)); // the pixel itself weighs 1
+        store(smooth_.visible, x, y, clamp(visible * over, Floats(0.0f), Floats(1.0f)));
+        smooth_.hidden.set(x, y, hidden * over);
+    }
+}
+
+SkyVisibility<Floats> GtaoImage::at(int x, int y) const {
+    // Pixel 2k has a value of its own at half resolution; pixel 2k + 1 lies between two.
+    const Vec3s p = gbuffer_->points(x, y), n = gbuffer_->normal.vector(x, y);
+    const ScreenProjection& projection = gbuffer_->projection;
+    const Floats depth = load(gbuffer_->reversed_depth, x, y);
+    const Floats tolerance =
+        Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
+    const Ints column = Ints(x) + load(kLanes, 0), last(depth_.width() - 1);
+    Floats sum(0.0f), visible(0.0f);
+    Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+    for (int dy = 0; dy < (y % 2 == 0 ? 1 : 2); ++dy)
+        for (int dx = 0; dx < 2; ++dx) {
+            const int row = std::min(y / 2 + dy, depth_.height() - 1);
+            const Ints half = xsimd::min((column + Ints(dx)) >> 1, last);
+            const auto read = [&](const PlaneFloat& plane) { return gather(plane.row(row), half); };
+            const Floats other = read(depth_);
+            const Vec3s q = projection.point(xsimd::batch_cast<float>(half) * Floats(2.0f),
+                                             Floats(static_cast<float>(2 * row)), max(other, Floats(1e-30f)));
+            const Vec3s m{read(normal_.x), read(normal_.y), read(normal_.z)};
+            const Floats alike = max(likeness(p, n, tolerance, q, m), Floats(1e-4f));
+            const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
+            sum += weight;
+            visible += weight * read(smooth_.visible);
+            hidden += Vec3s{read(smooth_.hidden.x), read(smooth_.hidden.y), read(smooth_.hidden.z)} * weight;
+        }
+    const Mask found = sum > Floats(0.0f);
+    const Floats over = xsimd::select(found, Floats(1.0f) / sum, Floats(0.0f));
+    return {xsimd::select(found, visible * over, Floats(1.0f)), hidden * over};
+}
+
+} // namespace duet::raster

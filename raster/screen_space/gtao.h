@@ -1,0 +1,69 @@
+// Ground-truth ambient occlusion (GTAO): how much of the environment the surfaces in the image hide from each pixel
+// (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §4). Horizons are searched
+// at half resolution, averaged over 4 × 4 neighbors on the same surface, and upsampled along depths and normals.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+
+namespace duet::raster {
+
+/// Describes which part of the cosine-weighted hemisphere over a point is open to the environment.
+template <typename T> struct SkyVisibility {
+    T visible = T(1); ///< open fraction, in [0, 1]
+    /// ∫ w cos dw / π over the hidden directions: their mean direction, weighted by how much of the light they block.
+    /// It is 2/3 of the normal if everything is hidden.
+    Vec3T<T> hidden{T(0), T(0), T(0)};
+};
+
+/// Holds the occlusion of a G-buffer, and optionally its irradiance, at half resolution. Its memory is reused from frame
+/// to frame.
+class GtaoImage {
+public:
+    /// Searches occluders up to `radius` meters away; radius 0 searches none. The G-buffer must outlive this object's
+    /// use.
+    void compute(const GBuffer& gbuffer, float radius, int threads);
+    /// Computes irradiance(p, n, lanes) at every half-resolution pixel: p is relative to the eye, n unit. The hidden
+    /// directions are overwritten.
+    template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
+
+    /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
+    SkyVisibility<Floats> at(int x, int y) const;
+    /// Returns the visible fraction and the irradiance of a batch, after add_irradiance().
+    struct Lit {
+        Floats visible;
+        RgbT<Floats> irradiance;
+    };
+    Lit lit_at(int x, int y) const {
+        const SkyVisibility<Floats> s = at(x, y);
+        return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}};
+    }
+
+    static constexpr int kSteps = 10; ///< depths read on each side of a pixel
+
+private:
+    struct Planes {
+        PlaneFloat visible;
+        Planes3 hidden;
+    };
+    void search_row(int y, float radius);
+    void filter_row(int y);
+    void reset(int width, int height);
+    Vec3T<Floats> point(int x, int y, const Floats& depth) const;
+
+    const GBuffer* gbuffer_ = nullptr;
+    PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
+    Planes3 normal_;        ///< likewise
+    Planes found_, smooth_; ///< before and after averaging
+};
+
+template <typename Irradiance> void GtaoImage::add_irradiance(int threads, const Irradiance& irradiance) {
+    for_each_batch(depth_.width(), depth_.height(), threads, [&](int x, int y) {
+        const Floats depth = load(depth_, x, y);
+        const auto seen = depth > Floats(0.0f);
+        if (!xsimd::any(seen)) return;
+        const RgbT<Floats> e = irradiance(point(x, y, depth), normal_.vector(x, y), seen);
+        smooth_.hidden.set(x, y, e);
+    });
+}
+
+} // namespace duet::raster

@@ -1,0 +1,76 @@
+#include "raster/shadows/map_shadows.h"
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+
+/// A dither matrix (Bayer 1973), so that neighbors' patterns differ most.
+constexpr std::array<std::int32_t, 16> kDither{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+
+Ints patterns(int x, int y) {
+    alignas(64) std::array<std::int32_t, Ints::size> result;
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = kDither[static_cast<std::size_t>(y % 4 * 4 + (x + static_cast<int>(i)) % 4)];
+    return Ints::load_aligned(result.data());
+}
+
+} // namespace
+
+SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
+    for (const Shadows::Source& source : shadows.sources()) {
+        auto& moments = maps_.emplace_back();
+        for (const Shadows::Maps& maps : source.moments) {
+            auto& cells = moments.emplace_back();
+            for (std::size_t i = 0; i < maps.cells.size(); ++i) cells.emplace_back(maps.cells[i].cube(), source.cells[i]);
+        }
+    }
+}
+
+MapShadows::MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const Vec3d& eye, float time)
+    : shadows_(shadows), soft_(soft), eye_(eye), moment_(shadows.moment_at(time)) {
+    for (const Shadows::Source& from : shadows.sources()) {
+        Source& source = sources_.emplace_back();
+        const Shadows::Maps& maps = from.moments[moment_];
+        for (const ShadowMap& view : maps.views) source.views.emplace_back(view, eye);
+        for (const CubeMap& cube : maps.cubes) {
+            auto& faces = source.cubes.emplace_back();
+            for (const auto& face : cube.faces) faces.emplace_back(*face, eye);
+        }
+    }
+}
+
+Floats MapShadows::sharp_visibility(const Source& source, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const {
+    Floats result(1.0f);
+    Mask found = p.x != p.x;
+    const auto look = [&](const SharpShadowMap& map) {
+        Mask inside;
+        const Floats seen = map.visibility(p, n, inside);
+        result = xsimd::select((!found) & inside, seen, result);
+        found = found | inside;
+        return xsimd::all(found);
+    };
+    for (const SharpShadowMap& view : source.views)
+        if (look(view)) return result;
+    // The faces of a cube overlap by guard texels, so the first that holds a point serves it.
+    for (const auto& cube : source.cubes)
+        for (const SharpShadowMap& face : cube)
+            if (look(face)) return result;
+    return result;
+}
+
+Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
+                              const Mask&) const {
+    const std::size_t source = shadows_.source_of(light);
+    if (source == shadows_.sources().size()) return Floats(1.0f);
+    const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
+    if (cells.empty()) return sharp_visibility(sources_[source], p, n);
+    const Ints pattern = patterns(x, y);
+    // Four cells share the rows of a block, so a batch looks at one cell only.
+    if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, pattern);
+    Floats sum(0.0f);
+    for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, pattern);
+    return sum * Floats(1 / static_cast<float>(cells.size()));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,48 @@
+// The shadows of all lights of a scene, looked up in lanes.
+#pragma once
+
+#include "raster/shadow/shadows.h"
+#include "raster/shadows/sharp_shadow_map.h"
+#include "raster/shadows/shadow_lookup.h"
+#include "raster/shadows/soft_shadow_map.h"
+
+namespace duet::raster {
+
+/// Holds the soft shadow maps of a scene, which no view changes.
+class SoftShadowMaps {
+public:
+    explicit SoftShadowMaps(const Shadows& shadows);
+    /// Returns the maps of the cells of a source at a moment (Shadows::Source).
+    std::span<const SoftShadowMap> of(std::size_t source, std::size_t moment) const { return maps_[source][moment]; }
+
+private:
+    std::vector<std::vector<std::vector<SoftShadowMap>>> maps_;
+};
+
+/// Looks up the shadows for the points of one view at one time.
+class MapShadows final : public ShadowLookup {
+public:
+    /// Neither `shadows` nor `soft` is copied.
+    MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const Vec3d& eye, float time);
+
+    /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block is
+    /// the shadow; blur_shadows() computes it.
+    Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
+                      const xsimd::batch_bool<float>& mask) const override;
+
+private:
+    struct Source {
+        std::vector<SharpShadowMap> views;          ///< tried in order
+        std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shadows nothing
+        std::vector<const CubeMap*> cube_maps;
+    };
+    Floats sharp_visibility(const Source& source, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
+
+    const Shadows& shadows_;
+    const SoftShadowMaps& soft_;
+    Vec3d eye_;
+    std::size_t moment_;
+    std::vector<Source> sources_;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,13 @@
+// Removes the noise of shadows that few taps a pixel estimate: the ratio of shadowed to unshadowed light is averaged
+// over neighbors on the same surface, while the unshadowed light stays sharp (Heitz, Hill and McGuire 2018, "Combining
+// Analytic Direct Illumination and Stochastic Shadows").
+#pragma once
+
+#include "raster/lighting/direct_light.h"
+
+namespace duet::raster {
+
+/// Adds the direct light to the radiance, its shadows averaged over the 4 × 4 pixels whose taps differ (MapShadows).
+void add_filtered(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance);
+
+} // namespace duet::raster

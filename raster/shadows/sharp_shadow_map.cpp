@@ -1,0 +1,100 @@
+#include "raster/shadows/sharp_shadow_map.h"
+
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+
+/// Facets of one surface meet at up to 27 degrees (tangent), or at the fraction kOfElevation of the light's elevation
+/// above the surface, and do not shade each other.
+constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
+constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light
+
+/// Weights of the quadratic B-spline, which is a box of one texel convolved twice with itself, at four texels. The
+/// second texel is at the distance f, in [0, 1), before the point.
+std::array<Floats, 4> spline(const Floats& f) {
+    const Floats g = Floats(1.0f) - f, half(0.5f);
+    const auto outer = [&](const Floats& x) { // of distance x in [1, 2)
+        const Floats d = max(Floats(1.5f) - x, Floats(0.0f));
+        return half * d * d;
+    };
+    const auto inner = [&](const Floats& x) { // of distance x in [0, 1)
+        return xsimd::select(x < half, Floats(0.75f) - x * x, outer(x));
+    };
+    return {outer(Floats(1.0f) + f), inner(f), inner(g), outer(Floats(1.0f) + g)};
+}
+
+Floats dot_constant(const Vec3T<Floats>& a, Vec3 b) { return a.x * Floats(b.x) + a.y * Floats(b.y) + a.z * Floats(b.z); }
+
+} // namespace
+
+SharpShadowMap::SharpShadowMap(const ShadowMap& map, const Vec3d& eye)
+    : map_(map), direction_(map.view().direction), direction_dx_(map.view().direction_dx),
+      direction_dy_(map.view().direction_dy), origin_dx_(map.view().origin_dx), origin_dy_(map.view().origin_dy),
+      near_(static_cast<float>(map.near())) {
+    for (std::size_t row = 0; row < 4; ++row) {
+        const auto& m = map.view().world_to_pixel[row];
+        to_texel_[row] = {static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]),
+                          static_cast<float>(m[0] * eye.x + m[1] * eye.y + m[2] * eye.z + m[3])};
+    }
+}
+
+/// The plane n·(q − p) = 0 meets a texel's ray o + d·w at the depth d = n·(p − o)/n·w. In a perspective view o is
+/// constant and 1/d is linear in w. In an orthographic view w is constant and d is linear in o.
+SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, const Floats& depth,
+                                            const Vec3T<Floats>& n) const {
+    const bool flat = map_.orthographic();
+    const auto all = [](Vec3 w) { return Vec3T<Floats>{Floats(w.x), Floats(w.y), Floats(w.z)}; };
+    const Vec3T<Floats> ray = all(direction_) + all(direction_dx_) * x + all(direction_dy_) * y; // to depth 1
+    const Floats towards = max(-dot(n, ray), Floats(1e-6f));
+    const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = towards * over_ray, one(1.0f);
+    const Floats sine = xsimd::sqrt(max(one - cosine * cosine, Floats(0.0f)));
+    const Floats t = min(Floats(kSteepest), Floats(kOfElevation) * cosine / max(sine, Floats(1e-6f)));
+    const Floats width = flat ? Floats(length(origin_dx_)) : Floats(length(direction_dx_)) * depth;
+    const Floats at = flat ? -depth : Floats(near_) / depth, per_depth = flat ? one : at / depth;
+    const Floats slope = (flat ? one : at) / -towards;
+    return {at, dot_constant(n, flat ? origin_dx_ : direction_dx_) * slope,
+            dot_constant(n, flat ? origin_dy_ : direction_dy_) * slope,
+            Floats(kRounding) * depth * per_depth / towards,
+            t / (cosine - t * sine) * width * over_ray * per_depth};
+}
+
+Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, Mask& inside) const {
+    const auto row = [&](std::size_t r) {
+        const Vec4& m = to_texel_[r];
+        return Floats(m.x) * p.x + Floats(m.y) * p.y + Floats(m.z) * p.z + Floats(m.w);
+    };
+    const Floats depth = row(2), over_w = Floats(1.0f) / row(3), zero(0.0f), half(0.5f);
+    const Floats x = row(0) * over_w, y = row(1) * over_w;
+    const Floats low(static_cast<float>(ShadowMap::kMargin)),
+        high(static_cast<float>(map_.side() - ShadowMap::kMargin));
+    inside = (depth > Floats(near_)) & (x >= low) & (y >= low) & (x <= high) & (y <= high);
+    if (!xsimd::any(inside)) return Floats(1.0f);
+    const Plane plane = this->plane(x, y, max(depth, Floats(near_)), n);
+    const Floats x0 = xsimd::floor(x - half), y0 = xsimd::floor(y - half); // the texel whose center lies before
+    const std::array<Floats, 4> across = spline(x - half - x0), down = spline(y - half - y0);
+    const Ints side(map_.side());
+    const Ints first = truncated(xsimd::select(inside, y0 - Floats(1.0f), zero)) * side +
+                       truncated(xsimd::select(inside, x0 - Floats(1.0f), zero));
+    const float* texels = map_.nearness().pixels().data();
+    Floats lit(0.0f);
+    for (int j = 0; j < 4; ++j) {
+        const Floats off_y = y0 + Floats(static_cast<float>(j) - 0.5f) - y;
+        Floats row_lit(0.0f);
+        for (int i = 0; i < 4; ++i) {
+            const Floats off_x = x0 + Floats(static_cast<float>(i) - 0.5f) - x;
+            const Floats stored = gather(texels + j * map_.side() + i, first);
+            const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
+            const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
+            const Floats limit = plane.at + plane.dx * off_x + plane.dy * off_y + plane.rounding +
+                                 plane.rising * distance;
+            row_lit += xsimd::select(seen > limit, zero, across[static_cast<std::size_t>(i)]);
+        }
+        lit += row_lit * down[static_cast<std::size_t>(j)];
+    }
+    return min(lit, Floats(1.0f));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,33 @@
+// Shadows of points, spots and suns in lanes: percentage-closer filtering (Reeves, Salesin and Cook 1987, "Rendering
+// Antialiased Shadows with Depth Maps") with receiver plane depth bias (Isidoro 2006, "Shadow Mapping: GPU-based Tips
+// and Techniques").
+#pragma once
+
+#include "raster/lanes.h"
+#include "raster/shadow/shadow_map.h"
+
+namespace duet::raster {
+
+/// Looks up one shadow map, for points relative to an eye.
+class SharpShadowMap {
+public:
+    SharpShadowMap(const ShadowMap& map, const Vec3d& eye);
+
+    /// Returns the lit fraction of points with unit normals, over 4 × 4 texels with the weights of the quadratic
+    /// B-spline. `inside` receives the lanes that lie in the map; the others are unspecified.
+    Floats visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, xsimd::batch_bool<float>& inside) const;
+
+private:
+    /// Receiver's plane as a linear function of texels, in the units of what the map stores.
+    struct Plane {
+        Floats at, dx, dy, rounding, rising;
+    };
+    Plane plane(const Floats& x, const Floats& y, const Floats& depth, const Vec3T<Floats>& n) const;
+
+    const ShadowMap& map_;
+    std::array<Vec4, 4> to_texel_; ///< from points relative to the eye to (x·w, y·w, depth, w)
+    Vec3 direction_, direction_dx_, direction_dy_, origin_dx_, origin_dy_;
+    float near_;
+};
+
+} // namespace duet::raster

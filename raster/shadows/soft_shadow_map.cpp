@@ -1,0 +1,175 @@
+#include "raster/shadows/soft_shadow_map.h"
+
+#include "common/sampling/sobol.h"
+
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+using Mask = Floats::batch_bool_type;
+using Vec3s = Vec3T<Floats>;
+
+constexpr int kPatterns = 16;
+/// A blocker must rise above the receiver's plane by this fraction of its distance, so that facets of a concave surface
+/// that meet at up to 6 degrees do not shade each other.
+constexpr float kLeastRise = 0.1f;
+/// Rounding of a depth and of a point relative to the light, as a fraction of its distance.
+constexpr float kRounding = 0x1p-18f;
+constexpr float kMargin = 0.02f; ///< of the light's edge by which a line may miss the light and still count
+
+/// Tap positions on the unit square, kPatterns × count of them in a (0,2)-net, by pattern and tap.
+template <int kTaps> struct Taps {
+    std::array<std::array<float, kPatterns>, kTaps> a, b, fraction;
+
+    Taps() {
+        constexpr int kAll = kPatterns * kTaps;
+        for (int pattern = 0; pattern < kPatterns; ++pattern)
+            for (int tap = 0; tap < kTaps; ++tap) {
+                const auto k = static_cast<std::size_t>(tap), i = static_cast<std::size_t>(pattern);
+                const auto index = static_cast<std::uint32_t>(tap * kPatterns + pattern);
+                const Vec2 u = net_point(index, kAll);
+                a[k][i] = u.x, b[k][i] = u.y;
+                // Offsets from the center's direction grow with the square, so contacts close by are found too.
+                const float s = (static_cast<float>(tap) + (static_cast<float>(pattern * 7 % kPatterns) + 0.5f) /
+                                                               kPatterns) / kTaps;
+                fraction[k][i] = s * s;
+            }
+    }
+};
+const Taps<SoftShadowMap::kSearchTaps> kSearch;
+const Taps<SoftShadowMap::kFilterTaps> kFilter;
+
+} // namespace
+
+DepthCube::DepthCube(const CubeMap& cube)
+    : frame(cube.frame), center(cube.center), side_(static_cast<int>(std::lround(2 * cube.middle))), near_(cube.near),
+      middle_(cube.middle), scale_(cube.scale) {
+    const std::size_t texels = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
+    depths_.assign(6 * texels, 0);
+    for (std::size_t face = 0; face < 6; ++face)
+        if (cube.faces[face]) {
+            const ImageFloat& image = cube.faces[face]->nearness();
+            std::copy(image.begin(), image.end(), depths_.begin() + static_cast<std::ptrdiff_t>(face * texels));
+        }
+}
+
+Vec3s DepthCube::surface(const Vec3s& w) const {
+    const Floats zero(0.0f), one(1.0f), half(0.5f);
+    const Floats ax = abs(w.x), ay = abs(w.y), az = abs(w.z);
+    const Mask x_first = (ax >= ay) & (ax >= az), y_first = (!x_first) & (ay >= az);
+    const auto pick = [&](const Floats& x, const Floats& y, const Floats& z) {
+        return xsimd::select(x_first, x, xsimd::select(y_first, y, z));
+    };
+    // As in to_face(), right is the axis before the face's own and up the one after it.
+    const Floats axis = pick(w.x, w.y, w.z), sign = xsimd::select(axis < zero, -one, one);
+    const Floats scale = Floats(scale_) / max(axis * sign, Floats(1e-30f)), middle(middle_);
+    const Floats last(static_cast<float>(side_ - 1));
+    const Floats x = xsimd::floor(clamp(middle + pick(w.z, w.x, w.y) * sign * scale, zero, last)),
+                 y = xsimd::floor(clamp(middle - pick(w.y, w.z, w.x) * scale, zero, last));
+    const Ints face = truncated(pick(zero, Floats(2.0f), Floats(4.0f)) + xsimd::select(axis < zero, one, zero));
+    const Ints index = (face * Ints(side_) + truncated(y)) * Ints(side_) + truncated(x);
+    const Floats depth = Floats(near_) / max(gather(depths_.data(), index), Floats(1e-25f));
+    const Floats per_texel = depth * Floats(1 / scale_);
+    const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,
+                 out = depth * sign;
+    return {pick(out, right, up), pick(up, out, right), pick(right, up, out)};
+}
+
+struct SoftShadowMap::Outline {
+    Vec3s corner, u, v, dual_u, dual_v;
+    bool disk;
+    Vec3s axis; ///< unit, from the receiver's side to the light's plane
+};
+
+struct SoftShadowMap::Receiver {
+    const DepthCube& cube;
+    const Outline& light;
+    Vec3s p, n;
+    Floats height;  ///< of p above the light's plane, along −axis
+    Floats slack;
+
+    /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
+    /// light; 0 in lanes where it does not.
+    Floats blocker(const Vec3s& q) const {
+        const Vec3s to = cube.surface(q) - p;
+        const Floats f = dot(to, light.axis) / height;
+        const Floats rise = dot(to, n), distance2 = dot(to, to);
+        const Vec3s hit = p + to / max(f, Floats(1e-6f)) - light.corner; // where the line meets the light's plane
+        const Floats a = dot(hit, light.dual_u), b = dot(hit, light.dual_v), low(-kMargin), high(1 + kMargin);
+        const Mask meets = light.disk ? a * a + b * b <= high * high
+                                      : (a > low) & (b > low) & (a < high) & (b < high);
+        const Mask blocks = (f > Floats(1e-5f)) & (f < Floats(0.9999f)) & (rise > slack) &
+                            (rise * rise > Floats(kLeastRise * kLeastRise) * distance2) & meets;
+        return xsimd::select(blocks, f, Floats(0.0f));
+    }
+    Vec3s on_light(const Floats& a, const Floats& b) const {
+        if (!light.disk) return light.corner + light.u * a + light.v * b;
+        const Floats r = xsimd::sqrt(a);
+        const auto [sine, cosine] = xsimd::sincos(b * Floats(2 * kPi));
+        return light.u * (r * cosine) + light.v * (r * sine);
+    }
+};
+
+SoftShadowMap::SoftShadowMap(const CubeMap& cube, const Emitter& emitter)
+    : cube_(cube), kind_(emitter.kind), radius_(static_cast<float>(emitter.radius)) {
+    if (kind_ == Emitter::Kind::kBall) return;
+    const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
+    const double over = 1 / dot(n, n);
+    u_ = Vec3(cube_.frame.to_local(u)), v_ = Vec3(cube_.frame.to_local(v));
+    dual_u_ = Vec3(cube_.frame.to_local(cross(v, n) * over)), dual_v_ = Vec3(cube_.frame.to_local(cross(n, u) * over));
+    corner_ = (u_ + v_) * (kind_ == Emitter::Kind::kTriangle ? -1.0f / 3 : -0.5f);
+}
+
+SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
+    const auto all = [](Vec3 w) { return Vec3s{Floats(w.x), Floats(w.y), Floats(w.z)}; };
+    if (kind_ != Emitter::Kind::kBall) {
+        const Floats towards = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
+        return {all(corner_), all(u_), all(v_), all(dual_u_), all(dual_v_), false,
+                {Floats(0.0f), Floats(0.0f), towards}};
+    }
+    // A sphere is replaced by the disk through its center that fills the cone tangent to it.
+    const Floats distance = xsimd::sqrt(max(dot(p, p), Floats(1e-30f)));
+    const Vec3s axis = p * (Floats(-1.0f) / distance);
+    const FrameT<Floats> frame = frame_from_normal(axis);
+    const Floats sine = min(Floats(radius_) / distance, Floats(0.999f));
+    const Floats radius = Floats(radius_) / xsimd::sqrt(Floats(1.0f) - sine * sine), over = Floats(1.0f) / radius;
+    const Vec3s none{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+    return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, true, axis};
+}
+
+Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {
+    const auto local = [&](const Vec3s& w) {
+        const auto axis = [&](Vec3d a) {
+            return dot(w, Vec3s{Floats(static_cast<float>(a.x)), Floats(static_cast<float>(a.y)),
+                                Floats(static_cast<float>(a.z))});
+        };
+        return Vec3s{axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
+    };
+    const Vec3 offset(eye - cube_.center);
+    const Vec3s own = local(p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)});
+    const Outline light = outline_from(own);
+    const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
+    const Receiver receiver{cube_, light, own, local(n), height, height * Floats(kRounding)};
+
+    Floats sum(0.0f), count(0.0f);
+    for (std::size_t i = 0; i < kSearchTaps; ++i) {
+        const Floats f = gather(kSearch.fraction[i].data(), pattern);
+        const Vec3s l = receiver.on_light(gather(kSearch.a[i].data(), pattern), gather(kSearch.b[i].data(), pattern));
+        const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + l * f);
+        sum += found;
+        count += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
+    }
+    const Mask any = count > Floats(0.0f);
+    if (!xsimd::any(any)) return Floats(1.0f);
+    const Floats f = sum / max(count, Floats(1.0f));
+    Floats dark(0.0f);
+    for (std::size_t i = 0; i < kFilterTaps; ++i) {
+        const Vec3s l = receiver.on_light(gather(kFilter.a[i].data(), pattern), gather(kFilter.b[i].data(), pattern));
+        dark += xsimd::select(receiver.blocker(own * (Floats(1.0f) - f) + l * f) > Floats(0.0f), Floats(1.0f),
+                              Floats(0.0f));
+    }
+    return xsimd::select(any, Floats(1.0f) - dark * Floats(1.0f / kFilterTaps), Floats(1.0f));
+}
+
+} // namespace duet::raster
