@@ -1,53 +1,136 @@
 #include "raster/lighting/direct_light.h"
 
-#include "raster/lighting/light_clusters.h"
+#include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 
 namespace duet::raster {
 namespace {
 
-/// Computes the direct light of one tile after another, on one thread.
-class TileLighter {
-public:
-    TileLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightClusters& clusters,
-                const ShadowLookup* shadows, DirectLight& result)
-        : gbuffer_(gbuffer), lights_(lights), clusters_(clusters), shadows_(shadows), result_(result) {}
+constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 
-    void light_tile(int x0, int y0) {
-        clusters_.list(gbuffer_, x0, y0, reaching_);
-        constexpr int kLanes = static_cast<int>(Floats::size), kSide = LightClusters::kTileSide;
-        std::size_t batch = 0;
-        for (int y = y0; y < y0 + kSide; ++y)
-            for (int x = x0; x < x0 + kSide; x += kLanes, ++batch)
-                if (x < gbuffer_.width() && y < gbuffer_.height()) light_batch(x, y, reaching_.batch_slices[batch]);
+/// Computes the direct light of one part of the image after another, on one thread.
+class PixelLighter {
+public:
+    PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
+                 const ShadowLookup* shadows, DirectLight& result)
+        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), result_(result) {}
+
+    /// Lights a row of pixels by all lights.
+    void light_row(int y) {
+        for (int x = 0; x < gbuffer_.width(); x += kBatch)
+            if (const auto lanes = gbuffer_.visible(x, y); lane_bits(lanes) != 0)
+                store(x, y, light_batch(x, y, lanes, light_set_.lights()));
+    }
+
+    /// Lights the tile that starts at column x of row y by the lights that reach it.
+    void light_tile(int x, int y) {
+        const Cluster tile{.x = x, .y = y, .columns = kTileSide, .rows = kTileSide};
+        std::array<Cluster, kDepthSlices> slices;
+        const std::size_t count = slices_of_depth(gbuffer_, tile, slices);
+        if (count == 0) return;
+        sums_.fill({});
+        for (std::size_t k = 0; k < count; ++k) light_cluster(slices[k], light_set_, 0);
+        for_each_batch_of(gbuffer_, tile, [&](int column, int row) { store(column, row, sum_at(column, row)); });
     }
 
 private:
-    void light_batch(int x, int y, std::uint32_t slices) {
-        const LitBatch batch(gbuffer_, x, y, tables_);
-        RgbT<Floats> unshadowed(Floats(0.0f)), shadowed(Floats(0.0f));
-        for (const TileLights::Entry& entry : reaching_.entries) {
-            if ((entry.slices & slices) == 0 || batch.empty()) continue;
-            const FrameLight& light = lights_[entry.light];
-            const RgbT<Floats> reflected = batch.reflected(light);
-            unshadowed += reflected;
-            if (shadows_ == nullptr) continue;
-            const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
-            if (lane_bits(lit) == 0) continue;
-            const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
-            shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
+    struct Sum {
+        RgbT<Floats> unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
+
+        void add(const RgbT<Floats>& light) { unshadowed += light, shadowed += light; }
+    };
+
+    /// Clusters of 16 rows are divided into those of 4, and these into single rows; and up to twice by normals.
+    static constexpr std::size_t kLevels = 5;
+    static constexpr int kDivision = 4;
+
+    /// Finds the lights of a cluster among those of the cluster around it, and divides it as long as they are many.
+    void light_cluster(const Cluster& cluster, const LightSet& around, std::size_t level) {
+        const std::optional<SurfaceBounds> surfaces = surface_bounds(gbuffer_, cluster);
+        if (!surfaces) return;
+        float other = 0;
+        for (const LightField& field : std::span(fields_).first(field_count_))
+            other += average(field.irradiance(surfaces->center(), surfaces->mean_normal()));
+        Level& own = levels_[level];
+        around.reach(*surfaces, other, own.found);
+        const std::size_t distant_before = distant_.size(), fields_before = field_count_;
+        for (const std::uint32_t column : own.found.far) distant_.push_back(around.lights()[column]);
+        if (!own.found.far.empty()) fields_[field_count_++] = own.found.field;
+        const bool many = own.found.near.size() > LightSet::kFewLights && level + 1 < kLevels;
+        const auto edge = many ? split_at_edge(gbuffer_, cluster, *surfaces) : std::nullopt;
+        if (!edge && (!many || cluster.rows == 1)) {
+            own.lights.clear();
+            for (const std::uint32_t column : own.found.near) own.lights.push_back(around.lights()[column]);
+            light_pixels(cluster, own.lights);
+        } else {
+            own.near.assign(around, own.found.near);
+            if (edge)
+                for (const Cluster& part : *edge) light_cluster(part, own.near, level + 1);
+            else
+                light_rows(cluster, own.near, level + 1);
         }
-        result_.unshadowed.set(x, y, unshadowed);
-        if (shadows_ != nullptr) result_.shadowed.set(x, y, shadowed);
+        distant_.resize(distant_before), field_count_ = fields_before;
+    }
+
+    void light_rows(Cluster cluster, const LightSet& around, std::size_t level) {
+        cluster.rows /= kDivision;
+        for (int i = 0; i < kDivision; ++i, cluster.y += cluster.rows) light_cluster(cluster, around, level);
+    }
+
+    void light_pixels(const Cluster& cluster, std::span<const std::uint32_t> near) {
+        for_each_batch_of(gbuffer_, cluster, [&](int x, int y) {
+            const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
+            if (lane_bits(lanes) == 0) return;
+            const Sum sum = light_batch(x, y, lanes, near);
+            Sum& total = sum_at(x, y); // the batch may be in several clusters
+            total.unshadowed += sum.unshadowed, total.shadowed += sum.shadowed;
+        });
+    }
+
+    Sum light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const std::uint32_t> near) {
+        const LitBatch batch(gbuffer_, x, y, lanes, tables_);
+        Sum sum;
+        for (const std::uint32_t i : near) add(batch, lights_[i], LitBatch::Lobes::kAll, x, y, sum);
+        for (const LightField& field : std::span(fields_).first(field_count_))
+            sum.add(batch.diffuse(field.irradiance(batch.p(), batch.n())));
+        if (batch.specular())
+            for (const std::uint32_t i : distant_) add(batch, lights_[i], LitBatch::Lobes::kSpecular, x, y, sum);
+        return sum;
+    }
+
+    void add(const LitBatch& batch, const FrameLight& light, LitBatch::Lobes lobes, int x, int y, Sum& sum) const {
+        const RgbT<Floats> reflected = batch.reflected(light, lobes);
+        if (shadows_ == nullptr || !shadows_->shadows(light.index)) return sum.add(reflected);
+        const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
+        if (lane_bits(lit) == 0) return;
+        const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
+        sum.unshadowed += reflected, sum.shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
+    }
+
+    Sum& sum_at(int x, int y) {
+        return sums_[static_cast<std::size_t>((y % kTileSide * kTileSide + x % kTileSide) / kBatch)];
+    }
+    void store(int x, int y, const Sum& sum) {
+        result_.unshadowed.set(x, y, sum.unshadowed);
+        if (shadows_ != nullptr) result_.shadowed.set(x, y, sum.shadowed);
     }
 
     const GBuffer& gbuffer_;
     std::span<const FrameLight> lights_;
-    const LightClusters& clusters_;
+    const LightSet& light_set_;
     const ShadowLookup* shadows_;
     DirectLight& result_;
-    TileLights reaching_;
     LitBatch::Tables tables_;
+    struct Level {
+        LightsOfCluster found;
+        LightSet near;                     ///< what `found` lists, for the parts of the cluster
+        std::vector<std::uint32_t> lights; ///< the same as indices of lights
+    };
+    std::array<Level, kLevels> levels_;
+    std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels
+    std::size_t field_count_ = 0;
+    std::vector<std::uint32_t> distant_;
+    std::array<Sum, kTileSide * kTileSide / Floats::size> sums_; ///< of the tile
 };
 
 } // namespace
@@ -61,11 +144,15 @@ DirectLight direct_light(const PreparedData& data, const Settings& settings, con
     if (!settings.parts.direct) return result;
     const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
     if (lights.empty()) return result;
-    const LightClusters clusters(lights);
-    constexpr int kSide = LightClusters::kTileSide;
-    parallel_for(static_cast<std::size_t>((height + kSide - 1) / kSide), settings.threads, [&](std::size_t row) {
-        TileLighter lighter(gbuffer, lights, clusters, shadows, result);
-        for (int x = 0; x < width; x += kSide) lighter.light_tile(x, static_cast<int>(row) * kSide);
+    const LightSet light_set(lights, shadows);
+    const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
+    parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
+        PixelLighter lighter(gbuffer, lights, light_set, shadows, result);
+        const int first = static_cast<int>(i) * kTileSide;
+        if (few)
+            for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);
+        else
+            for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });
     return result;
 }

@@ -21,7 +21,8 @@ struct FrameLight {
     Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction towards a sun
     float radius = 0;      ///< of a sphere
     bool two_sided = false;
-    float cos_outer = -1, inverse_range = 0; ///< of a spot: the intensity rises from cos_outer to 1 / inverse_range more
+    /// Of a spot, whose intensity rises from 0 at this cosine to its full value at 1 / inverse_range more.
+    float cos_outer = -1, inverse_range = 0;
 
     explicit FrameLight(Kind kind_, Rgb emitted_ = {}) : kind(kind_), emitted(emitted_) {}
     bool flat() const { return kind == Kind::kTriangle || kind == Kind::kQuad; }

@@ -7,7 +7,7 @@ namespace {
 
 using Lanes = xsimd::batch_bool<float>;
 constexpr float kHuge = 1e30f;
-constexpr int kBatchesPerRow = LightClusters::kTileSide / static_cast<int>(Floats::size);
+const Floats kNone(0.0f);
 
 /// Encloses a batch of points or normals at a time.
 struct Box {
@@ -21,161 +21,74 @@ struct Box {
     Vec3 highest() const { return {duet::highest(high.x), duet::highest(high.y), duet::highest(high.z)}; }
 };
 
-/// Calls visit(batch, x, y) for each batch of a tile that lies in the image.
-template <typename Visit> void for_each_batch_of_tile(const GBuffer& gbuffer, int x0, int y0, const Visit& visit) {
-    for (int row = 0; row < LightClusters::kTileSide && y0 + row < gbuffer.height(); ++row)
-        for (int column = 0; column < kBatchesPerRow; ++column) {
-            const int x = x0 + column * static_cast<int>(Floats::size);
-            if (x < gbuffer.width()) visit(static_cast<std::size_t>(row * kBatchesPerRow + column), x, y0 + row);
-        }
-}
-
 } // namespace
 
-/// Holds the bounds of the surfaces of one slice.
-struct LightClusters::Slice {
-    Vec3 p_low, p_high, n_low, n_high;
-    bool smooth; ///< whether some surface may show highlights
-};
-
-LightClusters::LightClusters(std::span<const FrameLight> lights)
-    : count_(lights.size()), bounds_(static_cast<int>(lights.size()), kRows) {
-    for (std::size_t i = 0; i < count_; ++i) {
-        const FrameLight& light = lights[i];
-        const int column = static_cast<int>(i);
-        const auto set = [&](int row, float value) { bounds_(column, row) = value; };
-        const auto set_vector = [&](int row, Vec3 v) { set(row, v.x), set(row + 1, v.y), set(row + 2, v.z); };
-        constexpr float kSunDistance = 1e9f; // meters: far beyond every scene, while its square is still a float
-        Vec3 low = light.position, high = light.position;
-        const float power = average(light.emitted);
-        float intensity = power, most = kHuge;
-        set(kPlane, -1); // with an axis of 0, all points are in front
-        switch (light.kind) {
-        case FrameLight::Kind::kTriangle:
-        case FrameLight::Kind::kQuad: {
-            const bool quad = light.kind == FrameLight::Kind::kQuad;
-            low += min(min(Vec3(), light.u), min(light.v, quad ? light.u + light.v : Vec3()));
-            high += max(max(Vec3(), light.u), max(light.v, quad ? light.u + light.v : Vec3()));
-            intensity = power * length(cross(light.u, light.v)) * (quad ? 1.0f : 0.5f), most = kPi * power;
-            if (!light.two_sided) set_vector(kAxisX, light.axis), set(kPlane, dot(light.axis, light.position));
-            break;
-        }
-        case FrameLight::Kind::kSphere:
-            low -= Vec3(light.radius, light.radius, light.radius), high += Vec3(light.radius, light.radius, light.radius);
-            intensity = kPi * sqr(light.radius) * power, most = kPi * power;
-            break;
-        case FrameLight::Kind::kPoint: break;
-        case FrameLight::Kind::kSpot:
-            set_vector(kAxisX, light.axis);
-            set(kConeCosine, light.cos_outer), set(kConeSine, safe_sqrt(1 - sqr(light.cos_outer)));
-            set(kPlane, light.cos_outer >= 0 ? dot(light.axis, light.position) : -kHuge);
-            break;
-        case FrameLight::Kind::kSun:
-            low = high = light.axis * kSunDistance;
-            intensity = power * sqr(kSunDistance), most = power;
-            break;
-        }
-        set_vector(kLowX, low), set_vector(kHighX, high);
-        set(kIntensity, intensity), set(kMost, most);
+Lanes Cluster::lanes(const GBuffer& gbuffer, int column, int row) const {
+    const Floats depth = load(gbuffer.reversed_depth, column, row);
+    const Lanes in_depth = (depth > Floats(farther)) & (depth <= Floats(nearer));
+    if (lane_bits(in_depth) == 0) return in_depth;
+    const auto reflects = [&](const Planes3& c) { return max_component(c.color(column, row)) > kNone; };
+    Lanes in_box = reflects(gbuffer.diffuse) | reflects(gbuffer.specular);
+    for (const auto& [axis, plane] : {std::pair(&Vec3::x, &gbuffer.normal.x), std::pair(&Vec3::y, &gbuffer.normal.y),
+                                      std::pair(&Vec3::z, &gbuffer.normal.z)}) {
+        if (n_low.*axis == -kAll && n_high.*axis == kAll) continue;
+        const Floats n = load(*plane, column, row);
+        in_box = in_box & (n >= Floats(n_low.*axis)) & (n < Floats(n_high.*axis));
     }
+    return in_depth & in_box;
 }
 
-void LightClusters::list_all(TileLights& result) const {
-    result.batch_slices.fill(1);
-    for (std::size_t i = 0; i < count_; ++i) result.entries.push_back({static_cast<std::uint32_t>(i), 1});
+std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluster& cluster) {
+    Box points, normals;
+    bool any = false;
+    for_each_batch_of(gbuffer, cluster, [&](int x, int y) {
+        const Lanes lanes = cluster.lanes(gbuffer, x, y);
+        if (lane_bits(lanes) == 0) return;
+        points.extend(gbuffer.points(x, y), lanes), normals.extend(gbuffer.normal.vector(x, y), lanes);
+        any = true;
+    });
+    if (!any) return std::nullopt;
+    return SurfaceBounds{points.lowest(), points.highest(), normals.lowest(), normals.highest()};
 }
 
-void LightClusters::list(const GBuffer& gbuffer, int x0, int y0, TileLights& result) const {
-    result.entries.clear();
-    if (count_ <= kFewLights) return list_all(result);
-    result.batch_slices.fill(0), result.slices.assign(count_, 0);
-    Floats farthest(kHuge), nearest(0.0f);
-    for_each_batch_of_tile(gbuffer, x0, y0, [&](std::size_t, int x, int y) {
+std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std::array<Cluster, kDepthSlices>& slices) {
+    Floats nearest = kNone, farthest(kHuge);
+    for_each_batch_of(gbuffer, cluster, [&](int x, int y) {
+        const Lanes lanes = cluster.lanes(gbuffer, x, y);
         const Floats depth = load(gbuffer.reversed_depth, x, y);
-        nearest = max(nearest, depth);
-        farthest = min(farthest, xsimd::select(depth > Floats(0.0f), depth, Floats(kHuge)));
+        nearest = max(nearest, xsimd::select(lanes, depth, kNone));
+        farthest = min(farthest, xsimd::select(lanes, depth, Floats(kHuge)));
     });
     const float most = highest(nearest), least = lowest(farthest);
-    if (!(most > 0)) return;
-    // The slices are equal steps of the logarithm of depth, as in the paper.
-    const int slices = most < 1.2f * least ? 1 : kSlices;
-    const float step = std::pow(least / most, 1.0f / static_cast<float>(slices));
-    float upper = kHuge, lower = most * step;
-    for (int k = 0; k < slices; ++k, upper = lower, lower *= step) {
-        if (k == slices - 1) lower = 0;
-        Box points, normals;
-        Floats width(1.0f);
-        bool any = false;
-        for_each_batch_of_tile(gbuffer, x0, y0, [&](std::size_t batch, int x, int y) {
-            const Floats depth = load(gbuffer.reversed_depth, x, y);
-            const Lanes lanes = (depth > Floats(lower)) & (depth <= Floats(upper));
-            if (lane_bits(lanes) == 0) return;
-            any = true;
-            result.batch_slices[batch] |= 1u << k;
-            points.extend(gbuffer.points(x, y), lanes), normals.extend(gbuffer.normal.vector(x, y), lanes);
-            width = xsimd::select(lanes, min(width, load(gbuffer.alpha, x, y)), width);
-            if (!gbuffer.coat.empty())
-                width = xsimd::select(lanes & (load(gbuffer.coat, x, y) > Floats(0.0f)), Floats(0.0f), width);
-        });
-        if (any)
-            cull({points.lowest(), points.highest(), normals.lowest(), normals.highest(), lowest(width) < kSmoothest},
-                 1u << k, result);
+    if (!(most > 0)) return 0;
+    constexpr float kOneSlice = 1.2f; // ratio of depths up to which there is only one
+    const std::size_t count = most < kOneSlice * least ? 1 : kDepthSlices;
+    // Equal steps of the logarithm of depth, as in the paper.
+    const float step = std::pow(least / most, 1.0f / static_cast<float>(count));
+    float nearer = most;
+    for (std::size_t k = 0; k < count; ++k, nearer *= step) {
+        slices[k] = cluster;
+        slices[k].nearer = nearer, slices[k].farther = k + 1 < count ? nearer * step : 0.0f;
     }
-    for (std::size_t i = 0; i < count_; ++i)
-        if (result.slices[i] != 0) result.entries.push_back({static_cast<std::uint32_t>(i), result.slices[i]});
+    return count;
 }
 
-void LightClusters::cull(const Slice& slice, std::uint32_t bit, TileLights& result) const {
-    const auto wide = [](Vec3 v) { return spread<Floats>(v); };
-    const Vec3T<Floats> p_low = wide(slice.p_low), p_high = wide(slice.p_high), n_low = wide(slice.n_low),
-                        n_high = wide(slice.n_high);
-    const Vec3 center = (slice.p_low + slice.p_high) * 0.5f, mean = slice.n_low + slice.n_high;
-    const Vec3T<Floats> p = wide(center), n = wide(mean / max(length(mean), 1e-6f));
-    const float radius = length(slice.p_high - slice.p_low) * 0.5f;
-    const Floats none(0.0f);
-    const auto bound = [](const Floats& n0, const Floats& n1, const Floats& d0, const Floats& d1) {
-        return max(max(n0 * d0, n0 * d1), max(n1 * d0, n1 * d1));
-    };
-    result.most.resize(static_cast<std::size_t>(bounds_.stride()));
-    Floats estimate = none;
-    for (int i = 0; i < bounds_.width(); i += static_cast<int>(Floats::size)) {
-        const auto row = [&](int r) { return load(bounds_, i, r); };
-        const auto vector = [&](int r) { return Vec3T<Floats>(row(r), row(r + 1), row(r + 2)); };
-        const Vec3T<Floats> low = vector(kLowX), high = vector(kHighX), axis = vector(kAxisX);
-        const Vec3T<Floats> to_low = low - p_high, to_high = high - p_low; // bounds of vectors from surfaces to lights
-        const Floats above = bound(n_low.x, n_high.x, to_low.x, to_high.x) +
-                             bound(n_low.y, n_high.y, to_low.y, to_high.y) +
-                             bound(n_low.z, n_high.z, to_low.z, to_high.z);
-        const Floats front = max(axis.x * p_low.x, axis.x * p_high.x) + max(axis.y * p_low.y, axis.y * p_high.y) +
-                             max(axis.z * p_low.z, axis.z * p_high.z) - row(kPlane);
-        const Vec3T<Floats> from = p - low; // from a spot, whose box is a point
-        const Floats along = dot(from, axis), across = xsimd::sqrt(max(dot(from, from) - along * along, none));
-        const Floats outside = across * row(kConeCosine) - along * row(kConeSine);
-        const Lanes reaches = (above > none) & (front > none) & (outside <= Floats(radius)) & (row(kIntensity) > none);
-
-        const Vec3T<Floats> apart = max(max(to_low, -to_high), Vec3T<Floats>(none, none, none));
-        const Floats nearest2 = max(dot(apart, apart), Floats(1e-12f));
-        const Floats cosine = min(above * inverse_sqrt(nearest2), Floats(1.0f));
-        const Floats most = min(row(kIntensity) * cosine / nearest2, row(kMost));
-        const Vec3T<Floats> to = (low + high) * Floats(0.5f) - p;
-        const Floats squared = max(dot(to, to), Floats(1e-12f)), inverse = inverse_sqrt(squared);
-        const Floats facing = max(xsimd::select(dot(axis, axis) > none, -dot(to, axis) * inverse, Floats(1.0f)), none);
-        const Floats there = row(kIntensity) * max(dot(to, n) * inverse, none) * facing * inverse * inverse;
-        estimate += xsimd::select(reaches, min(there, row(kMost)), none);
-        xsimd::select(reaches, most, none).store_aligned(result.most.data() + i);
-    }
-    // Sums the bounds by powers of two, and finds the greatest power that can be dropped with all smaller ones.
-    const float allowed = slice.smooth ? 0 : kDropped * xsimd::hadd(estimate);
-    constexpr int kPowers = 64;
-    std::array<float, kPowers> sums{};
-    const auto power = [](float x) { return std::clamp(std::ilogb(x) + kPowers / 2, 0, kPowers - 1); };
-    for (std::size_t i = 0; i < count_; ++i)
-        if (const float x = result.most[i]; x > 0) sums[static_cast<std::size_t>(power(x))] += x;
-    int first = 0;
-    for (float sum = sums[0]; first < kPowers && sum <= allowed;)
-        if (++first < kPowers) sum += sums[static_cast<std::size_t>(first)];
-    for (std::size_t i = 0; i < count_; ++i)
-        if (result.most[i] > 0 && power(result.most[i]) >= first) result.slices[i] |= bit;
+std::optional<std::array<Cluster, 2>> split_at_edge(const GBuffer& gbuffer, const Cluster& cluster,
+                                                    const SurfaceBounds& surfaces) {
+    const auto spread_of = [](const SurfaceBounds& b) { return b.n_high - b.n_low; };
+    const Vec3 spread = spread_of(surfaces);
+    constexpr float kFlat = 0.1f; // dividing more saves little
+    if (length(spread) < kFlat) return std::nullopt;
+    const std::size_t axis = spread.x >= max(spread.y, spread.z) ? 0 : spread.y >= spread.z ? 1 : 2;
+    std::array<Cluster, 2> parts{cluster, cluster};
+    parts[0].n_high[axis] = parts[1].n_low[axis] = (surfaces.n_low[axis] + surfaces.n_high[axis]) * 0.5f;
+    // Where a curved surface is divided, both parts keep half of the normals, and as much work as before.
+    constexpr float kAbrupt = 0.25f;
+    for (const Cluster& part : parts)
+        if (const auto bounds = surface_bounds(gbuffer, part);
+            bounds && length(spread_of(*bounds)) < kAbrupt * length(spread))
+            return parts;
+    return std::nullopt;
 }
 
 } // namespace duet::raster

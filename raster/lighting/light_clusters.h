@@ -1,64 +1,49 @@
-// Lists the lights that reach a tile of the image, by slices of depth (Olsson, Billeter and Assarsson 2012, "Clustered
-// Deferred and Forward Shading": clusters with explicit bounds of positions and normals; as bits per tile after Harada
-// 2012, "A 2.5D Culling for Forward+").
+// Divides the visible surfaces into clusters, for which lights are listed (Olsson, Billeter and Assarsson 2012,
+// "Clustered Deferred and Forward Shading": clusters of a tile's pixels by depth and by normal, with explicit bounds).
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/lighting/frame_lights.h"
+
+#include <optional>
 
 namespace duet::raster {
 
-/// Holds the lights of one tile. It may be reused for other tiles.
-struct TileLights {
-    struct Entry {
-        std::uint32_t light;  ///< index into the frame's lights
-        std::uint32_t slices; ///< bits of the slices that the light reaches
-    };
-    std::vector<Entry> entries; ///< one per light
-    std::array<std::uint32_t, 64> batch_slices; ///< bits of the slices in which each batch of the tile has surfaces
-    // Scratch memory, one number per light.
-    std::vector<float, CacheAligned<float>> most;
-    std::vector<std::uint32_t> slices;
+/// Selects the surfaces of a cluster: those in a rectangle of pixels whose reversed depth is in (farther, nearer] and
+/// whose normal is in a box. Surfaces that reflect nothing, such as most emitters, belong to no cluster.
+struct Cluster {
+    static constexpr float kAll = 2; ///< no reversed depth and no component of a normal is greater
+
+    int x, y, columns, rows;
+    float nearer = kAll, farther = 0;
+    Vec3 n_low{-kAll, -kAll, -kAll}, n_high{kAll, kAll, kAll}; ///< n_low ≤ n < n_high
+
+    /// Returns the lanes of the batch at column x of row y that belong to the cluster.
+    xsimd::batch_bool<float> lanes(const GBuffer& gbuffer, int x, int y) const;
 };
 
-/// Finds the lights of tiles. Every surface of a tile is in one of the slices of the tile's depth range, each with
-/// exact bounds of its points and normals. A light that lies behind all of a slice's surfaces, that faces away from all
-/// of them, or whose cone misses them is culled exactly: it gives no light there.
-///
-/// Point and area lights have no end, so distant ones are dropped where they do not matter: the bounds of all dropped
-/// lights' irradiance sum to at most kDropped of the irradiance (without shadows) at the slice's center. Lights
-/// are not dropped where a surface is smooth enough to show their highlights.
-class LightClusters {
-public:
-    static constexpr int kTileSide = 16, kSlices = 4;
-    static constexpr float kDropped = 1.0f / 64;
-    /// Surfaces whose lobes are at least this wide reflect at most about 1 / (4 alpha²) = 4 times as much of a light as
-    /// a white diffuse surface.
-    static constexpr float kSmoothest = 0.25f;
-    /// For so few lights, a list takes longer than it saves.
-    static constexpr std::size_t kFewLights = 4;
+/// Calls visit(x, y) for each batch of a cluster's rectangle that lies in the image.
+template <typename Visit> void for_each_batch_of(const GBuffer& gbuffer, const Cluster& cluster, const Visit& visit) {
+    for (int y = cluster.y; y < std::min(cluster.y + cluster.rows, gbuffer.height()); ++y)
+        for (int x = cluster.x; x < std::min(cluster.x + cluster.columns, gbuffer.width());
+             x += static_cast<int>(Floats::size))
+            visit(x, y);
+}
 
-    explicit LightClusters(std::span<const FrameLight> lights);
+/// Bounds the points and normals of a cluster by boxes.
+struct SurfaceBounds {
+    Vec3 p_low, p_high, n_low, n_high;
 
-    /// Lists the lights of the tile whose first pixel is (x0, y0), multiples of kTileSide.
-    void list(const GBuffer& gbuffer, int x0, int y0, TileLights& result) const;
-
-private:
-    struct Slice;
-    void list_all(TileLights& result) const;
-    void cull(const Slice& slice, std::uint32_t bit, TileLights& result) const;
-
-    /// Rows of bounds_, which has one column per light.
-    enum Row {
-        kLowX, kLowY, kLowZ, kHighX, kHighY, kHighZ,   ///< box around the light
-        kAxisX, kAxisY, kAxisZ, kPlane,                ///< front: axis·p > plane
-        kConeCosine, kConeSine,                        ///< of a spot's outer angle; both 0 for others
-        kIntensity,                                    ///< W/sr, as in common/light/light_bounds.h
-        kMost,                                         ///< greatest irradiance, W/m²
-        kRows
-    };
-    std::size_t count_;
-    PlaneFloat bounds_;
+    Vec3 center() const { return (p_low + p_high) * 0.5f; }
+    Vec3 extent() const { return (p_high - p_low) * 0.5f; }
+    Vec3 mean_normal() const { return (n_low + n_high) / max(length(n_low + n_high), 1e-6f); }
 };
+/// Returns the bounds of a cluster, or nothing if it has no surfaces.
+std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluster& cluster);
+/// Divides a cluster by depth into at most kDepthSlices. Returns their number.
+inline constexpr std::size_t kDepthSlices = 4;
+std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std::array<Cluster, kDepthSlices>& slices);
+/// Divides a cluster by its normals if they change abruptly, as at the edge of a box.
+std::optional<std::array<Cluster, 2>> split_at_edge(const GBuffer& gbuffer, const Cluster& cluster,
+                                                    const SurfaceBounds& surfaces);
 
 } // namespace duet::raster

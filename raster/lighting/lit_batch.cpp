@@ -20,25 +20,26 @@ Color black_outside(const Lanes& lanes, const Color& c) {
     return {xsimd::select(lanes, c.r, kNone), xsimd::select(lanes, c.g, kNone), xsimd::select(lanes, c.b, kNone)};
 }
 
-/// Returns the BRDF, times π, of the light that leaves after several reflections between microfacets, for light from
-/// all around: ggx_multiple·lost(wo)·(mean of lost(wi)). `normal` is the reflectance at normal incidence.
+/// Returns ggx_multiple(…)·lost(wo): the BRDF of the light that leaves after several reflections between microfacets,
+/// over lost(wi). `normal` is the reflectance at normal incidence.
 Color several_reflections(const Color& normal, const LobeTables& tables) {
     constexpr float kLeast = 0.004f; // as in ggx_multiple: what narrow lobes lose is neglected
-    const Lanes lossy = tables.mean_lost >= Floats(kLeast);
-    if (lane_bits(lossy) == 0) return Color(kNone);
-    const Floats lost = xsimd::select(lossy, kOne - tables.energy, kNone), kept = kOne - tables.mean_lost;
+    const Floats mean = max(tables.mean_lost, Floats(kLeast));
+    const Floats lost = xsimd::select(tables.mean_lost < Floats(kLeast), kNone, kOne - tables.energy);
+    if (lane_bits(lost > kNone) == 0) return Color(kNone);
+    const Floats factor = lost * (kOne - mean) * Floats(kInvPi) / mean;
     const auto channel = [&](const Floats& r) {
         const Floats average = r + (kOne - r) * Floats(1.0f / 21); // schlick_average
-        return average * average * kept / (kOne - average * tables.mean_lost) * lost;
+        return average * average * factor / (kOne - average * mean);
     };
     return {channel(normal.r), channel(normal.g), channel(normal.b)};
 }
 
 } // namespace
 
-LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, Tables& tables)
-    : p_(gbuffer.points(x, y)), z_(gbuffer.normal.vector(x, y)), visible_(gbuffer.visible(x, y)),
-      diffuse_(gbuffer.diffuse.color(x, y)) {
+LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tables& tables)
+    : p_(gbuffer.points(x, y)), z_(gbuffer.normal.vector(x, y)), lanes_(lanes),
+      diffuse_(gbuffer.diffuse.color(x, y) * Floats(kInvPi)) {
     constexpr float kRounding = 1e-5f; // of the distance; floats of the depth and the light's plane leave a tenth
     rounding_ = xsimd::sqrt(dot(p_, p_)) * Floats(kRounding);
     const Vec3T<Floats> v = gbuffer.projection.to_viewer(p_);
@@ -57,40 +58,35 @@ LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, Tables& tables)
 
     const Color normal = gbuffer.specular.color(x, y);
     const Floats alpha = load(gbuffer.alpha, x, y);
-    const Lanes specular = visible_ & (max_component(normal) > kNone) & (alpha >= Floats(MetalBsdf::kSmoothAlpha));
+    const Lanes specular = lanes_ & (max_component(normal) > kNone) & (alpha >= Floats(MetalBsdf::kSmoothAlpha));
     Floats coat = kNone, under(1.0f);
     if (!gbuffer.coat.empty()) coat = load(gbuffer.coat, x, y);
-    if (const Lanes coated = visible_ & (coat > kNone); lane_bits(coated) != 0) {
+    if (const Lanes coated = lanes_ & (coat > kNone); lane_bits(coated) != 0) {
         const Floats width = load(gbuffer.coat_alpha, x, y);
-        const LobeTables table = tables.coat(width, wo_.z, coated);
-        Lobe& lobe = add_lobe(table, Color(Floats(LayeredBsdf::kCoatNormal)), width, coated);
-        const Color several = several_reflections(lobe.normal, table);
-        under = kOne - coat * min(lobe.albedo.r * Floats(kPi) + several.r * table.mean_lost, kOne);
-        lobe.weight = coat, lobe.albedo *= coat;
-        diffuse_ += black_outside(coated, several * coat);
+        const Lobe& lobe = add_lobe(tables.coat, Color(Floats(LayeredBsdf::kCoatNormal)), width, coat, coated);
+        under = kOne - (lobe.albedo.r + lobe.several.r * lobe.mean_lost) * Floats(kPi);
     }
-    if (lane_bits(specular) != 0) {
-        const LobeTables table = tables.specular(alpha, wo_.z, specular);
-        Lobe& lobe = add_lobe(table, normal, alpha, specular);
-        lobe.weight = under, lobe.albedo *= under;
-        diffuse_ += black_outside(specular, several_reflections(normal, table) * under);
-    }
-    diffuse_ *= Floats(kInvPi);
-    diffuse_lanes_ = visible_ & (max_component(diffuse_) > kNone);
+    if (lane_bits(specular) != 0) add_lobe(tables.specular, normal, alpha, under, specular);
+    uniform_ = diffuse_;
+    for (std::size_t i = 0; i < lobe_count_; ++i)
+        uniform_ += black_outside(lobes_[i].lanes, lobes_[i].several * lobes_[i].mean_lost);
 }
 
-LitBatch::Lobe& LitBatch::add_lobe(const LobeTables& t, const Color& normal, const Floats& alpha, const Lanes& lanes) {
+const LitBatch::Lobe& LitBatch::add_lobe(LobeLookup& lookup, const Color& normal, const Floats& alpha,
+                                         const Floats& weight, const Lanes& lanes) {
+    const LobeTables t = lookup(alpha, wo_.z, lanes);
     Lobe& lobe = lobes_[lobe_count_++];
-    lobe.cosine_space = CosineSpaceT<Floats>::of(t.m11, t.m13, t.m22, t.m31, t.m33);
-    lobe.alpha = alpha, lobe.normal = normal, lobe.lanes = lanes;
-    lobe.albedo = (normal + (Color(kOne) - normal) * t.share) * (t.energy * Floats(kInvPi));
+    lobe.lookup = &lookup, lobe.cosine_space = CosineSpaceT<Floats>::of(t.m11, t.m13, t.m22, t.m31, t.m33);
+    lobe.alpha = alpha, lobe.normal = normal, lobe.weight = weight, lobe.lanes = lanes, lobe.mean_lost = t.mean_lost;
+    lobe.albedo = (normal + (Color(kOne) - normal) * t.share) * (t.energy * weight * Floats(kInvPi));
+    lobe.several = several_reflections(normal, t) * weight;
     return lobe;
 }
 
-template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light) const {
+template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light, const Lanes& diffuse_lanes) const {
     const Vec3T<Floats> corner = spread<Floats>(light.position) - p_;
     const Floats behind = dot(corner, spread<Floats>(light.axis));
-    Lanes lanes = visible_ & ((light.two_sided ? abs(behind) : -behind) > rounding_);
+    Lanes lanes = lanes_ & ((light.two_sided ? abs(behind) : -behind) > rounding_);
     if (lane_bits(lanes) == 0) return Color(kNone);
     const PolygonT<Floats> polygon{local(corner), local(spread<Floats>(light.u)), local(spread<Floats>(light.v))};
     const Floats& u = polygon.u.z;
@@ -103,8 +99,8 @@ template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light) c
         return xsimd::select(where, light.two_sided ? abs(signed_factor) : max(signed_factor, kNone), kNone);
     };
     Color sum(kNone);
-    if (const Lanes diffuse = lanes & diffuse_lanes_; lane_bits(diffuse) != 0)
-        sum += diffuse_ * form_factor(polygon, diffuse);
+    if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
+        sum += uniform_ * form_factor(polygon, diffuse);
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         const Lobe& lobe = lobes_[i];
         const auto& to_cosine = lobe.cosine_space;
@@ -115,43 +111,48 @@ template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light) c
     return sum * spread_color(light.emitted);
 }
 
-Color LitBatch::from_sphere(const FrameLight& light) const {
+Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const {
     const Vec3T<Floats> way = spread<Floats>(light.position) - p_;
     const Floats squared = dot(way, way), radius2 = Floats(sqr(light.radius)), height = dot(way, z_);
     const Lanes outside = squared > radius2;
     // Inside a two-sided sphere all directions are lit, but not on its own surface.
-    const Lanes inside = (light.two_sided ? visible_ : Lanes(false)) & (!outside) & (height > -rounding_);
-    const Lanes lanes = (visible_ & outside & (height > Floats(-light.radius) + rounding_)) | inside;
+    const Lanes inside = (light.two_sided ? lanes_ : Lanes(false)) & (!outside) & (height > -rounding_);
+    const Lanes lanes = (lanes_ & outside & (height > Floats(-light.radius) + rounding_)) | inside;
     if (lane_bits(lanes) == 0) return Color(kNone);
     const Floats inverse = inverse_sqrt(max(squared, Floats(1e-30f)));
     const Floats sine2 = min(radius2 * inverse * inverse, Floats(1 - 1e-6f));
-    const Vec3T<Floats> d = local(way * inverse);
     Color sum(kNone);
-    if (const Lanes diffuse = lanes & diffuse_lanes_; lane_bits(diffuse) != 0)
-        sum += diffuse_ * xsimd::select(inside, Floats(kPi), sphere_form_factor_times_pi(d.z, sine2, diffuse));
+    if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
+        sum += uniform_ *
+               xsimd::select(inside, Floats(kPi), sphere_form_factor_times_pi(height * inverse, sine2, diffuse));
+    if (lobe_count_ == 0) return black_outside(lanes, sum) * spread_color(light.emitted);
+    const Vec3T<Floats> d = local(way * inverse);
     for (std::size_t i = 0; i < lobe_count_; ++i)
         if (const Lanes glossy = lanes & lobes_[i].lanes; lane_bits(glossy) != 0)
             sum += black_outside(glossy, lobes_[i].albedo * sphere_in_lobe(lobes_[i].cosine_space, d, sine2, glossy));
     return black_outside(lanes, sum) * spread_color(light.emitted);
 }
 
-Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance) const {
+Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const {
     const Floats cosine = dot(wi, z_);
-    const Lanes lanes = visible_ & (cosine > kNone) & (irradiance > kNone);
+    const Lanes lanes = lanes_ & (cosine > kNone) & (irradiance > kNone);
     if (lane_bits(lanes) == 0) return Color(kNone);
-    Color sum = diffuse_;
+    Color sum = black_outside(diffuse_lanes, diffuse_);
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         const Lobe& lobe = lobes_[i];
         if (lane_bits(lanes & lobe.lanes) == 0) continue;
         const Vec3T<Floats> w(dot(wi, x_), dot(wi, y_), max(cosine, Floats(1e-6f)));
         const MicrofacetT<Floats> h = microfacet(wo_, w);
         const Color fresnel = fresnel_schlick(lobe.normal, h.cosine);
-        sum += black_outside(lobe.lanes, fresnel * (ggx_reflection(wo_, w, h.normal, lobe.alpha) * lobe.weight));
+        Color reflected = fresnel * (ggx_reflection(wo_, w, h.normal, lobe.alpha) * lobe.weight);
+        const Lanes lossy = lanes & lobe.lanes & (max_component(lobe.several) > kNone);
+        if (lane_bits(lossy) != 0) reflected += lobe.several * lobe.lookup->lost(lobe.alpha, w.z, lossy);
+        sum += black_outside(lobe.lanes, reflected);
     }
     return black_outside(lanes, sum * (cosine * irradiance));
 }
 
-Color LitBatch::from_position(const FrameLight& light) const {
+Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lanes) const {
     const Vec3T<Floats> way = spread<Floats>(light.position) - p_;
     const Floats inverse = inverse_sqrt(max(dot(way, way), Floats(1e-30f)));
     const Vec3T<Floats> wi = way * inverse;
@@ -161,20 +162,27 @@ Color LitBatch::from_position(const FrameLight& light) const {
         const Floats s = clamp((cosine - Floats(light.cos_outer)) * Floats(light.inverse_range), kNone, kOne);
         fraction = fraction * s * s * (Floats(3.0f) - s - s);
     }
-    return from_direction(wi, fraction) * spread_color(light.emitted);
+    return from_direction(wi, fraction, diffuse_lanes) * spread_color(light.emitted);
 }
 
-Color LitBatch::reflected(const FrameLight& light) const {
+Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
+    const Lanes diffuse = lobes == Lobes::kAll ? lanes_ & (max_component(uniform_) > kNone) : Lanes(false);
     switch (light.kind) {
-    case FrameLight::Kind::kTriangle: return from_polygon<3>(light);
-    case FrameLight::Kind::kQuad: return from_polygon<4>(light);
-    case FrameLight::Kind::kSphere: return from_sphere(light);
+    case FrameLight::Kind::kTriangle:
+        return from_polygon<3>(light, diffuse);
+    case FrameLight::Kind::kQuad:
+        return from_polygon<4>(light, diffuse);
+    case FrameLight::Kind::kSphere:
+        return from_sphere(light, diffuse);
     case FrameLight::Kind::kPoint:
-    case FrameLight::Kind::kSpot: return from_position(light);
+    case FrameLight::Kind::kSpot:
+        return from_position(light, diffuse);
     case FrameLight::Kind::kSun:
-        return from_direction(spread<Floats>(light.axis), kOne) * spread_color(light.emitted);
+        return from_direction(spread<Floats>(light.axis), kOne, diffuse) * spread_color(light.emitted);
     }
     return Color(kNone);
 }
+
+Color LitBatch::diffuse(const Color& irradiance) const { return black_outside(lanes_, uniform_ * irradiance); }
 
 } // namespace duet::raster

@@ -17,38 +17,49 @@ public:
         LobeLookup specular, coat;
     };
 
-    LitBatch(const GBuffer& gbuffer, int x, int y, Tables& tables);
+    /// Only the given lanes, which must be visible surfaces, are lit.
+    LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tables& tables);
 
-    /// Returns the radiance that the lobes reflect of one light without shadows. Only light from above the plane of the
-    /// shading normal counts. An emitter does not light points in its own plane.
-    RgbT<Floats> reflected(const FrameLight& light) const;
+    /// Selects the lobes that reflect.
+    enum class Lobes { kAll, kSpecular };
+    /// Returns the radiance that the lobes reflect of one light without shadows, 0 in other lanes. Only light from
+    /// above the plane of the shading normal counts. An emitter does not light points in its own plane.
+    RgbT<Floats> reflected(const FrameLight& light, Lobes lobes = Lobes::kAll) const;
+    /// Returns the radiance that all but the specular lobes reflect of an irradiance.
+    RgbT<Floats> diffuse(const RgbT<Floats>& irradiance) const;
 
     const Vec3T<Floats>& p() const { return p_; }
     const Vec3T<Floats>& n() const { return z_; }
-    bool empty() const { return lane_bits(visible_) == 0; }
+    bool specular() const { return lobe_count_ > 0; }
 
 private:
     struct Lobe {
+        LobeLookup* lookup;
         CosineSpaceT<Floats> cosine_space;
         Floats alpha;
-        RgbT<Floats> normal;    ///< reflectance at normal incidence
-        Floats weight;          ///< fraction of the lobe's light that is seen
-        RgbT<Floats> albedo;    ///< fraction of uniform light that is reflected once, times weight / π
-        Lanes lanes;            ///< where the lobe exists
+        RgbT<Floats> normal; ///< reflectance at normal incidence
+        Floats weight;       ///< fraction of the lobe's light that is seen
+        RgbT<Floats> albedo; ///< fraction of uniform light that is reflected once, times weight / π
+        RgbT<Floats>
+            several; ///< BRDF of light that is reflected several times, over the lost fraction of its direction
+        Floats mean_lost;
+        Lanes lanes; ///< where the lobe exists
     };
 
     Vec3T<Floats> local(const Vec3T<Floats>& v) const { return {dot(x_, v), dot(y_, v), dot(z_, v)}; }
-    Lobe& add_lobe(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha, const Lanes& lanes);
-    template <std::size_t N> RgbT<Floats> from_polygon(const FrameLight& light) const;
-    RgbT<Floats> from_sphere(const FrameLight& light) const;
-    RgbT<Floats> from_position(const FrameLight& light) const;
-    RgbT<Floats> from_direction(const Vec3T<Floats>& wi, const Floats& irradiance) const;
+    const Lobe& add_lobe(LobeLookup& lookup, const RgbT<Floats>& normal, const Floats& alpha, const Floats& weight,
+                         const Lanes& lanes);
+    template <std::size_t N> RgbT<Floats> from_polygon(const FrameLight& light, const Lanes& diffuse_lanes) const;
+    RgbT<Floats> from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const;
+    RgbT<Floats> from_position(const FrameLight& light, const Lanes& diffuse_lanes) const;
+    RgbT<Floats> from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const;
 
     Vec3T<Floats> p_, x_, y_, z_; ///< the point relative to the eye; the axes of the frame
     Vec3T<Floats> wo_;            ///< local unit direction to the viewer
     Floats rounding_;             ///< greatest error of a point's position, m
-    Lanes visible_, diffuse_lanes_;
-    RgbT<Floats> diffuse_;        ///< BRDF of all light that is nearly uniform over directions
+    Lanes lanes_;
+    RgbT<Floats> diffuse_; ///< BRDF of the diffuse lobe
+    RgbT<Floats> uniform_; ///< with light that is reflected several times, for light from an area
     std::array<Lobe, 2> lobes_;
     std::size_t lobe_count_ = 0;
 };

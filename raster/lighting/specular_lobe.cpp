@@ -52,6 +52,11 @@ struct Columns {
     }
 };
 
+Columns steepness_columns(const Floats& alpha, const Floats& cosine) {
+    const Floats width = clamp(alpha, Floats(sqr(GgxAlbedoTables::kSmoothest)), Floats(1.0f));
+    return Columns(GgxAlbedoTables::steepness(width, cosine), GgxAlbedoTables::kSide);
+}
+
 } // namespace
 
 void LobeLookup::set_rows(float alpha) {
@@ -73,26 +78,42 @@ void LobeLookup::set_rows(float alpha) {
     mean_lost_ = GgxAlbedoTables::look_up(albedo.mean_lost, place);
 }
 
-LobeTables LobeLookup::operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
-    const Columns by_angle(xsimd::sqrt(max(Floats(1.0f) - cosine, Floats(0.0f))), kLobeSide);
-    const Columns by_height(xsimd::sqrt(cosine), GgxAlbedoTables::kSide);
-    const Floats width = clamp(alpha, Floats(sqr(GgxAlbedoTables::kSmoothest)), Floats(1.0f));
-    const Columns by_steepness(GgxAlbedoTables::steepness(width, cosine), GgxAlbedoTables::kSide);
-    LobeTables result{};
+/// Calls use(lanes) for each value of alpha, with the rows of that value.
+template <typename Use>
+void LobeLookup::for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use) {
     alignas(64) std::array<float, Floats::size> each;
     alpha.store_aligned(each.data());
     for (std::uint32_t left = lane_bits(lanes); left != 0;) {
         const float own = each[static_cast<std::size_t>(std::countr_zero(left))];
         set_rows(own);
         const xsimd::batch_bool<float> equal = alpha == Floats(own);
+        use(equal);
         left &= ~lane_bits(equal);
+    }
+}
+
+LobeTables LobeLookup::operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
+    const Columns by_angle(xsimd::sqrt(max(Floats(1.0f) - cosine, Floats(0.0f))), kLobeSide);
+    const Columns by_height(xsimd::sqrt(cosine), GgxAlbedoTables::kSide);
+    const Columns by_steepness = steepness_columns(alpha, cosine);
+    LobeTables result{};
+    for_each_alpha(alpha, lanes, [&](const xsimd::batch_bool<float>& equal) {
         const auto set = [&](Floats& to, const Floats& value) { to = xsimd::select(equal, value, to); };
         set(result.m11, by_angle(matrix_[0])), set(result.m13, by_angle(matrix_[1]));
         set(result.m22, by_angle(matrix_[2])), set(result.m31, by_angle(matrix_[3]));
         set(result.m33, by_angle(matrix_[4]));
         set(result.energy, Floats(1.0f) - by_steepness(lost_));
         set(result.share, by_height(share_)), set(result.mean_lost, Floats(mean_lost_));
-    }
+    });
+    return result;
+}
+
+Floats LobeLookup::lost(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
+    const Columns by_steepness = steepness_columns(alpha, cosine);
+    Floats result(0.0f);
+    for_each_alpha(alpha, lanes, [&](const xsimd::batch_bool<float>& equal) {
+        result = xsimd::select(equal, by_steepness(lost_), result);
+    });
     return result;
 }
 

@@ -39,9 +39,13 @@ class LobeLookup {
 public:
     /// alpha is in [0, 1], `cosine` between normal and viewer in (0, 1]. Only the given lanes need be right.
     LobeTables operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes);
+    /// Returns the fraction of light from directions at these cosines that is not reflected just once.
+    Floats lost(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes);
 
 private:
     void set_rows(float alpha);
+    template <typename Use>
+    void for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use);
 
     float alpha_ = -1;
     std::array<StripOf<float>, 5> matrix_;

@@ -45,17 +45,21 @@ template <typename T> T greatest_root(T q) {
 
 } // namespace sphere
 
+/// Spheres whose cone has at most this half angle (as a tangent) after the transformation count as small. The error is
+/// then below 1 % of the lobe's greatest value.
+inline constexpr float kSmallCone = 1.0f / 16;
+
 /// Returns π times the fraction of a lobe that a sphere fills. The direction `d` to its center is unit, in the frame of
 /// the lobe; sine2 is as above. Transformed to the cosine's space, the sphere's cone is elliptic; the horizon clips it
 /// as it would clip the circular cone of the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting:
-/// a Journey from Research to Production"). A cone that is small after the transformation counts as circular.
+/// a Journey from Research to Production"). A small cone counts as circular.
 template <typename T> T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
     const Vec3T<T> u = lobe(d);
     const T squared = dot(u, u), inverse = inverse_sqrt(squared);
     // The form factor of a small cone is its solid angle over π, which the transformation scales by its determinant.
     T form_factor = sine2 * lobe.determinant * (inverse * inverse * inverse), c = u.z * inverse;
-    constexpr float kSmall = 1.0f / 256; // a relative error below 1 %
-    const MaskOf<T> large = form_factor > T(kSmall);
+    const T stretch2 = lobe.gram_xx + lobe.gram_yy + lobe.gram_zz; // bounds the square of the greatest stretch
+    const MaskOf<T> large = sine2 * stretch2 > T(kSmallCone * kSmallCone) * squared;
     if (any_lane(large & lanes)) {
         // The directions w of the cone have (w·d)² ≥ cos²σ w²; the dual cone's matrix B = u uᵀ − sin²σ M Mᵀ has one
         // positive eigenvalue. It is found by Cardano's formula from B less a third of its trace.
@@ -67,15 +71,30 @@ template <typename T> T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<
         const T p2 = (k.xx * k.xx + k.yy * k.yy + k.zz * k.zz +
                       T(2) * (k.xy * k.xy + k.xz * k.xz + k.yz * k.yz)) * T(1.0f / 6);
         const T inverse_p = inverse_sqrt(max(p2, T(1e-30f)));
-        const sphere::Symmetric<T> minors = k.adjugate();
-        const T half_determinant = (k.xx * minors.xx + k.xy * minors.xy + k.xz * minors.xz) * T(0.5f);
+        const sphere::Symmetric<T> cofactors = k.adjugate();
+        const T half_determinant = (k.xx * cofactors.xx + k.xy * cofactors.xy + k.xz * cofactors.xz) * T(0.5f);
         const T q = clamp(half_determinant * (inverse_p * inverse_p * inverse_p), T(-1), T(1));
-        const T rest = p2 * inverse_p * sphere::greatest_root(q), mu = mean + rest;
         const T det = (sine2 * lobe.determinant) * (sine2 * lobe.determinant) * (T(1) - sine2);
+        // Where a cone exceeds the lobe by far, μ is the small difference of great numbers. The characteristic
+        // polynomial μ³ − trace μ² + minors μ − det, from minors that do not cancel, then gives it without its cube,
+        // and Newton's method with it.
+        const T xx = u.x * u.x, yy = u.y * u.y, zz = u.z * u.z, flat = lobe.determinant / lobe.yy;
+        const T thin = (xx + zz) * lobe.gram_yy + yy * (lobe.gram_xx + lobe.gram_zz) + xx * lobe.gram_zz +
+                       zz * lobe.gram_xx - T(2) * u.x * u.z * lobe.gram_xz;
+        const T wide = (lobe.gram_xx + lobe.gram_zz) * lobe.gram_yy + flat * flat;
+        const T minors = sine2 * (sine2 * wide - thin);
+        T mu = mean + p2 * inverse_p * sphere::greatest_root(q);
+        const T root = sqrt(max(minors * minors - T(4) * trace * det, T(0))) + abs(minors);
+        const T quadratic = select(minors > T(0), T(2) * det / root, T(-0.5f) * root / trace);
+        mu = select(mu < mean * T(-0.1f), quadratic, mu);
+        for (int i = 0; i < 2; ++i) {
+            const T value = ((mu - trace) * mu + minors) * mu - det, slope = (T(3) * mu - T(2) * trace) * mu + minors;
+            mu = max(mu - value / max(slope, T(1e-30f)), T(0));
+        }
         const T exact = inverse_sqrt(T(1) + mu * mu * (T(2) * mu - trace) / det);
         // The eigenvector is the longest column of the adjugate of B − μ.
-        k.xx = k.xx - rest, k.yy = k.yy - rest, k.zz = k.zz - rest;
-        const sphere::Symmetric<T> a = k.adjugate();
+        const sphere::Symmetric<T> a =
+            sphere::Symmetric<T>{b.xx - mu, b.xy, b.xz, b.yy - mu, b.yz, b.zz - mu}.adjugate();
         const MaskOf<T> y_most = (a.yy > a.xx) & (a.yy >= a.zz), z_most = (a.zz > a.xx) & (a.zz > a.yy);
         Vec3T<T> axis = select(z_most, Vec3T<T>(a.xz, a.yz, a.zz),
                                select(y_most, Vec3T<T>(a.xy, a.yy, a.yz), Vec3T<T>(a.xx, a.xy, a.xz)));

@@ -9,6 +9,8 @@ namespace duet::raster {
 class ShadowLookup {
 public:
     virtual ~ShadowLookup() = default;
+    /// Returns whether the light, an index into Scene::lights, has shadows at all. Else visibility() is not called.
+    virtual bool shadows(std::size_t light) const = 0;
     /// Returns the visible fraction, in [0, 1], of a light at points relative to the eye, whose unit normals are on the
     /// viewer's side. `light` is an index into Scene::lights. The batch starts at column x of row y. The result is
     /// unspecified in lanes that `mask` leaves out.
