@@ -25,6 +25,7 @@ public:
     /// Neither `shadows` nor `soft` is copied.
     MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const Vec3d& eye, float time);
 
+    bool shadows(std::size_t light) const override { return shadows_.source_of(light) < shadows_.sources().size(); }
     /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block is
     /// the shadow; blur_shadows() computes it.
     Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
